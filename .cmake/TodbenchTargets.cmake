@@ -1,0 +1,34 @@
+# One function for every library of the project, so that warnings, sanitizers and include roots are the same everywhere.
+
+add_library(todbench_options INTERFACE)
+target_include_directories(todbench_options INTERFACE "${CMAKE_SOURCE_DIR}")
+# -ffp-contract=off: the same sums on every compiler and instruction set, so that results repeat bit for bit.
+target_compile_options(todbench_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wunused
+  -ffp-contract=off $<$<BOOL:${TODBENCH_WERROR}>:-Werror>)
+if(TODBENCH_SANITIZE)
+  target_compile_options(todbench_options INTERFACE -fsanitize=${TODBENCH_SANITIZE} -fno-omit-frame-pointer
+    -fno-sanitize-recover=all)
+  target_link_options(todbench_options INTERFACE -fsanitize=${TODBENCH_SANITIZE})
+  target_compile_definitions(todbench_options INTERFACE TODBENCH_SANITIZED)
+endif()
+
+# todbench_library(NAME SOURCES ... DEPENDS ...): a static library whose headers are included from the repository root.
+function(todbench_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(${name} PUBLIC todbench_options ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS})
+endfunction()
+
+# todbench_test(NAME SOURCES ... DEPENDS ... [LABELS ...] [TIMEOUT s]): one GoogleTest program, its cases listed by ctest.
+function(todbench_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPENDS;LABELS" ${ARGN})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_DEPENDS} GTest::gmock_main)
+  target_compile_definitions(${name} PRIVATE TODBENCH_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  include(GoogleTest)
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+endfunction()

@@ -1,0 +1,27 @@
+// How wrong a result may be. Grid sizes, phases, wavelengths and numbers of draws follow from it.
+#pragma once
+
+#include <string_view>
+
+#include "acquisition/core/result.h"
+
+namespace todbench {
+
+/// Tolerances in physical terms, travelling with everything that computes (the idea of GalSim's GSParams).
+struct Accuracy {
+  double acuity_tolerance_percent = 1;  ///< of the 75 % acuity, all numerical causes together
+  double wrap_tolerance = 1.5e-5;       ///< of the contrast: signal that periodicity folds back into a pixel
+  double band_tolerance = 1e-4;         ///< of the contrast: signal beyond the highest computed frequency
+  int wavelengths = 4;                  ///< Gauss-Legendre nodes over the band
+  int phases_per_axis = 8;              ///< sampling phases averaged by the direct estimate, per pitch and axis
+  int noise_draws = 600;                ///< draws of the direct estimate per size, shared by phases and contrasts
+  bool operator==(const Accuracy&) const = default;
+
+  [[nodiscard]] static Accuracy draft();
+  [[nodiscard]] static Accuracy normal();
+  [[nodiscard]] static Accuracy reference();
+  /// "draft", "normal" or "reference"; `invalid_input` otherwise.
+  [[nodiscard]] static Result<Accuracy> named(std::string_view level);
+};
+
+}  // namespace todbench

@@ -1,0 +1,36 @@
+// What a frame is.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <string_view>
+
+#include "acquisition/core/radiometric_scale.h"
+
+namespace todbench {
+
+/// How far the pixels of a frame can be trusted, as the transport tells.
+enum class FrameStatus {
+  complete,
+  incomplete,  ///< data missing or late; never measured
+  wrong_size,  ///< geometry or payload differs from what was negotiated
+};
+
+[[nodiscard]] std::string_view to_string(FrameStatus status);
+
+/// One exposed image. Immutable once handed out: pixels are shared, copying is cheap, any thread may read.
+struct Frame {
+  cv::Mat1w counts;                ///< as the camera sent them, row by row from the top
+  std::uint64_t sequence = 0;      ///< counts exposures, unwrapped; a gap is a lost frame
+  std::int64_t device_time_ns = 0; ///< the camera's own clock (start of transfer where the camera does not say more); 0: none
+  std::int64_t host_time_ns = 0;   ///< CLOCK_MONOTONIC when the complete frame reached the program
+  FrameStatus status = FrameStatus::complete;
+  int significant_bits = 16;       ///< full scale is 2^significant_bits - 1 counts
+  std::shared_ptr<const RadiometricScale> scale; ///< never null
+};
+
+/// The frame in kelvin. Fails with `calibration` when the scale cannot say for some pixel.
+[[nodiscard]] Result<cv::Mat1d> to_kelvin(const Frame& frame);
+
+}  // namespace todbench

@@ -1,0 +1,42 @@
+// Counter-based randomness: a value is a function of (seed, stream, index), on any number of threads and any compiler.
+// Philox4x32-10, Salmon et al. 2011 "Parallel random numbers: as easy as 1, 2, 3".
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace todbench {
+
+/// One independent sequence of random numbers. A value type without state: the position is an argument.
+/// Thread-safe. Streams are named so that leaving one consumer out never shifts the numbers of another.
+class RandomStream {
+ public:
+  RandomStream(std::uint64_t seed, std::uint64_t stream) : seed_(seed), stream_(stream) {}
+  /// The stream whose number is a hash (FNV-1a) of `name`, e.g. "sensor.temporal".
+  RandomStream(std::uint64_t seed, std::string_view name);
+
+  /// The stream for item `index` below this one (a frame of a sensor, a trial of an observer).
+  [[nodiscard]] RandomStream sub(std::uint64_t index) const;
+
+  /// Four raw 32-bit words at position `index`.
+  [[nodiscard]] std::array<std::uint32_t, 4> words(std::uint64_t index) const;
+  /// Uniform in (0, 1), 53 bits, at position `index`.
+  [[nodiscard]] double uniform(std::uint64_t index) const;
+  /// Uniform integer in [0, count), count >= 1, without modulo bias beyond count / 2^64.
+  [[nodiscard]] std::uint64_t below(std::uint64_t count, std::uint64_t index) const;
+  /// Standard normal at position `index` (same value as fill_normal writes there).
+  [[nodiscard]] float normal(std::uint64_t index) const;
+  /// Standard normals for positions first, first + 1, ... Single precision, |z| <= 6.7; bit-identical on every compiler.
+  void fill_normal(std::span<float> out, std::uint64_t first = 0) const;
+
+  [[nodiscard]] std::uint64_t seed() const { return seed_; }
+  [[nodiscard]] std::uint64_t stream() const { return stream_; }
+
+ private:
+  std::uint64_t seed_;
+  std::uint64_t stream_;
+};
+
+}  // namespace todbench

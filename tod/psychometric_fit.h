@@ -1,0 +1,91 @@
+// One psychometric function from counts of correct answers, with honest intervals and a verdict.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "acquisition/core/result.h"
+
+namespace todbench {
+
+/// Answers at one size (or contrast). Counts are doubles so that 2e9 trials and whole-number checks both work.
+struct Level {
+  double size = 0;     ///< >= 0; 0 is a catch trial (nothing to see)
+  double correct = 0;  ///< whole number, 0 <= correct <= total
+  double total = 0;    ///< whole number; 0: the row is ignored
+  int cluster = -1;    ///< trials that share phase, frame or fixed pattern; < 0: independent
+};
+
+/// Both forms are Weibull functions with chance level 0.25 that pass through 0.75 at the threshold.
+enum class PsychometricForm {
+  size,    ///< psi = g + (1-g-l)(1 - exp(-(x/a)^b)), increasing in size
+  acuity,  ///< psi = g + (1-g-l) exp(-(a/x)^b): a Weibull in acuity 1/x, the form attributed to TNO
+};
+[[nodiscard]] std::string_view to_string(PsychometricForm form);
+
+/// See Ceres' termination types: each verdict is defined by a condition on the likelihood, in this order of precedence.
+enum class FitVerdict {
+  no_data,               ///< no trials at a positive size
+  above_range,           ///< the likelihood has its supremum at pure chance: only a lower limit exists
+  below_range,           ///< supremum at threshold -> 0: only an upper limit exists
+  slope_unidentifiable,  ///< one positive level
+  step,                  ///< no finite slope maximises the likelihood, or only one level is informative
+  flat_or_decreasing,    ///< slope at its lower bound: the threshold number is meaningless
+  underdetermined,       ///< more parameters than positive levels
+  extrapolated,          ///< threshold outside the sizes tested
+  ok,
+};
+[[nodiscard]] std::string_view to_string(FitVerdict verdict);
+
+struct FitOptions {
+  PsychometricForm form = PsychometricForm::size;
+  std::optional<double> fixed_lapse = 0.0;  ///< nothing: free in [0, 0.1]
+  bool with_posterior = true;
+};
+
+/// A side without a value is unbounded.
+struct Interval {
+  std::optional<double> low, high;
+};
+
+struct Posterior {
+  double median = 0;
+  double low = 0, high = 0;  ///< equal-tailed 95 %
+  bool prior_bound = false;  ///< marginal density at a prior edge above 1 % of its maximum: the prior speaks, not the data
+};
+
+/// What the data say. A poor fit is a verdict, not an error and not a made-up interval.
+struct PsychometricFit {
+  FitVerdict verdict = FitVerdict::no_data;
+  std::optional<double> threshold;  ///< size at which psi = 0.75 exactly
+  Interval ci95;       ///< profile likelihood (drop 3.84); with one side open the other is a one-sided 95 % limit (drop 2.71)
+  Interval ci90;       ///< profile likelihood (drop 2.71), for equivalence tests
+  std::optional<double> slope;      ///< b
+  double lapse = 0;
+  std::optional<double> log_likelihood;   ///< without binomial coefficients
+  std::optional<double> deviance;
+  int degrees_of_freedom = 0;
+  std::optional<double> se_ln_threshold;  ///< from the observed information, not widened
+  std::optional<Posterior> posterior;
+  double trials = 0;
+  double clusters = 0;            ///< number of clusters; 0 where trials are independent
+  double variance_inflation = 1;  ///< by which the clustered variance of ln threshold exceeds the independent one; already in ci95, ci90
+
+  /// ok or extrapolated with both sides of ci95.
+  [[nodiscard]] bool usable() const;
+};
+
+/// psi(size) of the model at a threshold, slope and lapse; exact at size 0 and for huge arguments.
+[[nodiscard]] double psychometric(PsychometricForm form, double size, double threshold, double slope, double lapse);
+
+/// Maximum likelihood in (ln threshold, ln slope[, lapse]) by global search and Newton refinement, with profile-likelihood and posterior
+/// intervals. Levels may be unsorted, repeated, single trials. With clusters (Level::cluster >= 0) the intervals are widened by the
+/// sandwich variance over clusters and Student's t.
+/// `invalid_input`: negative or non-finite size, fractional or negative counts, correct > total.
+[[nodiscard]] Result<PsychometricFit> fit_psychometric(std::span<const Level> levels, const FitOptions& options);
+
+}  // namespace todbench
