@@ -1,9 +1,10 @@
 // The one routine of image formation: the closed-form spectrum of a polygon times a transfer function, on a grid.
-// The sensor's image is a triangle times optics and detector, the observer's template the same triangle times its filter.
+// The sensor's image is a triangle times optics and detector, the observer's template the same triangle times its
+// filter.
 //
-// The product is band-limited, so a sum over the lattice m / period holds the image exactly for every sampling phase. The only
-// approximations are periodicity (signal that wraps round, decreasing as period^-3 for a diffraction-limited chain) and,
-// where the filter has no limit of its own, the cut at the highest lattice frequency.
+// The product is band-limited, so a sum over the lattice m / period holds the image exactly for every sampling phase.
+// The only approximations are periodicity (signal that wraps round, decreasing as period^-3 for a diffraction-limited
+// chain) and, where the filter has no limit of its own, the cut at the highest lattice frequency.
 #pragma once
 
 #include <complex>
@@ -16,7 +17,8 @@
 namespace todbench {
 
 /// Fourier transform of the polygon's indicator at frequency (u, w), in cycles per unit length:
-/// the integral of exp(-2 pi i (u x + w y)) over its area. Stable for wave vectors perpendicular to an edge and at the origin.
+/// the integral of exp(-2 pi i (u x + w y)) over its area. Stable for wave vectors perpendicular to an edge and at the
+/// origin.
 [[nodiscard]] std::complex<double> polygon_spectrum(const Polygon& polygon, double u, double w);
 
 /// Complex response at (u, w) in cycles per unit length; Hermitian: H(-u, -w) = conj H(u, w).
@@ -29,12 +31,13 @@ struct FrequencyLattice {
   bool operator==(const FrequencyLattice&) const = default;
 };
 
-/// A transfer function tabulated once on a lattice (half plane w >= 0). Immutable, thread-safe.
+/// A transfer function tabulated once on a lattice (half plane u >= 0; the rest follows by symmetry). Immutable,
+/// thread-safe.
 class FilterTable {
  public:
   FilterTable(FrequencyLattice lattice, const TransferFunction& transfer);
   [[nodiscard]] const FrequencyLattice& lattice() const { return lattice_; }
-  /// Rows w = 0..band, columns u = -band..band.
+  /// Rows w = -band..band, columns u = 0..band.
   [[nodiscard]] const cv::Mat_<std::complex<double>>& values() const { return values_; }
 
  private:
@@ -48,8 +51,9 @@ class PolygonImage {
   /// `polygon` near the origin (it must fit into the period).
   PolygonImage(const Polygon& polygon, const FilterTable& filter);
 
-  /// Values at (x0 + i step, y0 + j step), i < columns, j < rows, of the image moved by `position`.
-  /// Requires that period / step is a whole number. Cost: one pass over the spectrum and a small sum; no 2-D FFT of the fine grid.
+  /// Values at (first.x + i step, first.y + j step), i < columns, j < rows.
+  /// Requires that period / step is a whole number. Cost: one pass over the spectrum and a small sum; no 2-D FFT of the
+  /// fine grid.
   [[nodiscard]] cv::Mat1d sample(cv::Point2d first, double step, cv::Size size) const;
 
   /// The whole period at `per_unit` points per unit length: all per_unit^2 sampling phases at once, by one inverse FFT.

@@ -1,10 +1,10 @@
-// The recommended observer: normalised correlation with ideal shapes seen through the visual filter, searching for the position,
-// with internal noise in proportion to the contrast.
+// The recommended observer: normalised correlation with ideal shapes seen through the visual filter, searching for the
+// position, with internal noise in proportion to the contrast.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <mutex>
-#include <map>
 #include <string>
 #include <utility>
 
@@ -13,16 +13,15 @@
 
 namespace todbench {
 
-/// Parameters of the template observer; the defaults are hvs-1. A parameter set has a versioned name and is never changed afterwards.
-/// sigma and the internal noise of hvs-1 were tuned to a published microscan gain of 55 % (Bijl, Hogervorst and Vos): not a validated
-/// model of people.
+/// Parameters of the template observer; the defaults are hvs-1. A parameter set has a versioned name and is never
+/// changed afterwards. sigma and the internal noise of hvs-1 were tuned to a published microscan gain of 55 % (Bijl,
+/// Hogervorst and Vos): not a validated model of people.
 struct TemplateObserverSpec {
   std::string name = "hvs-1";
-  double blur_sigma_samples = 0.6;   ///< Gaussian of display and eye together, in displayed samples
-  double internal_noise = 0.07;      ///< sd per displayed sample, relative to the contrast
-  double sensor_noise_factor = 1;    ///< by how much the observer sees the sensor's noise enlarged (1.75 in human-like-1)
-  double sensor_noise_k = 0;         ///< per-sample sd that sensor_noise_factor refers to; needed only where that factor is not 1
-  double search_range_samples = 1;   ///< each way, in x and y
+  double blur_sigma_samples = 0.6;  ///< Gaussian of display and eye together, in displayed samples
+  double internal_noise = 0.07;     ///< sd per displayed sample, relative to the contrast
+  double sensor_noise_factor = 1;  ///< by how much the observer sees the sensor's noise enlarged (1.75 in human-like-1)
+  double search_range_samples = 1;  ///< each way, in x and y
   double search_step_samples = 0.125;
   double window_size_factor = 1.05;  ///< half window = ceil(factor * size + margin), in detector pitches
   double window_margin_pitch = 2;
@@ -38,7 +37,8 @@ class TemplateObserver final : public Observer {
   TemplateObserver(TemplateObserverSpec spec, Alternatives alternatives);
   [[nodiscard]] const std::string& name() const override { return spec_.name; }
   [[nodiscard]] const TemplateObserverSpec& spec() const { return spec_; }
-  [[nodiscard]] Result<std::shared_ptr<const PreparedObserver>> prepare(double size_samples, int samples_per_pitch) override;
+  [[nodiscard]] Result<std::shared_ptr<const PreparedObserver>> prepare(double size_samples,
+                                                                        int samples_per_pitch) override;
   /// The bank behind prepare(), for estimates that work on the templates themselves.
   [[nodiscard]] Result<std::shared_ptr<const TemplateBank>> bank(double size_samples, int samples_per_pitch);
 

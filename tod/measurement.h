@@ -1,4 +1,5 @@
-// The measurement: frame source, target and observer in, trials out. The laboratory and the simulator differ only in these objects.
+// The measurement: frame source, target and observer in, trials out. The laboratory and the simulator differ only in
+// these objects.
 #pragma once
 
 #include <chrono>
@@ -20,23 +21,24 @@
 namespace todbench {
 
 struct MeasurementOptions {
-  double ifov_mrad = 0;             ///< of one pixel, from the plan
-  double distance_m = 0;            ///< entrance pupil to plate
-  std::vector<TargetPlate> plates;  ///< in identity mounting
-  int registration_frames = 32;     ///< averaged at the highest contrast
-  int contrast_frames = 16;         ///< averaged for the effective contrast, once per plate, mounting and contrast
-  double min_reference_px = 4;      ///< triangles from this size measure the effective contrast
-  int frames_after_change = 2;      ///< exposures discarded after the target moved (frames in flight)
-  double nuc_interval_s = 0;        ///< correct the camera's non-uniformity this often; 0: never commanded
-  double nuc_wait_s = 1;            ///< frames within this time after a correction are not measured
-  double max_rejected_share = 0.05; ///< beyond it, after 100 frames, the run ends with `integrity`
+  double ifov_mrad = 0;              ///< of one pixel, from the plan
+  double distance_m = 0;             ///< entrance pupil to plate
+  std::vector<TargetPlate> plates;   ///< in identity mounting
+  int registration_frames = 32;      ///< averaged at the highest contrast
+  int contrast_frames = 16;          ///< averaged for the effective contrast, once per plate, mounting and contrast
+  double min_reference_px = 4;       ///< triangles from this size measure the effective contrast
+  int frames_after_change = 2;       ///< exposures discarded after the target moved (frames in flight)
+  double nuc_interval_s = 0;         ///< correct the camera's non-uniformity this often; 0: never commanded
+  double nuc_wait_s = 1;             ///< frames within this time after a correction are not measured
+  double max_rejected_share = 0.05;  ///< beyond it, after 100 frames, the run ends with `integrity`
   std::chrono::milliseconds frame_timeout{2000};
   IntegrityOptions integrity;
-  RegistrationOptions registration; ///< expected scale is filled in from distance and IFOV
+  RegistrationOptions registration;  ///< expected scale is filled in from distance and IFOV
   std::uint64_t seed = 1;
 };
 
-/// What the run says while it goes on. Called from the measuring thread; a slow listener slows the measurement, it never loses trials.
+/// What the run says while it goes on. Called from the measuring thread; a slow listener slows the measurement, it
+/// never loses trials.
 struct MeasurementListener {
   std::function<void(const Trial&)> on_trial;
   std::function<void(std::size_t done, std::size_t planned)> on_progress;
@@ -56,20 +58,22 @@ struct MeasurementResult {
   std::uint64_t frames_used = 0;
   std::map<std::string, std::uint64_t> frames_rejected;  ///< by reason
   std::uint64_t frames_lost = 0;                         ///< gaps in the sequence
-  double temporal_noise_k = 0;   ///< per pixel, from differences of successive frames of the same presentation; 0: not measured
+  double temporal_noise_k =
+      0;  ///< per pixel, from differences of successive frames of the same presentation; 0: not measured
   std::vector<std::string> notes;
-  std::optional<Error> ended_by; ///< why it stopped early; the trials so far are valid
+  std::optional<Error> ended_by;  ///< why it stopped early; the trials so far are valid
 };
 
-/// Sizes (name of triangle, reason) that cannot be measured with this geometry: a window with its search margin that touches a neighbour or
-/// leaves the frame. Empty: all fit.
-[[nodiscard]] Result<std::vector<std::string>> sizes_that_do_not_fit(const MeasurementOptions& options, Observer& observer,
-                                                                     int frame_width, int frame_height);
+/// Sizes (name of triangle, reason) that cannot be measured with this geometry: a window with its search margin that
+/// touches a neighbour or leaves the frame. Empty: all fit.
+[[nodiscard]] Result<std::vector<std::string>> sizes_that_do_not_fit(const MeasurementOptions& options,
+                                                                     Observer& observer, int frame_width,
+                                                                     int frame_height);
 
-/// Runs a schedule. Fails only when nothing could be measured (plate not found, uncalibrated camera, sizes that do not fit); a run that
-/// ended early returns its trials with `ended_by`.
-[[nodiscard]] Result<MeasurementResult> measure(FrameSource& source, Target& target, Observer& observer, TrialSchedule& schedule,
-                                                const MeasurementOptions& options, const MeasurementListener& listener,
-                                                std::stop_token stop);
+/// Runs a schedule. Fails only when nothing could be measured (plate not found, uncalibrated camera, sizes that do not
+/// fit); a run that ended early returns its trials with `ended_by`.
+[[nodiscard]] Result<MeasurementResult> measure(FrameSource& source, Target& target, Observer& observer,
+                                                TrialSchedule& schedule, const MeasurementOptions& options,
+                                                const MeasurementListener& listener, std::stop_token stop);
 
 }  // namespace todbench

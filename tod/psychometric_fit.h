@@ -55,25 +55,28 @@ struct Interval {
 struct Posterior {
   double median = 0;
   double low = 0, high = 0;  ///< equal-tailed 95 %
-  bool prior_bound = false;  ///< marginal density at a prior edge above 1 % of its maximum: the prior speaks, not the data
+  bool prior_bound =
+      false;  ///< marginal density at a prior edge above 1 % of its maximum: the prior speaks, not the data
 };
 
 /// What the data say. A poor fit is a verdict, not an error and not a made-up interval.
 struct PsychometricFit {
   FitVerdict verdict = FitVerdict::no_data;
   std::optional<double> threshold;  ///< size at which psi = 0.75 exactly
-  Interval ci95;       ///< profile likelihood (drop 3.84); with one side open the other is a one-sided 95 % limit (drop 2.71)
-  Interval ci90;       ///< profile likelihood (drop 2.71), for equivalence tests
-  std::optional<double> slope;      ///< b
+  Interval
+      ci95;  ///< profile likelihood (drop 3.84); with one side open the other is a one-sided 95 % limit (drop 2.71)
+  Interval ci90;                ///< profile likelihood (drop 2.71), for equivalence tests
+  std::optional<double> slope;  ///< b
   double lapse = 0;
-  std::optional<double> log_likelihood;   ///< without binomial coefficients
+  std::optional<double> log_likelihood;  ///< without binomial coefficients
   std::optional<double> deviance;
   int degrees_of_freedom = 0;
   std::optional<double> se_ln_threshold;  ///< from the observed information, not widened
   std::optional<Posterior> posterior;
   double trials = 0;
-  double clusters = 0;            ///< number of clusters; 0 where trials are independent
-  double variance_inflation = 1;  ///< by which the clustered variance of ln threshold exceeds the independent one; already in ci95, ci90
+  double clusters = 0;  ///< number of clusters; 0 where trials are independent
+  double variance_inflation =
+      1;  ///< by which the clustered variance of ln threshold exceeds the independent one; already in ci95, ci90
 
   /// ok or extrapolated with both sides of ci95.
   [[nodiscard]] bool usable() const;
@@ -82,9 +85,9 @@ struct PsychometricFit {
 /// psi(size) of the model at a threshold, slope and lapse; exact at size 0 and for huge arguments.
 [[nodiscard]] double psychometric(PsychometricForm form, double size, double threshold, double slope, double lapse);
 
-/// Maximum likelihood in (ln threshold, ln slope[, lapse]) by global search and Newton refinement, with profile-likelihood and posterior
-/// intervals. Levels may be unsorted, repeated, single trials. With clusters (Level::cluster >= 0) the intervals are widened by the
-/// sandwich variance over clusters and Student's t.
+/// Maximum likelihood in (ln threshold, ln slope[, lapse]) by global search and Newton refinement, with
+/// profile-likelihood and posterior intervals. Levels may be unsorted, repeated, single trials. With clusters
+/// (Level::cluster >= 0) the intervals are widened by the sandwich variance over clusters and Student's t.
 /// `invalid_input`: negative or non-finite size, fractional or negative counts, correct > total.
 [[nodiscard]] Result<PsychometricFit> fit_psychometric(std::span<const Level> levels, const FitOptions& options);
 

@@ -26,18 +26,19 @@ struct ConstantStimuliOptions {
   std::vector<std::string> plates;
   std::vector<Mounting> mountings;
   std::vector<double> delta_t_k;
-  int phases = 16;                 ///< sub-pixel shifts per plate, mounting and contrast
-  double pixel_mm = 1;             ///< one pixel on the plate; shifts are spread over one pixel in x and y
+  int phases = 16;                              ///< sub-pixel shifts per plate, mounting and contrast
+  double pixel_mm = 1;                          ///< one pixel on the plate; shifts are spread over one pixel in x and y
   double change_cost_s[4] = {60, 30, 20, 0.1};  ///< plate, mounting, contrast, shift
 };
 
-/// `count` sub-pixel shifts in [0, 1)^2, spread evenly for every count (additive recurrence with the plastic number, Roberts 2018),
-/// started at a random place of `stream`.
+/// `count` sub-pixel shifts in [0, 1)^2, spread evenly for every count (additive recurrence with the plastic number,
+/// Roberts 2018), started at a random place of `stream`.
 [[nodiscard]] std::vector<cv::Point2d> spread_phases(int count, const RandomStream& stream);
 
-/// Presentations nested so that what takes longest to change changes least often; within a contrast group the highest contrast comes
-/// first, because the plate is registered there. Ties keep the order plate, mounting, contrast, shift.
-[[nodiscard]] std::vector<TargetState> constant_stimuli(const ConstantStimuliOptions& options, const RandomStream& stream);
+/// Presentations nested so that what takes longest to change changes least often; within a contrast group the highest
+/// contrast comes first, because the plate is registered there. Ties keep the order plate, mounting, contrast, shift.
+[[nodiscard]] std::vector<TargetState> constant_stimuli(const ConstantStimuliOptions& options,
+                                                        const RandomStream& stream);
 
 /// A schedule that shows a list once.
 class ListedSchedule final : public TrialSchedule {

@@ -14,25 +14,26 @@ namespace todbench {
 
 /// One thing to show.
 struct TargetState {
-  std::string plate;                          ///< name of the TargetPlate
+  std::string plate;  ///< name of the TargetPlate
   Mounting mounting = Mounting::identity;
-  double delta_t_k = 0;                       ///< set-point of triangle minus surround; the sign is the polarity
-  cv::Point2d shift_mm{0, 0};                 ///< of the plate in its own plane, as seen by the camera, x right, y down
+  double delta_t_k = 0;        ///< set-point of triangle minus surround; the sign is the polarity
+  cv::Point2d shift_mm{0, 0};  ///< of the plate in its own plane, as seen by the camera, x right, y down
   bool operator==(const TargetState&) const = default;
 };
 
 /// What an instrument says it shows, once it is stable.
 struct PresentedTarget {
-  TargetState state;                                ///< as reached
-  std::optional<double> plate_temperature_k;        ///< of the surround, where a sensor says so
-  std::optional<double> black_body_temperature_k;   ///< behind the cut-outs
-  double settling_s = 0;                            ///< time spent waiting
+  TargetState state;                               ///< as reached
+  std::optional<double> plate_temperature_k;       ///< of the surround, where a sensor says so
+  std::optional<double> black_body_temperature_k;  ///< behind the cut-outs
+  double settling_s = 0;                           ///< time spent waiting
 };
 
 /// What a target can do by itself, and how long a change takes: the order of presentations follows from it.
 struct TargetCapabilities {
-  std::string description;      ///< instruments with their serial numbers, for the report
-  bool sets_shift = false;      ///< false: sub-pixel phases come from small movements of the hand and are measured by registration
+  std::string description;  ///< instruments with their serial numbers, for the report
+  bool sets_shift =
+      false;  ///< false: sub-pixel phases come from small movements of the hand and are measured by registration
   double plate_change_s = 60, mounting_change_s = 30, contrast_change_s = 20, shift_change_s = 0.1;
 };
 

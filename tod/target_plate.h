@@ -13,9 +13,10 @@ namespace todbench {
 
 /// One cut-out.
 struct PlateTriangle {
-  std::string name;          ///< unique on the plate, e.g. "row 2, triangle 3"
-  cv::Point2d position_mm;   ///< centroid, from the middle of the plate, x right, y down, as seen by the camera in identity mounting
-  double size_mm = 0;        ///< square root of area
+  std::string name;         ///< unique on the plate, e.g. "row 2, triangle 3"
+  cv::Point2d position_mm;  ///< centroid, from the middle of the plate, x right, y down, as seen by the camera in
+                            ///< identity mounting
+  double size_mm = 0;       ///< square root of area
   Apex apex = Apex::up;
 };
 
@@ -34,7 +35,8 @@ struct TargetPlate {
   std::vector<PlateTriangle> triangles;
 };
 
-/// `invalid_input` for an empty plate, a size that is not positive, a repeated name, or a triangle that leaves the plate or touches another.
+/// `invalid_input` for an empty plate, a size that is not positive, a repeated name, or a triangle that leaves the
+/// plate or touches another.
 [[nodiscard]] Result<void> validate(const TargetPlate& plate);
 
 /// The plate as the camera sees it in a mounting: places and apexes transformed, names kept.

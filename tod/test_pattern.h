@@ -18,10 +18,10 @@ inline constexpr std::array all_apexes{Apex::up, Apex::right, Apex::down, Apex::
 [[nodiscard]] std::optional<Apex> apex_from(std::string_view name);
 
 /// Size is the square root of the area. Everything below is for size 1:
-inline constexpr double triangle_side = 1.5196713713031853;               ///< 2 / 3^(1/4)
-inline constexpr double triangle_height = 1.3160740129524924;             ///< 3^(1/4)
-inline constexpr double triangle_centroid_to_apex = 0.8773826753016616;   ///< 2/3 of the height
-inline constexpr double triangle_centroid_to_base = 0.4386913376508308;   ///< 1/3 of the height
+inline constexpr double triangle_side = 1.5196713713031853;              ///< 2 / 3^(1/4)
+inline constexpr double triangle_height = 1.3160740129524924;            ///< 3^(1/4)
+inline constexpr double triangle_centroid_to_apex = 0.8773826753016616;  ///< 2/3 of the height
+inline constexpr double triangle_centroid_to_base = 0.4386913376508308;  ///< 1/3 of the height
 
 /// Triangle of `size`, rotated about its centroid, which is at `centroid`.
 [[nodiscard]] Polygon triangle(double size, Apex apex, cv::Point2d centroid = {0, 0});

@@ -21,13 +21,14 @@ enum class FrameStatus {
 
 /// One exposed image. Immutable once handed out: pixels are shared, copying is cheap, any thread may read.
 struct Frame {
-  cv::Mat1w counts;                ///< as the camera sent them, row by row from the top
-  std::uint64_t sequence = 0;      ///< counts exposures, unwrapped; a gap is a lost frame
-  std::int64_t device_time_ns = 0; ///< the camera's own clock (start of transfer where the camera does not say more); 0: none
-  std::int64_t host_time_ns = 0;   ///< CLOCK_MONOTONIC when the complete frame reached the program
+  cv::Mat1w counts;            ///< as the camera sent them, row by row from the top
+  std::uint64_t sequence = 0;  ///< counts exposures, unwrapped; a gap is a lost frame
+  std::int64_t device_time_ns =
+      0;  ///< the camera's own clock (start of transfer where the camera does not say more); 0: none
+  std::int64_t host_time_ns = 0;  ///< CLOCK_MONOTONIC when the complete frame reached the program
   FrameStatus status = FrameStatus::complete;
-  int significant_bits = 16;       ///< full scale is 2^significant_bits - 1 counts
-  std::shared_ptr<const RadiometricScale> scale; ///< never null
+  int significant_bits = 16;                      ///< full scale is 2^significant_bits - 1 counts
+  std::shared_ptr<const RadiometricScale> scale;  ///< never null
 };
 
 /// The frame in kelvin. Fails with `calibration` when the scale cannot say for some pixel.

@@ -15,13 +15,13 @@ namespace todbench {
 
 /// Who the camera is and how it was set up; read back from the device, not what was asked for.
 struct SourceInfo {
-  std::string id;         ///< e.g. "gige:FLIR-48000123": stable over reconnects and reboots
+  std::string id;  ///< e.g. "gige:FLIR-48000123": stable over reconnects and reboots
   std::string vendor, model, serial, firmware;
   std::string transport;  ///< "GigE Vision", "simulation", "recording"
   int width = 0, height = 0;
-  std::string pixel_format;        ///< PFNC name, e.g. "Mono14"
+  std::string pixel_format;  ///< PFNC name, e.g. "Mono14"
   int significant_bits = 16;
-  double frame_rate_hz = 0;        ///< 0: unknown
+  double frame_rate_hz = 0;  ///< 0: unknown
   RadiometricScale scale;
   std::map<std::string, std::string> settings;  ///< feature -> value read back, for provenance
   std::vector<std::string> warnings;            ///< one sentence each, e.g. a socket buffer the system did not grant
@@ -40,7 +40,8 @@ class FrameSource {
   /// Starts exposing; starting twice is harmless. Frames queued by an earlier run are gone.
   [[nodiscard]] virtual Result<void> start() = 0;
   /// The next frame in order, including incomplete ones (see Frame::status).
-  /// Errors: `timeout` (nothing came), `interrupted` (stop() was called), `disconnected` (camera lost, or recording at its end).
+  /// Errors: `timeout` (nothing came), `interrupted` (stop() was called), `disconnected` (camera lost, or recording at
+  /// its end).
   [[nodiscard]] virtual Result<Frame> next(std::chrono::milliseconds timeout) = 0;
   /// Stops exposing and wakes a waiting next(). Harmless when stopped.
   virtual void stop() = 0;

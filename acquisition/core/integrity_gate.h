@@ -13,12 +13,12 @@ namespace todbench {
 
 /// Why a frame was not used.
 enum class Rejection {
-  incomplete,    ///< the transport says so
-  wrong_size,    ///< not the geometry of the source
-  repeated,      ///< a sequence number seen before
-  out_of_order,  ///< a sequence number below the last one
-  frozen,        ///< bit-identical to the frame before it (shutter, stuck transfer)
-  saturated,     ///< more than the allowed share of pixels at zero or full scale
+  incomplete,                ///< the transport says so
+  wrong_size,                ///< not the geometry of the source
+  repeated,                  ///< a sequence number seen before
+  out_of_order,              ///< a sequence number below the last one
+  frozen,                    ///< bit-identical to the frame before it (shutter, stuck transfer)
+  saturated,                 ///< more than the allowed share of pixels at zero or full scale
   nonuniformity_correction,  ///< during or just after a correction
 };
 

@@ -24,11 +24,12 @@ class RandomStream {
   [[nodiscard]] std::array<std::uint32_t, 4> words(std::uint64_t index) const;
   /// Uniform in (0, 1), 53 bits, at position `index`.
   [[nodiscard]] double uniform(std::uint64_t index) const;
-  /// Uniform integer in [0, count), count >= 1, without modulo bias beyond count / 2^64.
+  /// Uniform integer in [0, count), 1 <= count <= 2^50, bias below count / 2^53.
   [[nodiscard]] std::uint64_t below(std::uint64_t count, std::uint64_t index) const;
   /// Standard normal at position `index` (same value as fill_normal writes there).
   [[nodiscard]] float normal(std::uint64_t index) const;
-  /// Standard normals for positions first, first + 1, ... Single precision, |z| <= 6.7; bit-identical on every compiler.
+  /// Standard normals for positions first, first + 1, ... Single precision, |z| <= 5.9; bit-identical on every
+  /// compiler.
   void fill_normal(std::span<float> out, std::uint64_t first = 0) const;
 
   [[nodiscard]] std::uint64_t seed() const { return seed_; }

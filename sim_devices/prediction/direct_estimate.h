@@ -1,5 +1,5 @@
-// The 75 % size of a simulated sensor without trials and without a psychometric form: phase-averaged proportion correct of the searching
-// observer, interpolated.
+// The 75 % size of a simulated sensor without trials and without a psychometric form: phase-averaged proportion correct
+// of the searching observer, interpolated.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ namespace todbench {
 
 struct DirectPoint {
   double delta_t_k = 0;
-  double s75_pitch = 0;          ///< in detector pitches
+  double s75_pitch = 0;  ///< in detector pitches
   double standard_error_pitch = 0;
   std::vector<double> sizes_pitch;
   std::vector<double> proportion_correct;
@@ -27,7 +27,8 @@ struct DirectEstimateOptions {
 
 /// One point per contrast (kelvin, > 0). Noise is drawn once per size and shared by phases and contrasts.
 /// `invalid_input` when no size between 0.2 and 40 pitches brackets 75 %: the contrast then has no threshold.
-[[nodiscard]] Result<std::vector<DirectPoint>> direct_estimate(const SensorSpec& spec, const SensorPlan& plan, TemplateObserver& observer,
+[[nodiscard]] Result<std::vector<DirectPoint>> direct_estimate(const SensorSpec& spec, const SensorPlan& plan,
+                                                               TemplateObserver& observer,
                                                                const std::vector<double>& delta_t_k,
                                                                const DirectEstimateOptions& options);
 

@@ -9,13 +9,13 @@ namespace todbench {
 
 /// A mounted plate, seen from a distance, its middle near the middle of the picture. A value.
 struct PlateScene {
-  TargetPlate plate;               ///< as mounted
-  double delta_t_k = 0;            ///< triangle minus surround
-  double background_k = 300;       ///< temperature of the surround
+  TargetPlate plate;          ///< as mounted
+  double delta_t_k = 0;       ///< triangle minus surround
+  double background_k = 300;  ///< temperature of the surround
   double distance_m = 2;
-  cv::Point2d shift_mm{0, 0};      ///< of the plate in its plane
+  cv::Point2d shift_mm{0, 0};        ///< of the plate in its plane
   cv::Point2d centre_px{0.3, -0.2};  ///< where the plate's middle is, from the middle of the picture, at shift 0
-  double rotation_deg = 0;         ///< of the plate about the line of sight, clockwise in the picture
+  double rotation_deg = 0;           ///< of the plate about the line of sight, clockwise in the picture
 };
 
 /// Position in pixels (column, row; pixel centres at integers) of a place on the plate.

@@ -14,7 +14,8 @@
 
 namespace todbench {
 
-/// Immutable but for internal caches; thread-safe. The same (scene, index) gives the same frame on every machine and thread.
+/// Immutable but for internal caches; thread-safe. The same (scene, index) gives the same frame on every machine and
+/// thread.
 class SensorModel {
  public:
   /// Precondition: validate(spec) succeeds.

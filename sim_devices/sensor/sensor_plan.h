@@ -12,7 +12,8 @@
 
 namespace todbench {
 
-/// The stages of the sensor chain in their order. An effect at its neutral value equals the effect left out, bit for bit.
+/// The stages of the sensor chain in their order. An effect at its neutral value equals the effect left out, bit for
+/// bit.
 enum class Effect {
   diffraction,     ///< neutral: no aperture limit
   aberration,      ///< neutral: sigma 0
@@ -31,8 +32,9 @@ enum class Decision { simulate, skip };
 struct EffectDecision {
   Effect effect = Effect::diffraction;
   Decision decision = Decision::simulate;
-  std::string reason;                            ///< a sentence
-  std::optional<double> predicted_change_percent; ///< of the 75 % acuity if skipped; nothing where no criterion can promise it
+  std::string reason;  ///< a sentence
+  std::optional<double>
+      predicted_change_percent;  ///< of the 75 % acuity if skipped; nothing where no criterion can promise it
 };
 
 /// One decision per effect, in chain order. Data: it is in the configuration, the session folder and the report.
@@ -41,7 +43,9 @@ struct SensorPlan {
   [[nodiscard]] bool simulates(Effect effect) const;
 };
 
-/// Every effect simulated except those that are neutral in this sensor; then `skip` and `force` are obeyed, and the reasons say so.
-[[nodiscard]] SensorPlan full_plan(const SensorSpec& spec, const std::vector<Effect>& skip, const std::vector<Effect>& force);
+/// Every effect simulated except those that are neutral in this sensor; then `skip` and `force` are obeyed, and the
+/// reasons say so.
+[[nodiscard]] SensorPlan full_plan(const SensorSpec& spec, const std::vector<Effect>& skip,
+                                   const std::vector<Effect>& force);
 
 }  // namespace todbench

@@ -1,4 +1,5 @@
-// The sensor model as a camera of the bench, and the scene before it as a target. They share the scene; nothing else connects them.
+// The sensor model as a camera of the bench, and the scene before it as a target. They share the scene; nothing else
+// connects them.
 #pragma once
 
 #include <memory>
@@ -24,7 +25,8 @@ class SceneHolder {
 
 /// Exposes as fast as it is asked: frame k is expose(scene at that moment, k). `serial` distinguishes twins.
 [[nodiscard]] std::unique_ptr<FrameSource> simulated_source(std::shared_ptr<const SensorModel> model,
-                                                            std::shared_ptr<const SceneHolder> scene, std::string serial);
+                                                            std::shared_ptr<const SceneHolder> scene,
+                                                            std::string serial);
 
 /// Puts states into the scene at once. Plates in identity mounting.
 [[nodiscard]] std::unique_ptr<Target> scene_target(std::shared_ptr<SceneHolder> scene, std::vector<TargetPlate> plates);
