@@ -33,13 +33,17 @@ struct TargetPlate {
   std::string description;
   double width_mm = 0, height_mm = 0;
   std::vector<PlateTriangle> triangles;
+  Mounting mounting = Mounting::identity;  ///< in which places and apexes are stated; set by mounted(), never by a file
 };
 
 /// `invalid_input` for an empty plate, a size that is not positive, a repeated name, or a triangle that leaves the
 /// plate or touches another.
 [[nodiscard]] Result<void> validate(const TargetPlate& plate);
 
-/// The plate as the camera sees it in a mounting: places and apexes transformed, names kept.
+/// The mounting that results from both, in either order (the Klein four-group: each is its own inverse).
+[[nodiscard]] Mounting combined(Mounting first, Mounting second);
+
+/// The plate as the camera sees it in a mounting: places and apexes transformed, names kept, `mounting` combined.
 [[nodiscard]] TargetPlate mounted(const TargetPlate& plate, Mounting mounting);
 [[nodiscard]] Apex mounted(Apex apex, Mounting mounting);
 
