@@ -12,6 +12,7 @@ foreach(part core imgproc imgcodecs calib3d)
 endforeach()
 
 pkg_check_modules(FFTW3 REQUIRED IMPORTED_TARGET fftw3)
+find_package(Eigen3 3.4 REQUIRED)
 find_package(Boost 1.74 REQUIRED)
 find_package(tl-expected REQUIRED)
 find_package(nlohmann_json REQUIRED)

@@ -12,24 +12,12 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "hvs/polygon.h"
+#include "hvs/polygon_spectrum.h"
 
 namespace todbench {
 
-/// Fourier transform of the polygon's indicator at frequency (u, w), in cycles per unit length:
-/// the integral of exp(-2 pi i (u x + w y)) over its area. Stable for wave vectors perpendicular to an edge and at the
-/// origin.
-[[nodiscard]] std::complex<double> polygon_spectrum(const Polygon& polygon, double u, double w);
-
 /// Complex response at (u, w) in cycles per unit length; Hermitian: H(-u, -w) = conj H(u, w).
 using TransferFunction = std::function<std::complex<double>(double u, double w)>;
-
-/// The frequencies m / period, |m| <= band, in both directions.
-struct FrequencyLattice {
-  int period = 32;  ///< in unit lengths (pitches or samples), >= 1
-  int band = 203;   ///< highest m kept; the highest frequency is band / period
-  bool operator==(const FrequencyLattice&) const = default;
-};
 
 /// A transfer function tabulated once on a lattice (half plane u >= 0; the rest follows by symmetry). Immutable,
 /// thread-safe.

@@ -66,7 +66,7 @@ std::optional<Rejection> IntegrityGate::judge(const Frame& frame) {
       (options_.height > 0 && frame.counts.rows != options_.height)) {
     return rejected_for(Rejection::wrong_size);
   }
-  const bool frozen = same_pixels(frame.counts, last_counts_);
+  const bool frozen = options_.reject_frozen && same_pixels(frame.counts, last_counts_);
   last_counts_ = frame.counts;
   if (frozen) return rejected_for(Rejection::frozen);
   if (saturated_share(frame) > options_.max_saturated_share) return rejected_for(Rejection::saturated);

@@ -85,12 +85,12 @@ std::array<std::uint32_t, 4> RandomStream::words(std::uint64_t index) const {
 
 double RandomStream::uniform(std::uint64_t index) const {
   const auto w = words(index);
-  const std::uint64_t bits = (static_cast<std::uint64_t>(w[1]) << 32 | w[0]) >> 11;
-  return (static_cast<double>(bits) + 0.5) * 0x1p-53;
+  const std::uint64_t bits = (static_cast<std::uint64_t>(w[1]) << 32 | w[0]) >> 12;
+  return (static_cast<double>(bits) + 0.5) * 0x1p-52;
 }
 
 std::uint64_t RandomStream::below(std::uint64_t count, std::uint64_t index) const {
-  // uniform() < 1 - 2^-54, so the product stays below count for every count up to 2^53.
+  // uniform() <= 1 - 2^-53, so the product stays below count for every count up to 2^50.
   return static_cast<std::uint64_t>(uniform(index) * static_cast<double>(count));
 }
 

@@ -22,9 +22,9 @@ class RandomStream {
 
   /// Four raw 32-bit words at position `index`.
   [[nodiscard]] std::array<std::uint32_t, 4> words(std::uint64_t index) const;
-  /// Uniform in (0, 1), 53 bits, at position `index`.
+  /// Uniform in (0, 1), 52 bits, at position `index`.
   [[nodiscard]] double uniform(std::uint64_t index) const;
-  /// Uniform integer in [0, count), 1 <= count <= 2^50, bias below count / 2^53.
+  /// Uniform integer in [0, count), 1 <= count <= 2^50, bias below count / 2^52.
   [[nodiscard]] std::uint64_t below(std::uint64_t count, std::uint64_t index) const;
   /// Standard normal at position `index` (same value as fill_normal writes there).
   [[nodiscard]] float normal(std::uint64_t index) const;

@@ -27,9 +27,15 @@ class SensorModel {
   [[nodiscard]] const SensorSpec& spec() const;
   [[nodiscard]] const SensorPlan& plan() const;
 
-  /// The picture before noise, in kelvin. The last few scenes are cached.
-  [[nodiscard]] std::shared_ptr<const cv::Mat1f> irradiance(const PlateScene& scene) const;
-  /// Frame `index`: irradiance, temporal noise, fixed pattern, quantisation to counts, clipped to the significant bits.
+  /// Picture elements: detectors times microscan.
+  [[nodiscard]] cv::Size size() const;
+  /// The picture before noise, in kelvin above the surround. The last few scenes are cached.
+  [[nodiscard]] std::shared_ptr<const cv::Mat1f> signal(const PlateScene& scene) const;
+  /// Picture `index` in kelvin above the surround: signal, temporal noise, fixed pattern, quantisation; each as
+  /// planned.
+  [[nodiscard]] cv::Mat1f picture(const PlateScene& scene, std::uint64_t index) const;
+  /// Frame `index` as the camera delivers it: the picture in counts, rounded and clipped to the significant bits.
+  /// Rounds also where the plan skips quantisation, because a frame holds whole counts.
   [[nodiscard]] cv::Mat1w expose(const PlateScene& scene, std::uint64_t index) const;
 
  private:

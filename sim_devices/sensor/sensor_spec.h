@@ -21,9 +21,10 @@ struct SensorSpec {
   double aberration_sigma_pitch = 0;  ///< Gaussian blur of the lens beyond diffraction, per axis, in detector pitches
   double netd_k = 0.07;               ///< temporal noise per sample
   double fixed_pattern_k = 0;         ///< sd of the fixed offset per detector
-  int bits = 14;                      ///< significant bits of a count
-  double kelvin_per_count = 0.01;     ///< linear temperature output
-  double offset_k = 250;              ///< temperature of count 0
+  int microscan = 1;               ///< n: array displaced n x n times per picture, n^2 as many samples, same detectors
+  int bits = 14;                   ///< significant bits of a count
+  double kelvin_per_count = 0.01;  ///< linear temperature output
+  double offset_k = 250;           ///< temperature of count 0
   double frame_rate_hz = 50;
   double scene_temperature_k = 300;  ///< of the surround; sets the spectral weighting dL/dT
 

@@ -1,0 +1,17 @@
+// Gauss-Legendre quadrature.
+#pragma once
+
+#include <vector>
+
+namespace todbench {
+
+struct QuadratureNode {
+  double x = 0;       ///< in (-1, 1)
+  double weight = 0;  ///< the weights sum to 2
+};
+
+/// The rule with `count` >= 1 nodes on [-1, 1], increasing; nodes and weights to a few ulp (Newton on the Legendre
+/// recurrence).
+[[nodiscard]] std::vector<QuadratureNode> gauss_legendre(int count);
+
+}  // namespace todbench

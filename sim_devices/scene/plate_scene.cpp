@@ -1,0 +1,28 @@
+#include "sim_devices/scene/plate_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace todbench {
+
+cv::Point2d scene_pixel(const PlateScene& scene, cv::Point2d plate_mm, double ifov_mrad, cv::Size sensor) {
+  // A plane seen by a distortion-free lens: millimetres over metres are milliradians of the tangent.
+  const cv::Point2d px = (plate_mm + scene.shift_mm) * (1 / (scene.distance_m * ifov_mrad));
+  const double angle = scene.rotation_deg * std::numbers::pi / 180;
+  const cv::Point2d turned(px.x * std::cos(angle) - px.y * std::sin(angle),
+                           px.x * std::sin(angle) + px.y * std::cos(angle));
+  return turned + scene.centre_px + cv::Point2d((sensor.width - 1) / 2.0, (sensor.height - 1) / 2.0);
+}
+
+bool same_scene(const PlateScene& a, const PlateScene& b) {
+  const auto same_triangle = [](const PlateTriangle& s, const PlateTriangle& t) {
+    return s.position_mm == t.position_mm && s.size_mm == t.size_mm && s.apex == t.apex;
+  };
+  return a.delta_t_k == b.delta_t_k && a.background_k == b.background_k && a.distance_m == b.distance_m &&
+         a.shift_mm == b.shift_mm && a.centre_px == b.centre_px && a.rotation_deg == b.rotation_deg &&
+         std::equal(a.plate.triangles.begin(), a.plate.triangles.end(), b.plate.triangles.begin(),
+                    b.plate.triangles.end(), same_triangle);
+}
+
+}  // namespace todbench

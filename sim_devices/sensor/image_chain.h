@@ -1,0 +1,52 @@
+// Degraded pictures of single shapes: image formation of one sensor at one accuracy.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "acquisition/core/accuracy.h"
+#include "hvs/polygon_image.h"
+#include "sim_devices/sensor/sensor_plan.h"
+#include "sim_devices/sensor/sensor_spec.h"
+
+namespace todbench {
+
+/// Optics and detector of one sensor. Lengths in detector pitches. Thread-safe; filter tables are computed once per
+/// lattice.
+class ImageChain {
+ public:
+  /// Precondition: validate(spec) succeeds.
+  ImageChain(SensorSpec spec, SensorPlan plan, Accuracy accuracy);
+
+  /// The lattice that keeps wrapped signal and truncated band within the tolerances for shapes of `size_pitch` (square
+  /// root of area).
+  [[nodiscard]] FrequencyLattice lattice(double size_pitch) const;
+  /// Points per pitch at which the fine image holds the whole band: a multiple of 16, so that all 16 x 16 phases lie on
+  /// it.
+  [[nodiscard]] int points_per_pitch() const { return points_per_pitch_; }
+  /// The degraded image of a shape of contrast 1 near the origin.
+  [[nodiscard]] PolygonImage image(const Polygon& shape_pitch) const;
+
+  /// Samples for an infinite plane, by Richardson extrapolation from periods P and 2P (the wrapped signal falls as
+  /// P^-3), with a bound on the remaining error estimated from their difference.
+  struct InfinitePlane {
+    cv::Mat1d values;
+    double max_error_estimate = 0;
+  };
+  [[nodiscard]] InfinitePlane infinite_plane(const Polygon& shape_pitch, cv::Point2d first, double step,
+                                             cv::Size size) const;
+
+ private:
+  [[nodiscard]] std::shared_ptr<const FilterTable> filter(const FrequencyLattice& lattice) const;
+
+  SensorSpec spec_;
+  SensorPlan plan_;
+  Accuracy accuracy_;
+  double band_per_pitch_ = 0;
+  int points_per_pitch_ = 16;
+  mutable std::mutex mutex_;
+  mutable std::map<int, std::shared_ptr<const FilterTable>> filters_;  ///< by period
+};
+
+}  // namespace todbench

@@ -1,0 +1,141 @@
+#include "sim_devices/sensor/simulated_camera.h"
+
+#include <algorithm>
+#include <atomic>
+
+namespace todbench {
+namespace {
+
+std::int64_t monotonic_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+class SimulatedSource final : public FrameSource {
+ public:
+  SimulatedSource(std::shared_ptr<const SensorModel> model, std::shared_ptr<const SceneHolder> scene,
+                  std::string serial)
+      : model_(std::move(model)), scene_(std::move(scene)) {
+    const SensorSpec& spec = model_->spec();
+    const auto scale = RadiometricScale::linear({.kelvin_per_count = spec.kelvin_per_count, .offset_k = spec.offset_k});
+    CV_Assert(scale.has_value());
+    scale_ = std::make_shared<const RadiometricScale>(*scale);
+    info_.id = "sim:" + spec.name;
+    info_.vendor = "todbench";
+    info_.model = spec.name;
+    info_.serial = std::move(serial);
+    info_.firmware = "simulation";
+    info_.transport = "simulation";
+    info_.width = model_->size().width;
+    info_.height = model_->size().height;
+    info_.pixel_format = spec.bits <= 8 ? "Mono8" : "Mono" + std::to_string(spec.bits);
+    info_.significant_bits = spec.bits;
+    info_.frame_rate_hz = spec.frame_rate_hz;
+    info_.scale = *scale_;
+  }
+
+  [[nodiscard]] const SourceInfo& info() const override { return info_; }
+
+  [[nodiscard]] Result<void> start() override {
+    stopped_ = false;
+    return {};
+  }
+
+  [[nodiscard]] Result<Frame> next(std::chrono::milliseconds /*timeout*/) override {
+    if (stopped_) return fail(ErrorCode::interrupted, "simulated camera " + info_.id + " is stopped");
+    Frame frame;
+    frame.counts = model_->expose(*scene_->scene(), index_);
+    frame.sequence = index_;
+    // The simulated clock ticks once per exposure, so that a run repeats bit for bit.
+    frame.device_time_ns = static_cast<std::int64_t>(static_cast<double>(index_) * 1e9 / info_.frame_rate_hz);
+    frame.host_time_ns = monotonic_ns();
+    frame.significant_bits = info_.significant_bits;
+    frame.scale = scale_;
+    ++index_;
+    return frame;
+  }
+
+  void stop() override { stopped_ = true; }
+
+  [[nodiscard]] Result<std::string> get(const std::string& feature) override {
+    if (feature == "DeviceSerialNumber") return info_.serial;
+    if (feature == "DeviceModelName") return info_.model;
+    if (feature == "PixelFormat") return info_.pixel_format;
+    if (feature == "Width") return std::to_string(info_.width);
+    if (feature == "Height") return std::to_string(info_.height);
+    return fail(ErrorCode::invalid_input, "simulated camera has no feature '" + feature + "'");
+  }
+
+  [[nodiscard]] Result<void> set(const std::string& feature, const std::string& /*value*/) override {
+    return fail(ErrorCode::invalid_input, "simulated camera has no settable feature '" + feature + "'");
+  }
+
+  [[nodiscard]] Result<void> correct_nonuniformity() override { return {}; }
+
+ private:
+  std::shared_ptr<const SensorModel> model_;
+  std::shared_ptr<const SceneHolder> scene_;
+  std::shared_ptr<const RadiometricScale> scale_;
+  SourceInfo info_;
+  std::uint64_t index_ = 0;
+  std::atomic<bool> stopped_{true};
+};
+
+class SceneTarget final : public Target {
+ public:
+  SceneTarget(std::shared_ptr<SceneHolder> scene, std::vector<TargetPlate> plates)
+      : scene_(std::move(scene)), plates_(std::move(plates)) {
+    capabilities_.description = "simulated scene";
+    capabilities_.sets_shift = true;
+  }
+
+  [[nodiscard]] const TargetCapabilities& capabilities() const override { return capabilities_; }
+
+  [[nodiscard]] Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) override {
+    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped before the target was presented");
+    const auto plate =
+        std::find_if(plates_.begin(), plates_.end(), [&](const TargetPlate& p) { return p.name == state.plate; });
+    if (plate == plates_.end())
+      return fail(ErrorCode::invalid_input, "the simulated scene has no plate '" + state.plate + "'");
+    PlateScene scene = *scene_->scene();
+    scene.plate = mounted(*plate, state.mounting);
+    scene.delta_t_k = state.delta_t_k;
+    scene.shift_mm = state.shift_mm;
+    scene_->set(scene);
+    return PresentedTarget{.state = state,
+                           .plate_temperature_k = scene.background_k,
+                           .black_body_temperature_k = scene.background_k + state.delta_t_k,
+                           .settling_s = 0};
+  }
+
+ private:
+  std::shared_ptr<SceneHolder> scene_;
+  std::vector<TargetPlate> plates_;
+  TargetCapabilities capabilities_;
+};
+
+}  // namespace
+
+SceneHolder::SceneHolder(PlateScene scene) : scene_(std::make_shared<const PlateScene>(std::move(scene))) {}
+
+std::shared_ptr<const PlateScene> SceneHolder::scene() const {
+  const std::scoped_lock lock(mutex_);
+  return scene_;
+}
+
+void SceneHolder::set(PlateScene scene) {
+  auto next = std::make_shared<const PlateScene>(std::move(scene));
+  const std::scoped_lock lock(mutex_);
+  scene_ = std::move(next);
+}
+
+std::unique_ptr<FrameSource> simulated_source(std::shared_ptr<const SensorModel> model,
+                                              std::shared_ptr<const SceneHolder> scene, std::string serial) {
+  return std::make_unique<SimulatedSource>(std::move(model), std::move(scene), std::move(serial));
+}
+
+std::unique_ptr<Target> scene_target(std::shared_ptr<SceneHolder> scene, std::vector<TargetPlate> plates) {
+  return std::make_unique<SceneTarget>(std::move(scene), std::move(plates));
+}
+
+}  // namespace todbench
