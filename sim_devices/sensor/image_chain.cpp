@@ -51,6 +51,21 @@ FrequencyLattice ImageChain::lattice(double size_pitch) const {
   return {.period = period, .band = static_cast<int>(std::floor(band_per_pitch_ * period))};
 }
 
+TransferFunction ImageChain::tabulated_transfer(const FrequencyLattice& lattice) const {
+  // Optics depend on the radius alone, and m^2 + n^2 takes few values: each is computed once.
+  const auto radial = std::make_shared<std::vector<double>>(
+      2 * static_cast<std::size_t>(lattice.band) * static_cast<std::size_t>(lattice.band) + 1, -1.0);
+  const OpticsMtf optics(spec_, plan_, accuracy_.wavelengths);
+  const double ratio = plan_.simulates(Effect::detector) ? spec_.detector_pitch_ratio() : 0;
+  const double period = lattice.period;
+  return [radial, optics, ratio, period](double u, double w) -> std::complex<double> {
+    const auto key = static_cast<std::size_t>(std::llround((u * u + w * w) * period * period));
+    double& value = (*radial)[key];
+    if (value < 0) value = optics(std::sqrt(static_cast<double>(key)) / period);
+    return value * detector_mtf(u, w, ratio);
+  };
+}
+
 std::shared_ptr<const FilterTable> ImageChain::filter(const FrequencyLattice& lattice) const {
   const std::scoped_lock lock(mutex_);
   auto& slot = filters_[lattice.period];
