@@ -148,7 +148,7 @@ std::vector<ScpiCommand> PlateStage::plate_commands() {
   };
   const auto catalogue = [this] {
     std::string names;
-    for (const auto& plate : options_.plates) names += (names.empty() ? "" : ",") + scpi_string(plate);
+    for (const auto& plate : options_.plates) names.append(names.empty() ? "" : ",").append(scpi_string(plate));
     return names;
   };
   return {{"ROUTe:PLATe", select},
