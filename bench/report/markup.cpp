@@ -1,0 +1,131 @@
+#include "bench/report/markup.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace todbench {
+namespace {
+
+// A table of up to this many rows is not broken over two pages.
+constexpr std::size_t rows_kept_together = 14;
+
+constexpr std::string_view replacement = "\xEF\xBF\xBD";
+
+bool continuation(char byte) {
+  return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U;
+}
+
+/// Length in bytes of the UTF-8 character at `position`, 0 where the bytes are none (RFC 3629: shortest form, no
+/// surrogates, <= U+10FFFF) or where XML 1.0 forbids the character.
+std::size_t character_length(std::string_view text, std::size_t position) {
+  const auto lead = static_cast<unsigned char>(text[position]);
+  if (lead < 0x80U) return lead >= 0x20U && lead != 0x7FU ? 1 : (lead == '\t' || lead == '\n' || lead == '\r' ? 1 : 0);
+  const std::size_t length = lead >= 0xF0U ? 4 : lead >= 0xE0U ? 3 : 2;
+  if (lead < 0xC2U || lead > 0xF4U || position + length > text.size()) return 0;
+  std::uint32_t code = lead & (0x7FU >> length);
+  for (std::size_t i = 1; i < length; ++i) {
+    if (!continuation(text[position + i])) return 0;
+    code = (code << 6U) | (static_cast<unsigned char>(text[position + i]) & 0x3FU);
+  }
+  constexpr std::array<std::uint32_t, 5> smallest{0, 0, 0x80, 0x800, 0x10000};
+  const bool surrogate = code >= 0xD800U && code <= 0xDFFFU;
+  const bool c1_control = code < 0xA0U;
+  const bool noncharacter = code == 0xFFFEU || code == 0xFFFFU;
+  return code < smallest[length] || code > 0x10FFFFU || surrogate || c1_control || noncharacter ? 0 : length;
+}
+
+std::string_view entity(char character) {
+  switch (character) {
+    case '&':
+      return "&amp;";
+    case '<':
+      return "&lt;";
+    case '>':
+      return "&gt;";
+    case '"':
+      return "&quot;";
+    case '\'':
+      return "&#39;";
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+Markup& Markup::operator+=(const Markup& more) {
+  text += more.text;
+  return *this;
+}
+
+Markup literal(std::string_view markup) {
+  return Markup{std::string(markup)};
+}
+
+Markup escaped(std::string_view plain) {
+  Markup result;
+  for (std::size_t i = 0; i < plain.size();) {
+    const std::size_t length = character_length(plain, i);
+    if (length == 0) {
+      result.text += replacement;
+      ++i;
+      continue;
+    }
+    const std::string_view known = length == 1 ? entity(plain[i]) : std::string_view{};
+    result.text += known.empty() ? plain.substr(i, length) : known;
+    i += length;
+  }
+  return result;
+}
+
+Markup element(std::string_view tag, const Markup& content, std::string_view attributes) {
+  Markup result;
+  std::string& text = result.text;
+  text.reserve(content.text.size() + attributes.size() + 2 * tag.size() + 6);
+  text.append("<").append(tag);
+  if (!attributes.empty()) text.append(" ").append(attributes);
+  text.append(">").append(content.text).append("</").append(tag).append(">");
+  return result;
+}
+
+Markup table(const MarkupTable& table) {
+  Markup head;
+  for (const std::string& name : table.header) head += element("th", escaped(name), "scope=\"col\"");
+  Markup body;
+  for (const std::vector<Markup>& row : table.rows) {
+    Markup cells;
+    for (std::size_t i = 0; i < row.size(); ++i)
+      cells += i == 0 ? element("th", row[i], "scope=\"row\"") : element("td", row[i]);
+    body += element("tr", cells) + literal("\n");
+  }
+  const Markup caption = table.caption.empty() ? Markup{} : element("caption", escaped(table.caption));
+  return element(
+             "div",
+             element("table", caption + element("thead", element("tr", head)) + literal("\n") + element("tbody", body)),
+             table.rows.size() <= rows_kept_together ? "class=\"wide short\"" : "class=\"wide\"") +
+         literal("\n");
+}
+
+Markup table_of_values(const std::string& caption, const std::vector<NamedValue>& values) {
+  Markup body;
+  for (const NamedValue& entry : values)
+    body +=
+        element("tr", element("th", escaped(entry.name), "scope=\"row\"") + element("td", entry.value)) + literal("\n");
+  const Markup title = caption.empty() ? Markup{} : element("caption", escaped(caption));
+  return element("table", title + element("tbody", body), "class=\"values\"") + literal("\n");
+}
+
+Markup unbroken(std::string_view plain) {
+  return element("span", escaped(plain), "class=\"unbroken\"");
+}
+
+Markup missing(std::string_view reason) {
+  return literal("– ") + element("span", literal("(") + escaped(reason) + literal(")"), "class=\"why\"");
+}
+
+Markup text_or_missing(std::string_view plain, std::string_view reason) {
+  return plain.empty() ? missing(reason) : escaped(plain);
+}
+
+}  // namespace todbench

@@ -1,0 +1,103 @@
+#include "bench/report/number_format.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace todbench {
+namespace {
+
+constexpr int most_decimals = 6;
+
+bool finite(std::optional<double> value) {
+  return value && std::isfinite(*value);
+}
+
+}  // namespace
+
+std::string fixed(double value, int decimals) {
+  if (!std::isfinite(value)) return "–";
+  // 309 digits before the point of the largest double, the point, a sign, and the decimals.
+  std::array<char, 340> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::fixed,
+                                 std::clamp(decimals, 0, 17));
+  std::string text(buffer.data(), end.ptr);
+  if (text.front() == '-' && text.find_first_not_of("-0.") == std::string::npos) text.erase(0, 1);
+  return text;
+}
+
+std::string shown(double value, int decimals) {
+  std::string text = fixed(value, decimals);
+  return text.front() == '-' ? "−" + text.substr(1) : text;
+}
+
+std::string significant(double value, int digits) {
+  if (!std::isfinite(value)) return "–";
+  if (value == 0) return "0";
+  return shown(value, std::max(0, digits - 1 - static_cast<int>(std::floor(std::log10(std::abs(value))))));
+}
+
+std::string stated(double value) {
+  std::string text = significant(value, 6);
+  if (text.find('.') == std::string::npos) return text;
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+int decimals_for(std::optional<double> value, const Interval& interval) {
+  double width = 0;
+  if (finite(interval.low) && finite(interval.high)) {
+    width = (*interval.high - *interval.low) / 2;
+  } else if (finite(value) && finite(interval.low)) {
+    width = *value - *interval.low;
+  } else if (finite(value) && finite(interval.high)) {
+    width = *interval.high - *value;
+  }
+  if (std::abs(width) > 0)
+    return std::clamp(1 - static_cast<int>(std::floor(std::log10(std::abs(width)))), 0, most_decimals);
+  double scale = 0;
+  for (const std::optional<double> candidate : {interval.high, interval.low, value})
+    if (finite(candidate)) scale = std::abs(*candidate);
+  if (scale == 0) return 0;
+  return std::clamp(2 - static_cast<int>(std::floor(std::log10(scale))), 0, most_decimals);
+}
+
+std::string with_interval(std::optional<double> value, const Interval& interval) {
+  const int decimals = decimals_for(value, interval);
+  const bool low = finite(interval.low);
+  const bool high = finite(interval.high);
+  std::string bounds;
+  if (low && high) {
+    bounds = shown(*interval.low, decimals) + ", " + shown(*interval.high, decimals);
+  } else if (low) {
+    bounds = "≥ " + shown(*interval.low, decimals);
+  } else if (high) {
+    bounds = "≤ " + shown(*interval.high, decimals);
+  }
+  if (!finite(value)) return bounds.empty() ? "–" : low && high ? "[" + bounds + "]" : bounds;
+  return shown(*value, decimals) + (bounds.empty() ? "" : " [" + bounds + "]");
+}
+
+std::optional<double> reciprocal(std::optional<double> value) {
+  if (!finite(value) || *value <= 0) return {};
+  return 1 / *value;
+}
+
+Interval reciprocal(const Interval& interval) {
+  return {reciprocal(interval.high), reciprocal(interval.low)};
+}
+
+std::string probability(double p) {
+  if (!std::isfinite(p)) return "–";
+  return p < 0.001 ? "< 0.001" : shown(p, 3);
+}
+
+std::string words(std::string_view name) {
+  std::string text(name);
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
+}  // namespace todbench

@@ -1,0 +1,93 @@
+// The acceptance report: one self-contained page made from values.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "acquisition/core/frame_source.h"
+#include "sim_devices/sensor/sensor_plan.h"
+#include "sim_devices/sensor/sensor_spec.h"
+#include "tod/comparison.h"
+#include "tod/measurement.h"
+#include "tod/tod_curve.h"
+
+namespace todbench {
+
+enum class LimitVerdict { pass, fail, inconclusive };
+
+/// One limit and what the data say about it, as decided elsewhere: the report shows decisions, it makes none.
+struct LimitLine {
+  enum class Side { at_least, at_most };
+  std::string quantity;  ///< "Acuity at 16.9 K"
+  std::string unit;      ///< "1/mrad"; empty for a pure number
+  Side side = Side::at_least;
+  double limit = 0;
+  std::optional<double> value;
+  Interval ci95;
+  LimitVerdict verdict = LimitVerdict::inconclusive;
+  std::string reason;  ///< a sentence
+  std::optional<double>
+      acuity_at_delta_t_k;  ///< for a limit on acuity: its set contrast, to draw it into the TOD curve
+};
+
+/// The verdict of a report over its limits. A run that was interrupted, or limits without any line, cannot pass.
+enum class ReportVerdict {
+  pass,          ///< every limit is met
+  fail,          ///< a limit is not met
+  inconclusive,  ///< no limit is violated, but one is not decided
+  interrupted,   ///< the run ended early and no limit is violated
+  not_judged,    ///< no limits were asked for
+};
+
+/// Everything in a report. Texts are plain; empty texts and missing values appear as a dash with the reason. Times are
+/// ISO 8601 with zone.
+struct ReportData {
+  std::string title = "TOD acceptance report";
+  std::string session;      ///< unique name of the session folder
+  std::string description;  ///< of the plan
+  std::string started, finished;
+  std::string operator_name, place;
+  std::vector<std::pair<std::string, std::string>>
+      conditions;  ///< name with unit, value: customer, lens, room temperature, ...
+
+  std::optional<SourceInfo> camera;  ///< unit under test, as read from the device; nothing: only a simulation
+  double distance_m = 0;             ///< entrance pupil to plate; 0: not stated
+  double ifov_mrad = 0;              ///< 0: not stated
+  std::string target;                ///< instruments with serial numbers
+  std::vector<TargetPlate> plates;   ///< in identity mounting
+  std::vector<SetUpRecord> set_ups;
+  std::string observer;  ///< name and version
+
+  FitOptions fit;
+  std::optional<TodCurve> measured;  ///< by the camera
+  std::optional<TodCurve> simulated;
+  std::optional<Comparison> comparison;  ///< A is measured, B is simulated
+
+  std::string decision_rule;  ///< named and in words
+  std::vector<LimitLine> limits;
+
+  std::optional<SensorSpec> simulated_sensor;
+  SensorPlan plan;  ///< of the simulated sensor
+
+  std::uint64_t frames_used = 0;
+  std::map<std::string, std::uint64_t> frames_rejected;  ///< by reason
+  std::uint64_t frames_lost = 0;
+  double temporal_noise_k = 0;  ///< per pixel; 0: not measured
+
+  std::vector<std::pair<std::string, std::string>> provenance;  ///< versions, seeds, host, digests
+  std::vector<std::string> notes;
+  std::optional<std::string> interrupted;  ///< why the run ended early
+};
+
+/// fail > interrupted > inconclusive > pass; not_judged without limits.
+[[nodiscard]] ReportVerdict report_verdict(const ReportData& data);
+
+/// The page: HTML 5 that is also well-formed XML, style and figures inside, no script, nothing from outside. A pure
+/// function.
+[[nodiscard]] std::string render_report(const ReportData& data);
+
+}  // namespace todbench

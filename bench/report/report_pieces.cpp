@@ -1,0 +1,114 @@
+#include "bench/report/report_pieces.h"
+
+namespace todbench {
+
+Markup section(std::string_view title, const Markup& content) {
+  return element("section", element("h2", escaped(title)) + literal("\n") + content) + literal("\n");
+}
+
+Markup paragraph(const Markup& content, std::string_view css_class) {
+  return element("p", content, css_class.empty() ? "" : "class=\"" + std::string(css_class) + "\"") + literal("\n");
+}
+
+Markup figure(const Result<Markup>& picture, std::string_view caption) {
+  const Markup content = picture ? *picture : paragraph(missing("no figure: " + picture.error().message));
+  return element("figure", content + element("figcaption", escaped(caption))) + literal("\n");
+}
+
+Markup badge(std::string_view word, Mood mood) {
+  const std::string_view css = mood == Mood::good ? "good" : mood == Mood::bad ? "bad" : "open";
+  const std::string_view sign = mood == Mood::good ? "✓ " : mood == Mood::bad ? "✗ " : "? ";
+  return element("strong", literal(sign) + escaped(word), "class=\"badge " + std::string(css) + "\"");
+}
+
+std::string_view in_words(FitVerdict verdict) {
+  switch (verdict) {
+    case FitVerdict::no_data:
+      return "no trials";
+    case FitVerdict::above_range:
+      return "answers at chance at every size: only a lower limit of the size";
+    case FitVerdict::below_range:
+      return "answers right at every size: only an upper limit of the size";
+    case FitVerdict::slope_unidentifiable:
+      return "one size only: slope not identifiable";
+    case FitVerdict::step:
+      return "step from chance to certainty between two sizes";
+    case FitVerdict::flat_or_decreasing:
+      return "answers do not improve with size: no threshold";
+    case FitVerdict::underdetermined:
+      return "fewer sizes than parameters";
+    case FitVerdict::extrapolated:
+      return "threshold outside the sizes tested";
+    case FitVerdict::ok:
+      return "ok";
+  }
+  return "unknown";
+}
+
+std::string_view in_words(ComparisonVerdict verdict) {
+  switch (verdict) {
+    case ComparisonVerdict::equivalent:
+      return "equivalent";
+    case ComparisonVerdict::different:
+      return "different";
+    case ComparisonVerdict::inconclusive:
+      return "inconclusive";
+  }
+  return "unknown";
+}
+
+std::string_view in_words(LimitVerdict verdict) {
+  switch (verdict) {
+    case LimitVerdict::pass:
+      return "pass";
+    case LimitVerdict::fail:
+      return "fail";
+    case LimitVerdict::inconclusive:
+      return "inconclusive";
+  }
+  return "unknown";
+}
+
+std::string_view in_words(Mounting mounting) {
+  switch (mounting) {
+    case Mounting::identity:
+      return "as drawn";
+    case Mounting::rotated_180:
+      return "rotated by 180°";
+    case Mounting::mirrored_horizontally:
+      return "mirrored left to right";
+    case Mounting::mirrored_vertically:
+      return "mirrored top to bottom";
+  }
+  return "unknown";
+}
+
+std::string_view in_words(Effect effect) {
+  switch (effect) {
+    case Effect::diffraction:
+      return "Diffraction";
+    case Effect::aberration:
+      return "Aberration of the lens";
+    case Effect::detector:
+      return "Detector footprint";
+    case Effect::temporal_noise:
+      return "Temporal noise";
+    case Effect::fixed_pattern:
+      return "Fixed pattern noise";
+    case Effect::quantisation:
+      return "Quantisation";
+  }
+  return "unknown";
+}
+
+Mood mood_of(LimitVerdict verdict) {
+  return verdict == LimitVerdict::pass ? Mood::good : verdict == LimitVerdict::fail ? Mood::bad : Mood::open;
+}
+
+Mood mood_of(ComparisonVerdict verdict) {
+  return verdict == ComparisonVerdict::equivalent  ? Mood::good
+         : verdict == ComparisonVerdict::different ? Mood::bad
+                                                   : Mood::open;
+}
+
+}  // namespace todbench

@@ -1,0 +1,290 @@
+// What was found: verdict, curves, functions, comparison.
+#include <cmath>
+
+#include "bench/report/number_format.h"
+#include "bench/report/report_pieces.h"
+#include "bench/report/tod_figures.h"
+
+namespace todbench {
+namespace {
+
+constexpr std::string_view one_sided_note =
+    "A single bound in brackets (≥ or ≤) is a one-sided 95 % limit: the data do not bound the other side.";
+
+constexpr std::string_view groups_note =
+    "Groups: trials that share a frame are one group; the intervals allow for what they have in common.";
+
+Markup cell(std::string_view text) {
+  return escaped(text);
+}
+
+Markup optional_number(std::optional<double> value, int digits, std::string_view reason) {
+  return value && std::isfinite(*value) ? cell(significant(*value, digits)) : missing(reason);
+}
+
+Markup interval_cell(std::optional<double> value, const Interval& interval, std::string_view reason) {
+  const std::string text = with_interval(value, interval);
+  return text == "–" ? missing(reason) : unbroken(text);
+}
+
+const TodCurve* pointer(const std::optional<TodCurve>& curve) {
+  return curve ? &*curve : nullptr;
+}
+
+std::string measured_name(const ReportData& data) {
+  return data.camera && !data.camera->model.empty() ? "measured, " + data.camera->model : "measured";
+}
+
+std::string simulated_name(const ReportData& data) {
+  return data.simulated_sensor && !data.simulated_sensor->name.empty() ? "simulated, " + data.simulated_sensor->name
+                                                                       : "simulated";
+}
+
+/// Limits on acuity, at the contrast the camera saw where it was measured: there the point to compare with is drawn.
+std::vector<AcuityLimit> acuity_limits(const ReportData& data) {
+  std::vector<AcuityLimit> limits;
+  for (const LimitLine& line : data.limits) {
+    if (!line.acuity_at_delta_t_k || line.side != LimitLine::Side::at_least) continue;
+    const TodPoint* point = data.measured ? point_at(*data.measured, *line.acuity_at_delta_t_k) : nullptr;
+    const bool seen = point != nullptr && point->delta_t_k != 0;
+    limits.push_back({seen ? point->delta_t_k : *line.acuity_at_delta_t_k, line.limit});
+  }
+  return limits;
+}
+
+Markup contrast_cell(const TodPoint& point) {
+  if (point.delta_t_k == 0 || !std::isfinite(point.delta_t_k)) return missing("not measured");
+  if (!(point.delta_t_se_k > 0)) return cell(significant(point.delta_t_k, 3));
+  const int decimals = decimals_for(point.delta_t_k, {-point.delta_t_se_k, point.delta_t_se_k});
+  return unbroken(shown(point.delta_t_k, decimals) + " ± " + fixed(point.delta_t_se_k, decimals));
+}
+
+Markup lapse_cell(const TodPoint& point) {
+  const std::string lapse = significant(point.fit.lapse, 2);
+  if (!point.lapse_warning || !point.free_lapse_fit) return cell(lapse);
+  return cell(lapse + " (free: " + significant(point.free_lapse_fit->lapse, 2) + ", fits better)");
+}
+
+Markup trials_cell(const PsychometricFit& fit) {
+  const std::string trials = shown(fit.trials, 0);
+  return unbroken(fit.clusters > 0 ? trials + " / " + shown(fit.clusters, 0) : trials);
+}
+
+std::vector<Markup> curve_row(const TodPoint& point, bool with_direct) {
+  const PsychometricFit& fit = point.fit;
+  const std::string_view reason = fit.verdict == FitVerdict::no_data ? "no trials" : "not identified";
+  std::vector<Markup> row{cell(stated(point.set_delta_t_k)),
+                          contrast_cell(point),
+                          interval_cell(fit.threshold, fit.ci95, reason),
+                          interval_cell(reciprocal(fit.threshold), reciprocal(fit.ci95), reason),
+                          optional_number(fit.slope, 3, reason),
+                          lapse_cell(point),
+                          trials_cell(fit),
+                          cell(in_words(fit.verdict))};
+  if (with_direct) {
+    const double error = point.direct_s75_se_mrad.value_or(0);
+    const int decimals = decimals_for(point.direct_s75_mrad, {-error, error});
+    row.push_back(point.direct_s75_mrad ? unbroken(shown(*point.direct_s75_mrad, decimals) +
+                                                   (error > 0 ? " ± " + fixed(error, decimals) : ""))
+                                        : missing("not computed"));
+  }
+  return row;
+}
+
+Markup curve_table(const TodCurve& curve, const std::string& caption, bool with_direct) {
+  MarkupTable rows;
+  rows.caption = caption;
+  rows.header = {"Set ΔT (K)", "Effective ΔT (K)", "S₇₅ (mrad)", "Acuity 1/S₇₅ (1/mrad)", "Slope",
+                 "Lapse",      "Trials / groups",  "Fit"};
+  if (with_direct) rows.header.emplace_back("Direct S₇₅ (mrad)");
+  for (const TodPoint& point : curve.points) rows.rows.push_back(curve_row(point, with_direct));
+  return table(rows);
+}
+
+/// Set contrasts of both curves, each once, in the order of the curves.
+std::vector<double> all_contrasts(const ReportData& data) {
+  std::vector<double> contrasts;
+  for (const std::optional<TodCurve>* curve : {&data.measured, &data.simulated}) {
+    if (!*curve) continue;
+    for (const TodPoint& point : (*curve)->points) {
+      bool known = false;
+      for (const double contrast : contrasts) known = known || same_contrast(contrast, point.set_delta_t_k);
+      if (!known) contrasts.push_back(point.set_delta_t_k);
+    }
+  }
+  return contrasts;
+}
+
+const TodPoint* point_of(const std::optional<TodCurve>& curve, double contrast) {
+  return curve ? point_at(*curve, contrast) : nullptr;
+}
+
+std::string form_in_words(const ReportData& data) {
+  const std::string form = data.fit.form == PsychometricForm::size
+                               ? "ψ(S) = 0.25 + (0.75 − λ)(1 − exp(−(S/a)^b)), a Weibull function of size"
+                               : "ψ(S) = 0.25 + (0.75 − λ) exp(−(a/S)^b), a Weibull function of acuity 1/S";
+  const std::string lapse =
+      data.fit.fixed_lapse ? "lapse λ fixed at " + stated(*data.fit.fixed_lapse) : "lapse λ free between 0 and 0.1";
+  return form + ", " + lapse + ", fitted by maximum likelihood; S₇₅ is the size at which ψ = 0.75 exactly.";
+}
+
+std::string limit_text(const LimitLine& line) {
+  const std::string sign = line.side == LimitLine::Side::at_least ? "≥ " : "≤ ";
+  return sign + stated(line.limit);
+}
+
+Markup answers_table(const std::string& caption, const TodCurve& curve) {
+  MarkupTable rows;
+  rows.caption = caption;
+  rows.header = {"Set ΔT (K)", "Size (mrad)", "Correct / trials", "Proportion [Wilson 95 %]"};
+  for (const TodPoint& point : curve.points) {
+    for (const AnswersAtSize& answers : answers_by_size(point.levels)) {
+      rows.rows.push_back({cell(stated(point.set_delta_t_k)),
+                           cell(answers.size_mrad > 0 ? significant(answers.size_mrad, 4) : "0 (catch trials)"),
+                           unbroken(shown(answers.correct, 0) + " / " + shown(answers.total, 0)),
+                           interval_cell(answers.correct / answers.total,
+                                         wilson_interval(answers.correct, answers.total), "no trials")});
+    }
+  }
+  return table(rows);
+}
+
+struct Headline {
+  std::string word, sentence;
+  std::string_view css;
+};
+
+Headline headline(ReportVerdict verdict) {
+  switch (verdict) {
+    case ReportVerdict::pass:
+      return {"✓ PASS", "Every limit is met.", "good"};
+    case ReportVerdict::fail:
+      return {"✗ FAIL", "At least one limit is not met.", "bad"};
+    case ReportVerdict::inconclusive:
+      return {"? INCONCLUSIVE", "No limit is violated, but at least one is not decided by these data.", "open"};
+    case ReportVerdict::interrupted:
+      return {"? INTERRUPTED", "The run ended early. The results below are partial and no verdict can be given.",
+              "open"};
+    case ReportVerdict::not_judged:
+      break;
+  }
+  return {"NO VERDICT", "The plan asks for no limits; this report states results only.", "open"};
+}
+
+}  // namespace
+
+Markup verdict_box(const ReportData& data) {
+  const ReportVerdict verdict = report_verdict(data);
+  const Headline words_of_verdict = headline(verdict);
+  Markup content = paragraph(escaped(words_of_verdict.word), "word") + paragraph(escaped(words_of_verdict.sentence));
+  if (verdict != ReportVerdict::not_judged)
+    content += paragraph(literal("<b>Decision rule:</b> ") + text_or_missing(data.decision_rule, "not stated"));
+  if (data.interrupted)
+    content += paragraph(literal("<b>Interrupted:</b> ") + text_or_missing(*data.interrupted, "no reason recorded"));
+  return element("div", content, "class=\"verdict " + std::string(words_of_verdict.css) + "\" role=\"status\"") +
+         literal("\n");
+}
+
+Markup limits_section(const ReportData& data) {
+  if (data.limits.empty()) return section("Limits", paragraph(missing("the plan asks for no limits")));
+  MarkupTable rows;
+  rows.header = {"Quantity", "Unit", "Limit", "Result [95 %]", "Verdict", "Reason"};
+  for (const LimitLine& line : data.limits) {
+    rows.rows.push_back({cell(line.quantity), line.unit.empty() ? cell("1") : cell(line.unit),
+                         unbroken(limit_text(line)), interval_cell(line.value, line.ci95, "no value"),
+                         badge(in_words(line.verdict), mood_of(line.verdict)),
+                         text_or_missing(line.reason, "none given")});
+  }
+  return section("Limits", table(rows) + paragraph(cell(one_sided_note), "note"));
+}
+
+Markup curve_section(const ReportData& data) {
+  if (!data.measured && !data.simulated) return section("TOD curve", paragraph(missing("no results")));
+  const std::vector<AcuityLimit> limits = acuity_limits(data);
+  const Plot plot = tod_figure({measured_name(data), pointer(data.measured)},
+                               {simulated_name(data), pointer(data.simulated)}, limits);
+  Markup content = figure(
+      svg_plot(plot),
+      "TOD curve: acuity (linear) against contrast (logarithmic), at the effective contrast, which the camera saw. "
+      "Horizontal "
+      "bars are 95 % intervals; an arrow is a side that the data leave open. The two curves are drawn a few pixels "
+      "apart so that their bars do not hide each other.");
+  if (data.measured)
+    content +=
+        curve_table(*data.measured, "Measured; in brackets the 95 % interval, behind ± the standard error", false);
+  if (data.simulated)
+    content +=
+        curve_table(*data.simulated, "Simulated; in brackets the 95 % interval, behind ± the standard error", true);
+  content += paragraph(
+      cell(form_in_words(data)) + literal(" ") + cell(one_sided_note) + literal(" ") + cell(groups_note), "note");
+  if (data.simulated)
+    content += paragraph(
+        cell("Direct S₇₅: where the phase-averaged proportion correct of the observer crosses 75 %, without a "
+             "psychometric form. It checks the fit; the comparison uses S₇₅."),
+        "note");
+  return section("TOD curve", content);
+}
+
+Markup psychometric_section(const ReportData& data) {
+  Markup figures;
+  int number = 0;
+  for (const double contrast : all_contrasts(data)) {
+    const TodPoint* measured = point_of(data.measured, contrast);
+    const TodPoint* simulated = point_of(data.simulated, contrast);
+    const Plot plot = psychometric_figure("psychometric-" + std::to_string(++number), {"measured", measured},
+                                          {"simulated", simulated}, data.fit.form);
+    figures += figure(svg_plot(plot), "Set contrast ΔT = " + stated(contrast) + " K");
+  }
+  if (figures.empty()) return {};
+  const Markup explanation = cell(
+      "Points: proportion correct with Wilson 95 % intervals, every trial taken as independent. Lines: fitted "
+      "functions. Shaded: 95 % "
+      "interval of S₇₅, widened for trials that share a frame. Dashed: threshold (75 %) and chance (25 %).");
+  return section("Psychometric functions", element("div", figures, "class=\"pairs\"") + paragraph(explanation, "note"));
+}
+
+Markup comparison_section(const ReportData& data) {
+  if (!data.comparison) {
+    const std::string_view reason =
+        data.measured && data.simulated ? "not asked for" : "needs a measured and a simulated curve";
+    return section("Measured against simulated", paragraph(missing(reason)));
+  }
+  MarkupTable rows;
+  rows.header = {"Set ΔT (K)",
+                 "Effective ΔT, measured / simulated (K)",
+                 "Acuity, measured : simulated [95 %]",
+                 "Ratio [90 %]",
+                 "p different",
+                 "p equivalent",
+                 "Margin (%)",
+                 "Verdict"};
+  for (const ComparisonPoint& point : data.comparison->points) {
+    rows.rows.push_back({cell(stated(point.set_delta_t_k)),
+                         unbroken(significant(point.delta_t_a_k, 3) + " / " + significant(point.delta_t_b_k, 3)),
+                         interval_cell(point.ratio, point.ratio_ci95, "a threshold is not identified"),
+                         interval_cell(point.ratio, point.ratio_ci90, "a threshold is not identified"),
+                         point.p_difference ? cell(probability(*point.p_difference)) : missing("no test possible"),
+                         point.p_equivalence ? cell(probability(*point.p_equivalence)) : missing("no test possible"),
+                         cell(stated(point.margin_percent)), badge(in_words(point.verdict), mood_of(point.verdict))});
+  }
+  const Markup overall = paragraph(cell("Over all contrasts: ") +
+                                   badge(in_words(data.comparison->verdict), mood_of(data.comparison->verdict)));
+  const Markup explanation =
+      paragraph(cell("p different: likelihood-ratio test of a common threshold, corrected for trials that share a "
+                     "frame. p equivalent: two "
+                     "one-sided tests that the ratio lies within the margin, chosen before the measurement; below 0.05 "
+                     "the 90 % interval lies "
+                     "within it. Neither test significant is inconclusive: more trials are needed, nothing is shown."),
+                "note");
+  return section("Measured against simulated", table(rows) + overall + explanation);
+}
+
+Markup answers_section(const ReportData& data) {
+  Markup tables;
+  if (data.measured) tables += answers_table("Measured", *data.measured);
+  if (data.simulated) tables += answers_table("Simulated", *data.simulated);
+  if (tables.empty()) return {};
+  return section("Appendix: answers by size", element("div", tables, "class=\"pairs\""));
+}
+
+}  // namespace todbench

@@ -1,0 +1,210 @@
+#include "bench/report/tod_figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bench/report/number_format.h"
+
+namespace todbench {
+namespace {
+
+/// Smallest and largest of the values seen so far.
+struct Range {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  void include(std::optional<double> value) {
+    if (!value || !std::isfinite(*value)) return;
+    low = std::min(low, *value);
+    high = std::max(high, *value);
+  }
+  [[nodiscard]] bool empty() const { return !(low <= high); }
+};
+
+/// The contrast the camera saw; the set one where it was not measured.
+double contrast_of(const TodPoint& point) {
+  return point.delta_t_k != 0 ? point.delta_t_k : point.set_delta_t_k;
+}
+
+PlotPoint tod_point(const TodPoint& point) {
+  return {reciprocal(point.fit.threshold), std::abs(contrast_of(point)), reciprocal(point.fit.ci95), {}};
+}
+
+/// The points of one sign. A line joins neighbouring contrasts.
+PlotSeries tod_series(const NamedCurve& curve, PlotTone tone, double sign) {
+  PlotSeries series;
+  const bool is_first = tone == PlotTone::first;
+  series.label = curve.name + (sign < 0 ? ", ΔT < 0" : "");
+  series.tone = tone;
+  series.marker = is_first ? PlotMarker::disc : PlotMarker::square;
+  series.line = is_first ? PlotLine::solid : PlotLine::dashed;
+  if (sign < 0) series.line = PlotLine::dotted;
+  series.dodge_px = is_first ? -3 : 3;
+  for (const TodPoint& point : curve.curve->points)
+    if (contrast_of(point) * sign > 0) series.points.push_back(tod_point(point));
+  return series;
+}
+
+PlotSeries limit_series(std::span<const AcuityLimit> limits) {
+  PlotSeries series;
+  series.label = "limit (least acuity)";
+  series.tone = PlotTone::muted;
+  series.marker = PlotMarker::bar;
+  for (const AcuityLimit& limit : limits)
+    series.points.push_back({limit.least_acuity_per_mrad, std::abs(limit.delta_t_k), {}, {}});
+  return series;
+}
+
+/// Ends of an axis that hold everything in `range` with room at the ends.
+void set_logarithmic_range(PlotAxis& axis, const Range& range, double room) {
+  axis.scale = AxisScale::logarithmic;
+  axis.low = range.empty() ? 0.1 : range.low / room;
+  axis.high = range.empty() ? 10 : range.high * room;
+}
+
+struct PsychometricLayer {
+  PlotTone tone;
+  PlotMarker marker;
+  PlotLine line;
+};
+
+PlotSeries proportions(const NamedPoint& point, const PsychometricLayer& layer) {
+  PlotSeries series;
+  series.label = point.name;
+  series.tone = layer.tone;
+  series.marker = layer.marker;
+  for (const AnswersAtSize& answers : answers_by_size(point.point->levels))
+    if (answers.size_mrad > 0)
+      series.points.push_back(
+          {answers.size_mrad, answers.correct / answers.total, {}, wilson_interval(answers.correct, answers.total)});
+  return series;
+}
+
+PlotSeries fitted_curve(const PsychometricFit& fit, PsychometricForm form, const PlotAxis& sizes,
+                        const PsychometricLayer& layer) {
+  // 160 steps over an axis of some 350 px: the chords stay within a tenth of a pixel of the curve.
+  constexpr int steps = 160;
+  PlotSeries series;
+  series.tone = layer.tone;
+  series.marker = PlotMarker::none;
+  series.line = layer.line;
+  if (!fit.threshold || !fit.slope || !(*fit.threshold > 0)) return series;
+  for (int i = 0; i <= steps; ++i) {
+    const double size = sizes.low * std::pow(sizes.high / sizes.low, static_cast<double>(i) / steps);
+    series.points.push_back({size, psychometric(form, size, *fit.threshold, *fit.slope, fit.lapse), {}, {}});
+  }
+  return series;
+}
+
+void add_layer(Plot& plot, const NamedPoint& point, PsychometricForm form, const PsychometricLayer& layer) {
+  if (point.point == nullptr) return;
+  const PsychometricFit& fit = point.point->fit;
+  if (fit.ci95.low || fit.ci95.high) plot.bands.push_back({"", layer.tone, fit.ci95});
+  plot.series.push_back(fitted_curve(fit, form, plot.x, layer));
+  if (point.point->lapse_warning && point.point->free_lapse_fit) {
+    plot.series.push_back(fitted_curve(*point.point->free_lapse_fit, form, plot.x,
+                                       {PlotTone::third, PlotMarker::none, PlotLine::dotted}));
+    plot.series.back().label = point.name + ", free lapse";
+  }
+  PlotSeries points = proportions(point, layer);
+  points.legend_line = fit.threshold && fit.slope ? layer.line : PlotLine::none;
+  plot.series.push_back(std::move(points));
+}
+
+}  // namespace
+
+std::vector<AnswersAtSize> answers_by_size(std::span<const Level> levels) {
+  std::vector<Level> sorted(levels.begin(), levels.end());
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Level& a, const Level& b) { return a.size < b.size; });
+  std::vector<AnswersAtSize> answers;
+  for (const Level& level : sorted) {
+    if (!(level.total > 0)) continue;
+    if (answers.empty() || level.size > answers.back().size_mrad * (1 + 1e-6)) answers.push_back({level.size, 0, 0});
+    answers.back().correct += level.correct;
+    answers.back().total += level.total;
+  }
+  return answers;
+}
+
+Interval wilson_interval(double correct, double total) {
+  if (!(total > 0)) return {};
+  constexpr double z = 1.959963984540054;
+  const double p = correct / total;
+  const double middle = (p + z * z / (2 * total)) / (1 + z * z / total);
+  const double half = z / (1 + z * z / total) * std::sqrt(p * (1 - p) / total + z * z / (4 * total * total));
+  // The bounds at the ends are exactly 0 and 1; computed, they miss them by rounding.
+  return {correct > 0 ? std::max(0.0, middle - half) : 0.0, correct < total ? std::min(1.0, middle + half) : 1.0};
+}
+
+bool same_contrast(double a_k, double b_k) {
+  return std::abs(a_k - b_k) <= 0.005 * std::max(std::abs(a_k), std::abs(b_k));
+}
+
+const TodPoint* point_at(const TodCurve& curve, double set_delta_t_k) {
+  for (const TodPoint& point : curve.points)
+    if (same_contrast(point.set_delta_t_k, set_delta_t_k)) return &point;
+  return nullptr;
+}
+
+Plot tod_figure(const NamedCurve& first, const NamedCurve& second, std::span<const AcuityLimit> limits) {
+  Plot plot;
+  plot.id = "tod";
+  plot.title = "TOD curve";
+  plot.description =
+      "Acuity, the reciprocal of the 75 percent size, on a linear axis against contrast on a logarithmic axis. "
+      "Horizontal bars are 95 percent intervals. The numbers are in the table below.";
+  plot.x.label = "Acuity 1/S₇₅ (1/mrad)";
+  plot.y.label = "Contrast |ΔT| (K)";
+  if (!limits.empty()) plot.series.push_back(limit_series(limits));
+  for (const auto& [curve, tone] : {std::pair{&second, PlotTone::second}, std::pair{&first, PlotTone::first}}) {
+    if (curve->curve == nullptr) continue;
+    for (const double sign : {-1.0, 1.0}) {
+      PlotSeries series = tod_series(*curve, tone, sign);
+      if (!series.points.empty()) plot.series.push_back(std::move(series));
+    }
+  }
+  Range acuities;
+  Range contrasts;
+  for (const PlotSeries& series : plot.series) {
+    for (const PlotPoint& point : series.points) {
+      contrasts.include(point.y);
+      acuities.include(point.x);
+      acuities.include(point.x_interval.low);
+      acuities.include(point.x_interval.high);
+    }
+  }
+  plot.x.high = acuities.empty() ? 1 : acuities.high * 1.12;
+  set_logarithmic_range(plot.y, contrasts, 1.8);
+  return plot;
+}
+
+Plot psychometric_figure(const std::string& id, const NamedPoint& first, const NamedPoint& second,
+                         PsychometricForm form) {
+  Plot plot;
+  plot.id = id;
+  plot.width = 460;
+  plot.height = 344;
+  Range sizes;
+  for (const NamedPoint* point : {&first, &second}) {
+    if (point->point == nullptr) continue;
+    for (const AnswersAtSize& answers : answers_by_size(point->point->levels))
+      if (answers.size_mrad > 0) sizes.include(answers.size_mrad);
+    if (point->point->fit.verdict == FitVerdict::extrapolated) sizes.include(point->point->fit.threshold);
+  }
+  plot.x.label = "Size S (mrad)";
+  set_logarithmic_range(plot.x, sizes, 1.12);
+  plot.y = {"Proportion correct", AxisScale::linear, 0, 1.04, {0, 0.25, 0.5, 0.75, 1}};
+  plot.references = {{0.75, "75 %"}, {0.25, "25 % (chance)"}};
+  add_layer(plot, second, form, {PlotTone::second, PlotMarker::square, PlotLine::dashed});
+  add_layer(plot, first, form, {PlotTone::first, PlotMarker::disc, PlotLine::solid});
+  const TodPoint* named = first.point != nullptr ? first.point : second.point;
+  if (named != nullptr)
+    plot.title = "Psychometric function at a set contrast of " + stated(named->set_delta_t_k) + " K";
+  plot.description =
+      "Proportion of correct answers against triangle size, with the fitted function and the 95 percent interval of "
+      "the 75 percent size. The numbers are in the appendix.";
+  return plot;
+}
+
+}  // namespace todbench

@@ -1,0 +1,57 @@
+// The figures of a report: the TOD curve and one psychometric function per contrast.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/report/svg_plot.h"
+#include "tod/tod_curve.h"
+
+namespace todbench {
+
+/// Answers at one size, presentations put together.
+struct AnswersAtSize {
+  double size_mrad = 0;
+  double correct = 0, total = 0;
+};
+
+/// Levels of equal size (to 1e-6) added up, sizes increasing; levels without trials are left out.
+[[nodiscard]] std::vector<AnswersAtSize> answers_by_size(std::span<const Level> levels);
+
+/// Wilson's score interval for a proportion, 95 % (Wilson 1927; Brown, Cai and DasGupta 2001, eq. 4). Both sides open
+/// when total is 0.
+[[nodiscard]] Interval wilson_interval(double correct, double total);
+
+/// A curve and how the figures name it.
+struct NamedCurve {
+  std::string name;                 ///< "measured", "simulated"
+  const TodCurve* curve = nullptr;  ///< borrowed for the call; null: not there
+};
+
+/// The least acuity that a limit asks for at a contrast.
+struct AcuityLimit {
+  double delta_t_k = 0;
+  double least_acuity_per_mrad = 0;
+};
+
+/// Acuity 1/S75 (linear, x) against contrast (logarithmic, y): the TOD convention. 95 % intervals are horizontal.
+/// Contrasts of either sign are drawn by their magnitude, negative ones as a series of their own.
+[[nodiscard]] Plot tod_figure(const NamedCurve& first, const NamedCurve& second, std::span<const AcuityLimit> limits);
+
+/// Proportion correct with Wilson intervals against size, fitted functions, 75 % and 25 % lines and the 95 % intervals
+/// of the thresholds. A null point is left out. `id` is unique on the page.
+struct NamedPoint {
+  std::string name;
+  const TodPoint* point = nullptr;  ///< borrowed for the call
+};
+[[nodiscard]] Plot psychometric_figure(const std::string& id, const NamedPoint& first, const NamedPoint& second,
+                                       PsychometricForm form);
+
+/// Whether two set contrasts are the same one: equal to 0.5 %.
+[[nodiscard]] bool same_contrast(double a_k, double b_k);
+
+/// The point of a curve with this set contrast, or null.
+[[nodiscard]] const TodPoint* point_at(const TodCurve& curve, double set_delta_t_k);
+
+}  // namespace todbench
