@@ -1,0 +1,53 @@
+// GigE Vision and USB3 Vision cameras through Aravis.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "acquisition/core/camera_registry.h"
+
+namespace todbench {
+
+enum class AravisTransport {
+  gige_vision,  ///< scheme "gige"
+  usb3_vision,  ///< scheme "u3v"
+};
+
+/// Whether lost packets are asked for again.
+enum class PacketResend {
+  automatic,  ///< always, except on loopback, where the only cameras are emulated ones that cannot resend
+  never,      ///< a frame with a hole is delivered as incomplete when the next frame begins
+  always,     ///< a frame with a hole is delayed by up to 0.1 s
+};
+
+struct AravisOptions {
+  AravisTransport transport = AravisTransport::gige_vision;
+  /// PFNC name; empty: the unpacked monochrome format that carries the most significant bits, Mono14 before Mono16 when
+  /// equal.
+  std::string pixel_format;
+  PacketResend packet_resend = PacketResend::automatic;
+  /// GigE packet size including IP and UDP headers; 0: 8000 on loopback, elsewhere what the camera says, tested once
+  /// when a stream is created and negotiated only when the test packet does not arrive.
+  int packet_size_bytes = 0;
+  /// The receive buffer is never smaller than eight payloads either: cameras send whole frames in one burst.
+  std::uint64_t min_socket_buffer_bytes = 4U << 20U;
+};
+
+/// Identity of a camera: scheme, vendor and serial, with everything but letters, digits, '.' and '_' replaced by '_'.
+[[nodiscard]] std::string camera_id(std::string_view scheme, std::string_view vendor, std::string_view serial);
+
+/// Lists by discovery (1 s on a network) and opens "gige:VENDOR-SERIAL", or "gige:192.168.1.10" where broadcasts do not
+/// pass; the source then tells the true identity. Opening sets linear temperature, switches noise reduction, sharpening
+/// and compression off and reads everything back. Opening fails with `not_found` when the camera is absent, busy
+/// (another program controls it; found out after 2.5 s) or offers no 10 ... 16 bit monochrome format.
+///
+/// The sources' stop() returns within milliseconds while the camera answers. When it has just vanished, stop() takes
+/// 0.25 s to find out; a get or set that is waiting for a vanished camera delays it by up to 2.5 s (five attempts of
+/// 0.5 s inside Aravis). Destroying a source whose camera has vanished takes up to 5 s, for the same reason. A vanished
+/// GigE camera is reported as `disconnected` about 3 s after its last frame when next() is called with timeouts below
+/// 1 s, and 5 s after it by Aravis's heartbeat in any case.
+[[nodiscard]] std::unique_ptr<CameraBackend> aravis_backend(AravisOptions options = {});
+
+}  // namespace todbench

@@ -1,0 +1,411 @@
+#include "acquisition/aravis/aravis_source.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+
+#include "acquisition/aravis/genicam_features.h"
+#include "acquisition/aravis/gvcp_client.h"
+#include "acquisition/aravis/socket_buffer.h"
+
+namespace todbench {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Marks a buffer whose leader packet, the only one that tells the id, has not arrived. Never a valid id in either
+/// numbering.
+constexpr std::uint64_t no_frame_id = ~std::uint64_t{0};
+/// A camera on loopback is a program: 8000 bytes need six times fewer packets than 1500, and the MTU is 65536.
+constexpr int loopback_packet_bytes = 8000;
+/// Longer than any answer on a working network (measured below 6 ms at full load), short enough for stop().
+constexpr auto ping_patience = 250ms;
+/// Longer than a non-uniformity correction that interrupts the stream (0.5 s) is silent.
+constexpr auto silence_before_ping = 2s;
+/// Two unanswered pings and this much silence make a camera lost.
+constexpr auto silence_before_lost = 3s;
+
+std::int64_t monotonic_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+/// Enough for two seconds: the consumer may pause for a fit or a disk without losing frames. At most 256 MiB.
+int buffer_count(double frame_rate_hz, std::size_t payload_bytes) {
+  const double two_seconds = frame_rate_hz > 0 ? 2 * frame_rate_hz : 64;
+  const double affordable = static_cast<double>(256U << 20U) / static_cast<double>(payload_bytes);
+  return static_cast<int>(std::max(4.0, std::min({std::max(16.0, two_seconds), affordable, 512.0})));
+}
+
+/// Zeroed, so that the holes of an incomplete first frame are black instead of somebody else's memory.
+ArvBuffer* new_buffer(std::size_t bytes) {
+  void* memory = std::calloc(1, bytes);
+  return arv_buffer_new_full(bytes, memory, memory, std::free);
+}
+
+cv::Mat1w copied_pixels(const void* data, int width, int height, bool big_endian) {
+  cv::Mat1w counts(height, width);
+  std::memcpy(counts.data, data, counts.total() * counts.elemSize());
+  if (big_endian) {
+    for (auto& count : counts) count = static_cast<ushort>(count << 8 | count >> 8);
+  }
+  return counts;
+}
+
+FrameIdKind frame_id_kind(ArvDevice* device, AravisTransport transport) {
+  if (transport == AravisTransport::usb3_vision) return FrameIdKind::wide;
+  const auto extended = get_feature(device, "GevGVSPExtendedIDMode").value_or("Off");
+  return extended == "On" || extended == "true" ? FrameIdKind::wide : FrameIdKind::gvsp16;
+}
+
+std::shared_ptr<ArvStream> shared(ArvStream* stream) {
+  return {stream, GObjectUnref()};
+}
+
+}  // namespace
+
+AravisSource::AravisSource(GObjectPtr<ArvCamera> camera, AravisOptions options, SourceInfo info,
+                           std::string device_address)
+    : camera_(std::move(camera)),
+      options_(std::move(options)),
+      info_(std::move(info)),
+      device_address_(std::move(device_address)),
+      loopback_(device_address_.starts_with("127.")) {
+  auto* shared_events = new std::shared_ptr<Events>(events_);
+  control_lost_handler_ = g_signal_connect_data(
+      arv_camera_get_device(camera_.get()), "control-lost", G_CALLBACK(&AravisSource::on_control_lost), shared_events,
+      [](void* data, GClosure*) { delete static_cast<std::shared_ptr<Events>*>(data); }, GConnectFlags{});
+}
+
+AravisSource::~AravisSource() {
+  stop();
+  g_signal_handler_disconnect(arv_camera_get_device(camera_.get()), control_lost_handler_);
+}
+
+Result<std::unique_ptr<FrameSource>> AravisSource::create(GObjectPtr<ArvCamera> camera, AravisOptions options,
+                                                          SourceInfo info, std::string device_address) {
+  std::unique_ptr<AravisSource> source(
+      new AravisSource(std::move(camera), std::move(options), std::move(info), std::move(device_address)));
+  // A client that crashed may have left the camera streaming to nowhere, with its parameters locked. Refusal is
+  // harmless.
+  arv_camera_stop_acquisition(source->camera_.get(), nullptr);
+  auto warnings = prepare_camera(source->camera_.get(), source->options_.pixel_format);
+  if (!warnings) return tl::unexpected(warnings.error());
+  source->setup_warnings_ = std::move(*warnings);
+  source->configure_transport();
+  const auto read = source->refresh();
+  if (!read) return tl::unexpected(read.error());
+  // A stream is opened once here so that info() tells about the socket buffer before the first run.
+  const auto stream = source->create_stream();
+  if (!stream) return tl::unexpected(stream.error());
+  return std::unique_ptr<FrameSource>(std::move(source));
+}
+
+void AravisSource::configure_transport() {
+  ArvCamera* camera = camera_.get();
+  if (arv_camera_is_gv_device(camera) == 0) return;
+  // With the privilege for a packet ring Aravis listens on the interface that the discovery came through; a camera on
+  // this host then never delivers a frame. Plain sockets behave the same for every user and have a receive buffer that
+  // can be checked.
+  arv_camera_gv_set_stream_options(camera, ARV_GV_STREAM_OPTION_PACKET_SOCKET_DISABLED);
+  const int packet_bytes = options_.packet_size_bytes > 0 ? options_.packet_size_bytes
+                           : loopback_                    ? loopback_packet_bytes
+                                                          : 0;
+  if (packet_bytes > 0) {
+    GErrorSlot error;
+    arv_camera_gv_set_packet_size_adjustment(camera, ARV_GV_PACKET_SIZE_ADJUSTMENT_NEVER);
+    arv_camera_gv_set_packet_size(camera, packet_bytes, error.out());
+    if (error) setup_warnings_.push_back("The camera refuses packets of " + std::to_string(packet_bytes) + " bytes.");
+  }
+}
+
+Result<void> AravisSource::refresh() {
+  ArvDevice* device = arv_camera_get_device(camera_.get());
+  auto format = read_stream_format(camera_.get());
+  if (!format) return tl::unexpected(format.error());
+  format_ = std::move(*format);
+  scale_ = std::make_shared<const RadiometricScale>(read_scale(device));
+  info_.width = format_.width;
+  info_.height = format_.height;
+  info_.pixel_format = format_.name;
+  info_.significant_bits = format_.significant_bits;
+  info_.frame_rate_hz = read_frame_rate(camera_.get());
+  info_.scale = *scale_;
+  info_.settings = read_settings(device);
+  info_.warnings = setup_warnings_;
+  return {};
+}
+
+Result<std::shared_ptr<ArvStream>> AravisSource::create_stream() {
+  GErrorSlot error;
+  auto* shared_events = new std::shared_ptr<Events>(events_);
+  ArvStream* raw = arv_camera_create_stream_full(
+      camera_.get(), &AravisSource::on_stream_event, shared_events,
+      [](void* data) { delete static_cast<std::shared_ptr<Events>*>(data); }, error.out());
+  if (raw == nullptr) return error.failure(ErrorCode::not_found, "creating the frame stream");
+  auto stream = shared(raw);
+  if (ARV_IS_GV_STREAM(raw)) {
+    const bool resend = options_.packet_resend == PacketResend::always ||
+                        (options_.packet_resend == PacketResend::automatic && !loopback_);
+    g_object_set(raw, "packet-resend", resend ? ARV_GV_STREAM_PACKET_RESEND_ALWAYS : ARV_GV_STREAM_PACKET_RESEND_NEVER,
+                 nullptr);
+    check_socket_buffer(raw);
+  }
+  return stream;
+}
+
+void AravisSource::check_socket_buffer(ArvStream* stream) {
+  // AUTO makes the buffer one payload big, which loses most frames of a camera that sends in bursts.
+  const std::uint64_t wanted = std::max<std::uint64_t>(options_.min_socket_buffer_bytes, 8 * format_.payload_bytes);
+  g_object_set(stream, "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size",
+               static_cast<gint>(std::min<std::uint64_t>(wanted, G_MAXINT / 2)), nullptr);
+  const auto granted = request_socket_buffer(arv_gv_stream_get_port(ARV_GV_STREAM(stream)), wanted);
+  info_.warnings = setup_warnings_;
+  info_.settings["SocketBufferBytes"] = granted ? std::to_string(*granted) : "unknown";
+  if (!granted) {
+    info_.warnings.emplace_back("The size of the socket receive buffer cannot be read.");
+  } else if (*granted < wanted) {
+    info_.warnings.push_back(
+        "The system granted a socket receive buffer of " + std::to_string(*granted) + " instead of " +
+        std::to_string(wanted) +
+        " bytes; frames may be lost. Mend it with: sysctl -w net.core.rmem_max=" + std::to_string(wanted));
+  }
+}
+
+void AravisSource::on_stream_event(void* data, ArvStreamCallbackType type, ArvBuffer*) {
+  if (type != ARV_STREAM_CALLBACK_TYPE_BUFFER_DONE) return;
+  auto& events = **static_cast<std::shared_ptr<Events>*>(data);
+  {
+    const std::lock_guard lock(events.mutex);
+    events.arrivals_ns.push_back(monotonic_ns());
+    events.last_sign_of_life = Clock::now();
+    events.failed_pings = 0;
+  }
+  events.changed.notify_all();
+}
+
+void AravisSource::on_control_lost(ArvDevice*, void* data) {
+  auto& events = **static_cast<std::shared_ptr<Events>*>(data);
+  {
+    const std::lock_guard lock(events.mutex);
+    events.lost = true;
+  }
+  events.changed.notify_all();
+}
+
+Result<void> AravisSource::start() {
+  const std::lock_guard control(control_);
+  if (is_lost()) return tl::unexpected(disconnected());
+  {
+    const std::lock_guard lock(events_->mutex);
+    if (stream_ && events_->running) return {};
+  }
+  const auto failed = [&](const Error& error) {
+    if (error.code == ErrorCode::disconnected) mark_lost();
+    return fail("starting " + info_.id, error);
+  };
+  if (const auto read = refresh(); !read) return failed(read.error());
+  auto stream = create_stream();
+  if (!stream) return failed(stream.error());
+  for (int i = buffer_count(info_.frame_rate_hz, format_.payload_bytes); i > 0; --i) {
+    ArvBuffer* buffer = new_buffer(format_.payload_bytes);
+    arv_buffer_set_frame_id(buffer, no_frame_id);
+    arv_stream_push_buffer(stream->get(), buffer);
+  }
+  sequence_ = FrameSequence(frame_id_kind(arv_camera_get_device(camera_.get()), options_.transport));
+  {
+    const std::lock_guard lock(events_->mutex);
+    events_->arrivals_ns.clear();
+    events_->last_sign_of_life = Clock::now();
+    events_->failed_pings = 0;
+    events_->running = true;
+    stream_ = *stream;
+  }
+  GErrorSlot error;
+  arv_camera_set_acquisition_mode(camera_.get(), ARV_ACQUISITION_MODE_CONTINUOUS, nullptr);
+  arv_camera_start_acquisition(camera_.get(), error.out());
+  if (!error) return {};
+  {
+    const std::lock_guard lock(events_->mutex);
+    events_->running = false;
+    stream_.reset();
+  }
+  return failed(error.failure(ErrorCode::not_found, "starting the acquisition").value());
+}
+
+void AravisSource::stop() {
+  {
+    const std::lock_guard lock(events_->mutex);
+    events_->running = false;
+  }
+  events_->changed.notify_all();
+
+  const std::lock_guard control(control_);
+  std::shared_ptr<ArvStream> stream;
+  bool reachable = true;
+  bool silent = false;
+  {
+    const std::lock_guard lock(events_->mutex);
+    events_->running = false;
+    stream = std::move(stream_);
+    reachable = !events_->lost;
+    silent = Clock::now() - events_->last_sign_of_life > 1s;
+  }
+  if (!stream) return;
+  if (reachable && silent) reachable = answers();
+  if (reachable) arv_camera_stop_acquisition(camera_.get(), nullptr);
+}
+
+Result<Frame> AravisSource::next(std::chrono::milliseconds timeout) {
+  const auto deadline = Clock::now() + timeout;
+  for (;;) {
+    std::shared_ptr<ArvStream> stream;
+    std::int64_t arrived_ns = 0;
+    {
+      std::unique_lock lock(events_->mutex);
+      const auto ready = [&] { return !events_->running || !events_->arrivals_ns.empty() || events_->lost; };
+      if (!events_->changed.wait_until(lock, deadline, ready)) {
+        lock.unlock();
+        return tl::unexpected(silence(timeout));
+      }
+      if (events_->lost && (events_->arrivals_ns.empty() || !events_->running)) {
+        lock.unlock();
+        return tl::unexpected(disconnected());
+      }
+      if (!events_->running) return fail(ErrorCode::interrupted, info_.id + " is stopped");
+      arrived_ns = events_->arrivals_ns.front();
+      events_->arrivals_ns.pop_front();
+      stream = stream_;
+    }
+    const GObjectPtr<ArvBuffer> buffer(arv_stream_try_pop_buffer(stream.get()));
+    if (!buffer) continue;
+    const auto status = arv_buffer_get_status(buffer.get());
+    const bool exposed = status != ARV_BUFFER_STATUS_ABORTED && status != ARV_BUFFER_STATUS_CLEARED;
+    std::optional<Frame> frame;
+    if (exposed) frame = converted(buffer.get(), arrived_ns);
+    arv_buffer_set_frame_id(buffer.get(), no_frame_id);
+    arv_stream_push_buffer(stream.get(), GObjectPtr<ArvBuffer>(ARV_BUFFER(g_object_ref(buffer.get()))).release());
+    if (frame) return std::move(*frame);
+  }
+}
+
+Frame AravisSource::converted(ArvBuffer* buffer, std::int64_t arrived_ns) {
+  Frame frame;
+  const auto id = arv_buffer_get_frame_id(buffer);
+  frame.sequence = sequence_.next(id != no_frame_id ? std::optional(id) : std::nullopt);
+  frame.host_time_ns = arrived_ns;
+  frame.significant_bits = format_.significant_bits;
+  frame.scale = scale_;
+  int width = format_.width;
+  int height = format_.height;
+  std::size_t bytes = 0;
+  const void* data = arv_buffer_get_data(buffer, &bytes);
+  switch (arv_buffer_get_status(buffer)) {
+    case ARV_BUFFER_STATUS_SUCCESS: {
+      const bool image = arv_buffer_get_payload_type(buffer) == ARV_BUFFER_PAYLOAD_TYPE_IMAGE;
+      const bool as_negotiated = image && arv_buffer_get_image_width(buffer) == width &&
+                                 arv_buffer_get_image_height(buffer) == height &&
+                                 arv_buffer_get_image_pixel_format(buffer) == format_.code;
+      frame.status = as_negotiated ? FrameStatus::complete : FrameStatus::wrong_size;
+      break;
+    }
+    case ARV_BUFFER_STATUS_SIZE_MISMATCH:
+      frame.status = FrameStatus::wrong_size;
+      break;
+    default:
+      frame.status = FrameStatus::incomplete;
+  }
+  if (id != no_frame_id) frame.device_time_ns = static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer));
+  const auto expected = 2 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  if (data == nullptr || bytes < expected) {
+    if (frame.status == FrameStatus::complete) frame.status = FrameStatus::wrong_size;
+    frame.counts = cv::Mat1w::zeros(height, width);
+    return frame;
+  }
+  frame.counts = copied_pixels(data, width, height, format_.big_endian);
+  return frame;
+}
+
+Error AravisSource::silence(std::chrono::milliseconds timeout) {
+  const Error nothing{ErrorCode::timeout,
+                      "no frame from " + info_.id + " within " + std::to_string(timeout.count()) + " ms"};
+  Clock::time_point since;
+  {
+    const std::lock_guard lock(events_->mutex);
+    since = events_->last_sign_of_life;
+  }
+  if (device_address_.empty() || Clock::now() - since < silence_before_ping) return nothing;
+  const bool alive = answers();
+  {
+    const std::lock_guard lock(events_->mutex);
+    if (alive) {
+      events_->failed_pings = 0;
+      events_->last_sign_of_life = Clock::now();
+      return nothing;
+    }
+    ++events_->failed_pings;
+    if (events_->failed_pings < 2 || Clock::now() - events_->last_sign_of_life < silence_before_lost) return nothing;
+    events_->lost = true;
+  }
+  return disconnected();
+}
+
+bool AravisSource::answers() const {
+  if (device_address_.empty()) return true;
+  return gvcp_read_register(device_address_, gvcp_control_privilege_register, ping_patience).has_value();
+}
+
+bool AravisSource::is_lost() const {
+  const std::lock_guard lock(events_->mutex);
+  return events_->lost;
+}
+
+void AravisSource::mark_lost() {
+  {
+    const std::lock_guard lock(events_->mutex);
+    events_->lost = true;
+  }
+  events_->changed.notify_all();
+}
+
+Error AravisSource::disconnected() const {
+  return {ErrorCode::disconnected, "camera " + info_.id + " does not answer any more"};
+}
+
+Result<std::string> AravisSource::get(const std::string& feature) {
+  const std::lock_guard control(control_);
+  if (is_lost()) return tl::unexpected(disconnected());
+  auto value = get_feature(arv_camera_get_device(camera_.get()), feature);
+  if (!value && value.error().code == ErrorCode::disconnected) mark_lost();
+  return value;
+}
+
+Result<void> AravisSource::set(const std::string& feature, const std::string& value) {
+  const std::lock_guard control(control_);
+  if (is_lost()) return tl::unexpected(disconnected());
+  auto done = set_feature(arv_camera_get_device(camera_.get()), feature, value);
+  if (done) {
+    const auto warnings = info_.warnings;
+    const auto buffer = info_.settings["SocketBufferBytes"];
+    done = refresh();
+    info_.warnings = warnings;
+    info_.settings["SocketBufferBytes"] = buffer;
+  }
+  if (!done && done.error().code == ErrorCode::disconnected) mark_lost();
+  return done;
+}
+
+Result<void> AravisSource::correct_nonuniformity() {
+  const std::lock_guard control(control_);
+  if (is_lost()) return tl::unexpected(disconnected());
+  ArvDevice* device = arv_camera_get_device(camera_.get());
+  const auto commands = nonuniformity_commands(device);
+  if (commands.empty()) {
+    return fail(ErrorCode::invalid_input, "camera " + info_.id + " has no command to correct its non-uniformity");
+  }
+  auto done = set_feature(device, commands.front(), "1");
+  if (!done && done.error().code == ErrorCode::disconnected) mark_lost();
+  return done;
+}
+
+}  // namespace todbench

@@ -1,0 +1,79 @@
+// One open camera as a FrameSource. Private to the Aravis back end.
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "acquisition/aravis/aravis_backend.h"
+#include "acquisition/aravis/camera_setup.h"
+#include "acquisition/aravis/frame_id.h"
+#include "acquisition/aravis/glib_ptr.h"
+#include "acquisition/core/frame_source.h"
+
+namespace todbench {
+
+class AravisSource : public FrameSource {
+ public:
+  /// `device_address`: IPv4 address of a GigE camera, empty for USB. `info` carries the identity; the rest is read from
+  /// the camera.
+  [[nodiscard]] static Result<std::unique_ptr<FrameSource>> create(GObjectPtr<ArvCamera> camera, AravisOptions options,
+                                                                   SourceInfo info, std::string device_address);
+  ~AravisSource() override;
+
+  [[nodiscard]] const SourceInfo& info() const override { return info_; }
+  [[nodiscard]] Result<void> start() override;
+  [[nodiscard]] Result<Frame> next(std::chrono::milliseconds timeout) override;
+  void stop() override;
+  [[nodiscard]] Result<std::string> get(const std::string& feature) override;
+  [[nodiscard]] Result<void> set(const std::string& feature, const std::string& value) override;
+  [[nodiscard]] Result<void> correct_nonuniformity() override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// What Aravis's threads report. Shared with its callbacks, so that a late one never meets a destroyed source.
+  struct Events {
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::deque<std::int64_t> arrivals_ns;  ///< host time of every buffer in the stream's output queue, in order
+    Clock::time_point last_sign_of_life;
+    bool running = false;
+    bool lost = false;
+    int failed_pings = 0;
+  };
+
+  AravisSource(GObjectPtr<ArvCamera> camera, AravisOptions options, SourceInfo info, std::string device_address);
+  static void on_stream_event(void* events, ArvStreamCallbackType type, ArvBuffer* buffer);
+  static void on_control_lost(ArvDevice* device, void* events);
+
+  [[nodiscard]] Result<void> refresh();
+  [[nodiscard]] Result<std::shared_ptr<ArvStream>> create_stream();
+  void configure_transport();
+  void check_socket_buffer(ArvStream* stream);
+  [[nodiscard]] Frame converted(ArvBuffer* buffer, std::int64_t arrived_ns);
+  [[nodiscard]] Error silence(std::chrono::milliseconds timeout);
+  [[nodiscard]] bool answers() const;
+  [[nodiscard]] bool is_lost() const;
+  void mark_lost();
+  [[nodiscard]] Error disconnected() const;
+
+  GObjectPtr<ArvCamera> camera_;
+  AravisOptions options_;
+  SourceInfo info_;
+  std::string device_address_;
+  bool loopback_ = false;
+  std::vector<std::string> setup_warnings_;
+  StreamFormat format_;
+  std::shared_ptr<const RadiometricScale> scale_;
+  FrameSequence sequence_{FrameIdKind::gvsp16};
+  gulong control_lost_handler_ = 0;
+
+  std::mutex control_;  ///< one conversation with the camera at a time; taken before events_->mutex
+  std::shared_ptr<Events> events_ = std::make_shared<Events>();
+  std::shared_ptr<ArvStream> stream_;  ///< guarded by events_->mutex; next() keeps it alive while it copies
+};
+
+}  // namespace todbench

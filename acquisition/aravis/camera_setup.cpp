@@ -1,0 +1,295 @@
+#include "acquisition/aravis/camera_setup.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cctype>
+#include <cmath>
+#include <optional>
+
+#include "acquisition/aravis/genicam_features.h"
+
+namespace todbench {
+namespace {
+
+struct MonoFormat {
+  const char* name;
+  ArvPixelFormat code;
+  int bits;
+};
+
+/// Unpacked formats: one pixel in two bytes, value in the low bits (PFNC 2.4). Mono14 stands before Mono16 so that it
+/// wins when both carry 14 bits: only its name states the full scale.
+constexpr std::array<MonoFormat, 4> mono_formats{
+    {{"Mono14", 0x01100025, 14}, {"Mono16", 0x01100007, 16}, {"Mono12", 0x01100005, 12}, {"Mono10", 0x01100003, 10}}};
+
+/// A feature and the entries that suit a measurement, best first; the first one offered is set.
+struct Preference {
+  const char* feature;
+  std::array<const char*, 2> entries;
+};
+
+constexpr std::array<Preference, 9> preferences{{
+    {"CMOSBitDepth", {"bit14bit", ""}},
+    {"DigitalOutput", {"bit14bit", ""}},
+    {"IRFormat", {"TemperatureLinear10mK", "TemperatureLinear100mK"}},
+    {"TemperatureLinearMode", {"On", ""}},
+    {"TemperatureLinearResolution", {"High", ""}},
+    {"NoiseReduction", {"Off", ""}},
+    {"SensorDDEMode", {"Off", "Manual"}},
+    {"ImageCompressionMode", {"Off", ""}},
+    {"GevSCPSBigEndian", {"false", ""}},
+}};
+
+constexpr std::array recorded_features{
+    "PixelFormat",
+    "Width",
+    "Height",
+    "OffsetX",
+    "OffsetY",
+    "BinningHorizontal",
+    "BinningVertical",
+    "PixelDynamicRangeMax",
+    "IRFormat",
+    "TemperatureLinearMode",
+    "TemperatureLinearResolution",
+    "TemperatureLinearScale",
+    "TemperatureLinearOffset",
+    "CMOSBitDepth",
+    "DigitalOutput",
+    "SensorGainMode",
+    "CurrentCase",
+    "NUCMode",
+    "NUCIntervalFrames",
+    "NUCTempDelta",
+    "NoiseReduction",
+    "SensorDDEMode",
+    "ImageCompressionMode",
+    "ImageAdjustMethod",
+    "ExposureTime",
+    "ExposureTimeAbs",
+    "Gain",
+    "GainRaw",
+    "AcquisitionFrameRate",
+    "SensorVideoStandard",
+    "IRFrameRate",
+    "DeviceTemperature",
+    "SensorTemperature",
+    "HousingTemperature",
+    "ObjectEmissivity",
+    "ReflectedTemperature",
+    "AtmosphericTemperature",
+    "ObjectDistance",
+    "RelativeHumidity",
+    "EstimatedTransmission",
+    "ExtOpticsTemperature",
+    "ExtOpticsTransmission",
+    "R",
+    "B",
+    "F",
+    "O",
+    "J0",
+    "J1",
+    "DeviceFirmwareVersion",
+    "DeviceVersion",
+    "DeviceUserID",
+    "GevSCPSPacketSize",
+    "GevSCPD",
+    "GevSCPSBigEndian",
+};
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+/// Bits that a Mono16 pixel really carries: what the camera says about its converter or its largest count, else 16.
+int bits_in_mono16(ArvDevice* device) {
+  for (const char* feature : {"CMOSBitDepth", "DigitalOutput"}) {
+    const auto value = get_feature(device, feature);
+    if (value && value->find("14") != std::string::npos) return 14;
+  }
+  const auto largest = get_number(device, "PixelDynamicRangeMax");
+  if (largest && *largest >= 255 && *largest <= 65535) return std::bit_width(static_cast<unsigned>(*largest));
+  return 16;
+}
+
+int significant_bits(ArvDevice* device, const MonoFormat& format) {
+  return format.bits == 16 ? bits_in_mono16(device) : format.bits;
+}
+
+Result<void> choose_pixel_format(ArvDevice* device, const std::string& wanted) {
+  const auto offered = enumeration_entries(device, "PixelFormat");
+  std::optional<MonoFormat> best;
+  std::string names;
+  for (const auto& name : offered) names += (names.empty() ? "" : ", ") + name;
+  for (const auto& format : mono_formats) {
+    if (std::find(offered.begin(), offered.end(), format.name) == offered.end()) continue;
+    if (!wanted.empty() && wanted != format.name) continue;
+    if (!best || significant_bits(device, format) > significant_bits(device, *best)) best = format;
+  }
+  if (!best) {
+    return fail(ErrorCode::not_found, (wanted.empty() ? "no unpacked 10 ... 16 bit monochrome pixel format"
+                                                      : "no usable pixel format " + wanted) +
+                                          "; the camera offers " + (names.empty() ? "none" : names));
+  }
+  auto chosen = set_feature(device, "PixelFormat", best->name);
+  if (!chosen && chosen.error().code != ErrorCode::disconnected) chosen.error().code = ErrorCode::not_found;
+  return chosen;
+}
+
+/// Sets the best offered entry of one preference; text of the warning when the camera refuses all.
+Result<std::optional<std::string>> apply(ArvDevice* device, const Preference& preference) {
+  const std::string feature = preference.feature;
+  if (!has_feature(device, feature)) return std::nullopt;
+  std::optional<std::string> warning;
+  for (const std::string entry : preference.entries) {
+    if (entry.empty()) continue;
+    const auto entries = enumeration_entries(device, feature);
+    if (!entries.empty() && std::find(entries.begin(), entries.end(), entry) == entries.end()) continue;
+    const auto done = set_feature(device, feature, entry);
+    if (done) return std::nullopt;
+    if (done.error().code == ErrorCode::disconnected) return tl::unexpected(done.error());
+    warning = "The camera keeps its own setting: " + done.error().message + ".";
+  }
+  return warning;
+}
+
+std::optional<double> number(ArvDevice* device, const char* feature) {
+  if (!has_feature(device, feature)) return std::nullopt;
+  const auto value = get_number(device, feature);
+  return value ? std::optional(*value) : std::nullopt;
+}
+
+std::optional<double> linear_step(ArvDevice* device) {
+  if (const auto step = number(device, "TemperatureLinearScale"); step && *step > 0) return step;
+  if (has_feature(device, "IRFormat")) {
+    const auto format = get_feature(device, "IRFormat").value_or("");
+    if (format == "TemperatureLinear10mK") return 0.01;
+    if (format == "TemperatureLinear100mK") return 0.1;
+    return std::nullopt;
+  }
+  if (get_feature(device, "TemperatureLinearMode").value_or("") != "On") return std::nullopt;
+  const auto resolution = get_feature(device, "TemperatureLinearResolution").value_or("");
+  if (resolution == "High") return 0.04;
+  if (resolution == "Low") return 0.4;
+  return std::nullopt;
+}
+
+/// True when the counts are proportional to temperature now.
+bool temperature_linear(ArvDevice* device) {
+  if (has_feature(device, "IRFormat")) {
+    return get_feature(device, "IRFormat").value_or("").starts_with("TemperatureLinear");
+  }
+  return get_feature(device, "TemperatureLinearMode").value_or("") == "On";
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> prepare_camera(ArvCamera* camera, const std::string& wanted) {
+  ArvDevice* device = arv_camera_get_device(camera);
+  std::vector<std::string> warnings;
+  for (const auto& preference : preferences) {
+    auto warning = apply(device, preference);
+    if (!warning) return tl::unexpected(warning.error());
+    if (*warning) warnings.push_back(**warning);
+  }
+  const auto chosen = choose_pixel_format(device, wanted);
+  if (!chosen) return tl::unexpected(chosen.error());
+  return warnings;
+}
+
+Result<StreamFormat> read_stream_format(ArvCamera* camera) {
+  ArvDevice* device = arv_camera_get_device(camera);
+  GErrorSlot error;
+  StreamFormat format;
+  gint x = 0;
+  gint y = 0;
+  arv_camera_get_region(camera, &x, &y, &format.width, &format.height, error.out());
+  if (error) return error.failure(ErrorCode::not_found, "reading the image geometry");
+  format.code = arv_camera_get_pixel_format(camera, error.out());
+  if (error) return error.failure(ErrorCode::not_found, "reading the pixel format");
+  const auto known = std::find_if(mono_formats.begin(), mono_formats.end(),
+                                  [&](const MonoFormat& candidate) { return candidate.code == format.code; });
+  if (known == mono_formats.end()) {
+    return fail(ErrorCode::not_found, "pixel format " +
+                                          text_or_empty(arv_camera_get_pixel_format_as_string(camera, nullptr)) +
+                                          " is not an unpacked 10 ... 16 bit monochrome format");
+  }
+  format.name = known->name;
+  format.significant_bits = significant_bits(device, *known);
+  format.payload_bytes = arv_camera_get_payload(camera, error.out());
+  if (error) return error.failure(ErrorCode::not_found, "reading the payload size");
+  const auto pixels = static_cast<std::size_t>(format.width) * static_cast<std::size_t>(format.height);
+  if (format.width <= 0 || format.height <= 0 || format.payload_bytes < 2 * pixels) {
+    return fail(ErrorCode::not_found, "the camera states an impossible geometry of " + std::to_string(format.width) +
+                                          " x " + std::to_string(format.height) + " pixels in " +
+                                          std::to_string(format.payload_bytes) + " bytes");
+  }
+  format.big_endian =
+      has_feature(device, "GevSCPSBigEndian") && get_feature(device, "GevSCPSBigEndian").value_or("false") == "true";
+  return format;
+}
+
+RadiometricScale read_scale(ArvDevice* device) {
+  if (temperature_linear(device)) {
+    const auto step = linear_step(device);
+    if (!step) return {};
+    const double offset_k = number(device, "TemperatureLinearOffset").value_or(0);
+    return RadiometricScale::linear({*step, offset_k}).value_or(RadiometricScale());
+  }
+  const auto r = number(device, "R");
+  const auto b = number(device, "B");
+  const auto f = number(device, "F");
+  if (!r || !b || !f) return {};
+  if (const auto j0 = number(device, "J0"), j1 = number(device, "J1"); j0 && j1) {
+    return RadiometricScale::planck({*r * *j1, *b, *f, *j0}).value_or(RadiometricScale());
+  }
+  if (const auto o = number(device, "O")) {
+    return RadiometricScale::planck({*r, *b, *f, *o}).value_or(RadiometricScale());
+  }
+  return {};
+}
+
+double read_frame_rate(ArvCamera* camera) {
+  ArvDevice* device = arv_camera_get_device(camera);
+  for (const char* feature : {"AcquisitionFrameRate", "AcquisitionFrameRateAbs", "ResultingFrameRate"}) {
+    if (const auto rate = number(device, feature); rate && *rate > 0) return *rate;
+  }
+  // "PAL50HZ", "NTSC60HZ", "Rate50Hz": the number is the rate.
+  for (const char* feature : {"SensorVideoStandard", "IRFrameRate"}) {
+    const auto entry = get_feature(device, feature);
+    if (!entry) continue;
+    const auto digit = std::find_if(entry->begin(), entry->end(), [](unsigned char c) { return std::isdigit(c); });
+    if (digit != entry->end()) return std::atof(&*digit);
+  }
+  return 0;
+}
+
+std::map<std::string, std::string> read_settings(ArvDevice* device) {
+  std::map<std::string, std::string> settings;
+  for (const char* feature : recorded_features) {
+    if (!has_feature(device, feature)) continue;
+    if (auto value = get_feature(device, feature)) settings[feature] = std::move(*value);
+  }
+  return settings;
+}
+
+std::vector<std::string> nonuniformity_commands(ArvDevice* device) {
+  std::vector<std::string> commands;
+  for (const char* known : {"NUCAction", "FFCAction", "FFC", "NUC", "DoFFC", "DoNUC"}) {
+    if (ARV_IS_GC_COMMAND(arv_device_get_feature(device, known))) commands.emplace_back(known);
+  }
+  if (!commands.empty()) return commands;
+  // Other vendors' names: the shortest command that speaks of it is the plain one (NUCActionLong is the slow variant of
+  // NUCAction).
+  for (auto& name : command_names(device)) {
+    const std::string text = lower(name);
+    if (text.find("nuc") != std::string::npos || text.find("ffc") != std::string::npos) commands.push_back(name);
+  }
+  std::sort(commands.begin(), commands.end(),
+            [](const std::string& a, const std::string& b) { return a.size() < b.size(); });
+  return commands;
+}
+
+}  // namespace todbench

@@ -1,0 +1,100 @@
+#include "acquisition/aravis/gvcp_client.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+namespace todbench {
+namespace {
+
+constexpr std::uint16_t read_register_command = 0x0080;
+constexpr std::uint16_t read_register_acknowledge = 0x0081;
+constexpr auto repeat_after = std::chrono::milliseconds(50);
+
+class UdpSocket {
+ public:
+  UdpSocket() : fd_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {}
+  ~UdpSocket() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  UdpSocket(const UdpSocket&) = delete;
+  UdpSocket& operator=(const UdpSocket&) = delete;
+  [[nodiscard]] int fd() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+std::array<std::uint8_t, 12> read_register_request(std::uint16_t request_id, std::uint32_t address) {
+  // key, flags (acknowledge required), command, payload length 4, request id, register address; big-endian
+  return {0x42,
+          0x01,
+          read_register_command >> 8,
+          read_register_command & 0xFF,
+          0x00,
+          0x04,
+          static_cast<std::uint8_t>(request_id >> 8),
+          static_cast<std::uint8_t>(request_id & 0xFF),
+          static_cast<std::uint8_t>(address >> 24),
+          static_cast<std::uint8_t>((address >> 16) & 0xFF),
+          static_cast<std::uint8_t>((address >> 8) & 0xFF),
+          static_cast<std::uint8_t>(address & 0xFF)};
+}
+
+std::uint16_t big_endian_16(const std::uint8_t* bytes) {
+  return static_cast<std::uint16_t>(bytes[0] << 8 | bytes[1]);
+}
+
+std::uint32_t big_endian_32(const std::uint8_t* bytes) {
+  return std::uint32_t{bytes[0]} << 24 | std::uint32_t{bytes[1]} << 16 | std::uint32_t{bytes[2]} << 8 | bytes[3];
+}
+
+}  // namespace
+
+Result<std::uint32_t> gvcp_read_register(const std::string& ipv4, std::uint32_t address,
+                                         std::chrono::milliseconds patience) {
+  using Clock = std::chrono::steady_clock;
+  sockaddr_in device{};
+  device.sin_family = AF_INET;
+  device.sin_port = htons(gvcp_port);
+  if (inet_pton(AF_INET, ipv4.c_str(), &device.sin_addr) != 1) {
+    return fail(ErrorCode::not_found, "'" + ipv4 + "' is not an IPv4 address");
+  }
+  const UdpSocket socket;
+  if (socket.fd() < 0 || ::connect(socket.fd(), reinterpret_cast<const sockaddr*>(&device), sizeof device) != 0) {
+    return fail(ErrorCode::not_found, "no route to " + ipv4 + ": " + std::strerror(errno));
+  }
+  const auto deadline = Clock::now() + patience;
+  for (std::uint16_t request_id = 1;; ++request_id) {
+    const auto request = read_register_request(request_id, address);
+    // A refused send (nobody listens yet) is no different from a lost one: wait and repeat.
+    [[maybe_unused]] const auto sent = ::send(socket.fd(), request.data(), request.size(), 0);
+    const auto repeat_at = std::min(deadline, Clock::now() + repeat_after);
+    for (;;) {
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(repeat_at - Clock::now());
+      pollfd readable{socket.fd(), POLLIN, 0};
+      if (left.count() <= 0 || ::poll(&readable, 1, static_cast<int>(left.count())) <= 0) break;
+      std::array<std::uint8_t, 64> reply{};
+      const auto size = ::recv(socket.fd(), reply.data(), reply.size(), MSG_DONTWAIT);
+      if (size < 12) {
+        // "Connection refused" wakes poll() at once; without this the loop would spin until the deadline.
+        if (size < 0) ::poll(nullptr, 0, static_cast<int>(std::min<std::int64_t>(left.count(), 10)));
+        continue;
+      }
+      const bool ours = big_endian_16(&reply[2]) == read_register_acknowledge && big_endian_16(&reply[6]) <= request_id;
+      if (!ours) continue;
+      if (big_endian_16(&reply[0]) != 0) return fail(ErrorCode::not_found, ipv4 + " refuses to read a register");
+      return big_endian_32(&reply[8]);
+    }
+    if (Clock::now() >= deadline) return fail(ErrorCode::timeout, "no GigE Vision device answers at " + ipv4);
+  }
+}
+
+}  // namespace todbench

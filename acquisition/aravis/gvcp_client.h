@@ -1,0 +1,24 @@
+// The two GigE Vision control messages that must not wait for anybody: discovery and reading one register, over a plain
+// UDP socket. Source: GigE Vision 2.0, chapter "GVCP"; key byte 0x42, acknowledge = command + 1.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "acquisition/core/result.h"
+
+namespace todbench {
+
+/// UDP port of every GigE Vision device; fixed by the standard.
+inline constexpr std::uint16_t gvcp_port = 3956;
+/// Control channel privilege: any device must answer a read of it, from any client.
+inline constexpr std::uint32_t gvcp_control_privilege_register = 0x0A00;
+
+/// Reads a 32-bit register of the device at `ipv4` without being its controller. Repeats the request every 50 ms until
+/// `patience` has passed. Blocks for `patience` at most; needs no privilege; any thread. Errors: `timeout` (no answer),
+/// `not_found` (not an IPv4 address, no socket, the device refuses the address).
+[[nodiscard]] Result<std::uint32_t> gvcp_read_register(const std::string& ipv4, std::uint32_t address,
+                                                       std::chrono::milliseconds patience);
+
+}  // namespace todbench
