@@ -1,0 +1,126 @@
+#include "tod/frame_taker.h"
+
+#include <cmath>
+
+namespace todbench {
+namespace {
+
+std::int64_t monotonic_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+/// The share of rejected frames means nothing before this many.
+constexpr std::uint64_t frames_before_share_counts = 100;
+
+}  // namespace
+
+FrameTaker::FrameTaker(FrameSource& source, FrameTakerOptions options)
+    : source_(source), options_(options), gate_(options.integrity) {}
+
+void FrameTaker::scene_changed() {
+  valid_from_ns_ = monotonic_ns();
+  to_discard_ = options_.frames_after_change;
+}
+
+Result<void> FrameTaker::correct_nonuniformity() {
+  auto done = source_.correct_nonuniformity();
+  if (!done) return fail("correcting the camera's non-uniformity", done.error());
+  nuc_ns_ = monotonic_ns();
+  return {};
+}
+
+double FrameTaker::since_nuc_s(const Frame& frame) const {
+  return nuc_ns_ ? static_cast<double>(frame.host_time_ns - *nuc_ns_) * 1e-9 : -1;
+}
+
+Result<void> FrameTaker::check_share() const {
+  // Frames kept out because of a commanded correction are nobody's fault; exposures that never came are.
+  std::uint64_t bad = gate_.lost();
+  std::string reasons = gate_.lost() > 0 ? std::to_string(gate_.lost()) + " lost" : "";
+  for (const auto& [reason, count] : gate_.rejected_by_reason()) {
+    if (reason == Rejection::nonuniformity_correction) continue;
+    bad += count;
+    reasons += (reasons.empty() ? "" : ", ") + std::to_string(count) + " " + std::string(to_string(reason));
+  }
+  const std::uint64_t all = seen_ + gate_.lost();
+  if (all < frames_before_share_counts ||
+      static_cast<double>(bad) <= options_.max_rejected_share * static_cast<double>(all))
+    return {};
+  return fail(ErrorCode::integrity,
+              std::to_string(bad) + " of " + std::to_string(all) + " frames are unusable (" + reasons + ")");
+}
+
+Result<Frame> FrameTaker::next(std::stop_token stop) {
+  while (true) {
+    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+    auto frame = source_.next(options_.frame_timeout);
+    if (!frame) {
+      if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+      if (frame.error().code == ErrorCode::timeout) {
+        return fail(ErrorCode::disconnected, "camera " + source_.info().id + " sent no frame for " +
+                                                 std::to_string(options_.frame_timeout.count()) + " ms");
+      }
+      return frame;
+    }
+    ++seen_;
+    const auto rejection = gate_.judge(*frame);
+    if (!rejection && nuc_ns_ && since_nuc_s(*frame) < options_.nuc_wait_s) {
+      gate_.reject(Rejection::nonuniformity_correction);
+      continue;
+    }
+    if (auto healthy = check_share(); !healthy) return tl::unexpected(healthy.error());
+    if (rejection || frame->host_time_ns < valid_from_ns_) continue;
+    if (to_discard_ > 0) {
+      --to_discard_;
+      continue;
+    }
+    ++used_;
+    return frame;
+  }
+}
+
+Result<AveragedPicture> FrameTaker::average(int count, std::stop_token stop) {
+  AveragedPicture out;
+  cv::Mat1d previous;
+  double squares = 0;
+  for (int i = 0; i < count; ++i) {
+    auto frame = next(stop);
+    if (!frame) return tl::unexpected(frame.error());
+    auto kelvin = to_kelvin(*frame);
+    if (!kelvin) return tl::unexpected(kelvin.error());
+    if (out.kelvin.empty()) out.kelvin = cv::Mat1d::zeros(kelvin->size());
+    out.kelvin += *kelvin;
+    if (!previous.empty()) {
+      const cv::Mat1d difference = *kelvin - previous;
+      cv::Scalar mean, sd;
+      cv::meanStdDev(difference, mean, sd);
+      squares += sd[0] * sd[0] / 2;
+    }
+    previous = *kelvin;
+  }
+  out.kelvin /= count;
+  if (count > 1) out.temporal_noise_k = std::sqrt(squares / (count - 1));
+  return out;
+}
+
+std::map<std::string, std::uint64_t> FrameTaker::rejected() const {
+  std::map<std::string, std::uint64_t> out;
+  for (const auto& [reason, count] : gate_.rejected_by_reason()) out[std::string(to_string(reason))] = count;
+  return out;
+}
+
+Result<cv::Mat1d> window_kelvin(const Frame& frame, const cv::Rect& window) {
+  cv::Mat1d out(window.size());
+  for (int row = 0; row < window.height; ++row) {
+    for (int column = 0; column < window.width; ++column) {
+      const auto kelvin = frame.scale->kelvin(frame.counts(window.y + row, window.x + column));
+      if (!kelvin)
+        return fail(ErrorCode::calibration, "a pixel has no temperature on the scale " + frame.scale->describe());
+      out(row, column) = *kelvin;
+    }
+  }
+  return out;
+}
+
+}  // namespace todbench

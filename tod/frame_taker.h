@@ -1,0 +1,67 @@
+// Frames that may be measured: past the integrity gate, exposed after the last change, not during a correction.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "acquisition/core/frame_source.h"
+#include "acquisition/core/integrity_gate.h"
+
+namespace todbench {
+
+struct FrameTakerOptions {
+  IntegrityOptions integrity;
+  int frames_after_change = 2;
+  double nuc_wait_s = 1;
+  double max_rejected_share = 0.05;
+  std::chrono::milliseconds frame_timeout{2000};
+};
+
+/// An average of successive frames in kelvin, with the temporal noise seen in it.
+struct AveragedPicture {
+  cv::Mat1d kelvin;
+  double temporal_noise_k = 0;  ///< sd per pixel and frame, from differences of successive frames; 0 for a single frame
+};
+
+/// Takes frames from a started source. One thread at a time.
+class FrameTaker {
+ public:
+  FrameTaker(FrameSource& source, FrameTakerOptions options);
+
+  /// What the camera looks at has changed just now: frames that were exposed before are discarded.
+  void scene_changed();
+  /// Commands a non-uniformity correction and keeps frames out until it has passed.
+  [[nodiscard]] Result<void> correct_nonuniformity();
+
+  /// The next good frame. Errors: `integrity` (too many rejected), `disconnected` (lost, or silent for the frame
+  /// timeout), `interrupted`.
+  [[nodiscard]] Result<Frame> next(std::stop_token stop);
+  /// Average of `count` good frames.
+  [[nodiscard]] Result<AveragedPicture> average(int count, std::stop_token stop);
+
+  [[nodiscard]] std::uint64_t used() const { return used_; }
+  [[nodiscard]] std::uint64_t lost() const { return gate_.lost(); }
+  [[nodiscard]] std::map<std::string, std::uint64_t> rejected() const;
+  /// Seconds between the last correction and a frame; negative when none is known.
+  [[nodiscard]] double since_nuc_s(const Frame& frame) const;
+
+ private:
+  [[nodiscard]] Result<void> check_share() const;
+
+  FrameSource& source_;
+  FrameTakerOptions options_;
+  IntegrityGate gate_;
+  std::int64_t valid_from_ns_ = 0;      ///< host time of the last change of scene
+  int to_discard_ = 0;                  ///< exposures still in flight after the change
+  std::optional<std::int64_t> nuc_ns_;  ///< host time of the last correction
+  std::uint64_t used_ = 0;
+  std::uint64_t seen_ = 0;
+};
+
+/// A window of a frame in kelvin. `calibration` when a pixel has no temperature.
+[[nodiscard]] Result<cv::Mat1d> window_kelvin(const Frame& frame, const cv::Rect& window);
+
+}  // namespace todbench
