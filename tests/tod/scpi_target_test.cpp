@@ -3,7 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <future>
+#include <stdexcept>
 #include <thread>
 
 #include "sim_devices/lab/black_body.h"
