@@ -85,7 +85,7 @@ class Matcher {
 
   void consider(const cv::Matx33d& hypothesis, double strength = 0) {
     LayoutMatch match = paired(hypothesis, strength);
-    if (best_ && match.score() < best_->score()) return;
+    if (best_ && best_->better_than(match)) return;
     // A second look with the similarity of all its pairs: the first one carries the errors of two blobs only.
     for (int round = 0; round < 2 && match.pairs.size() >= 2; ++round) {
       std::vector<cv::Point2d> plate, pixels;
@@ -97,7 +97,8 @@ class Matcher {
     }
     const double error = squared_error(match);
     if (match.pairs.empty()) return;
-    if (best_ && (match.score() < best_->score() || (match.score() == best_->score() && error >= best_error_))) return;
+    const bool tied = best_ && !best_->better_than(match) && !match.better_than(*best_);
+    if (best_ && (best_->better_than(match) || (tied && error >= best_error_))) return;
     best_ = std::move(match);
     best_error_ = error;
   }
@@ -125,8 +126,6 @@ class Matcher {
       } else if (place.x > size && place.y > size && place.x < limits_.picture.width - 1 - size &&
                  place.y < limits_.picture.height - 1 - size) {
         ++match.missing;
-      } else {
-        ++match.outside;
       }
     }
     return match;

@@ -25,8 +25,12 @@ struct LayoutMatch {
   cv::Matx33d plate_to_pixel = cv::Matx33d::eye();         ///< mm -> pixels
   std::vector<std::pair<std::size_t, std::size_t>> pairs;  ///< index of triangle, index of blob
   int missing = 0;                                         ///< triangles that should be in the picture and have no blob
-  int outside = 0;                                         ///< triangles that would be beyond the picture's edge
-  [[nodiscard]] int score() const { return static_cast<int>(pairs.size()) - missing; }
+  /// More pairs are better; among as many, fewer missing. Missing ones do not weigh against pairs: a layout pushed half
+  /// out of the picture has none.
+  [[nodiscard]] bool better_than(const LayoutMatch& other) const {
+    if (pairs.size() != other.pairs.size()) return pairs.size() > other.pairs.size();
+    return missing < other.missing;
+  }
 };
 
 /// The similarity of least squares. One pair: the move alone, at `default_scale` and without rotation.

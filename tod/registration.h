@@ -73,10 +73,10 @@ struct EffectiveContrast {
 /// away from the edge) minus median of a ring 3 px wide that begins 1.5 px outside. Medians do not care for a bad pixel
 /// or one on an edge.
 ///
-/// Blur makes it too small, mostly in the corners: for a Gaussian blur of 0.40 px (standard deviation) by about 1.5 %
-/// at 4 px, 0.5 % at 5 px and 0.1 % from 6 px, each the mean over sampling phases. A caller who knows the blur divides
-/// by the same measure of a simulated picture. `invalid_input` when no triangle is that large, `calibration` when one
-/// leaves the picture.
+/// Blur makes it too small, mostly in the corners: for a total blur of 0.40 px (standard deviation, box included) by
+/// 0.4 % at 4 px, 0.04 % at 5 px and less than 0.01 % from 6 px, each the mean over sampling phases. A caller who knows
+/// the blur divides by the same measure of a simulated picture.
+/// `invalid_input` when no triangle is that large, `calibration` when one leaves the picture.
 [[nodiscard]] Result<EffectiveContrast> effective_contrast(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                                            const Registration& registration, double min_size_px);
 
