@@ -56,6 +56,13 @@ std::string address_of(ArvDevice* device) {
   return text_or_empty(text.get());
 }
 
+/// Asked before the camera is opened, because Aravis needs 5 s to notice.
+bool controlled_by_another(const std::string& address) {
+  if (!is_ipv4(address)) return false;
+  const auto privilege = gvcp_read_register(address, gvcp_control_privilege_register, 500ms);
+  return privilege && *privilege != 0;
+}
+
 class AravisBackend : public CameraBackend {
  public:
   explicit AravisBackend(AravisOptions options) : options_(std::move(options)) {}
@@ -105,8 +112,9 @@ Result<std::vector<CameraEntry>> AravisBackend::list() {
 Result<std::string> AravisBackend::aravis_name(const std::string& id) {
   const std::string name = id.substr(scheme().size() + 1);
   if (options_.transport == AravisTransport::gige_vision && is_ipv4(name)) {
-    const auto answer = gvcp_read_register(name, gvcp_control_privilege_register, 500ms);
+    const auto answer = gvcp_read_register(name, gvcp_version_register, 500ms);
     if (!answer) return fail(ErrorCode::not_found, answer.error().message);
+    if (controlled_by_another(name)) return fail(ErrorCode::not_found, "busy: another program controls " + id);
     return name;
   }
   arv_interface_update_device_list(interface());
@@ -114,7 +122,12 @@ Result<std::string> AravisBackend::aravis_name(const std::string& id) {
   const unsigned count = arv_interface_get_n_devices(interface());
   for (unsigned i = 0; i < count; ++i) {
     const std::string candidate = entry(i).id;
-    if (candidate == id) return text_or_empty(arv_interface_get_device_id(interface(), i));
+    if (candidate == id) {
+      if (controlled_by_another(entry(i).address)) {
+        return fail(ErrorCode::not_found, "busy: another program controls " + id);
+      }
+      return text_or_empty(arv_interface_get_device_id(interface(), i));
+    }
     seen += (seen.empty() ? "" : ", ") + candidate;
   }
   return fail(ErrorCode::not_found, "no such camera; seen: " + (seen.empty() ? "none" : seen));

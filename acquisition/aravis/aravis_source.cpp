@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <thread>
 
 #include "acquisition/aravis/genicam_features.h"
 #include "acquisition/aravis/gvcp_client.h"
@@ -80,6 +81,14 @@ AravisSource::AravisSource(GObjectPtr<ArvCamera> camera, AravisOptions options, 
 AravisSource::~AravisSource() {
   stop();
   g_signal_handler_disconnect(arv_camera_get_device(camera_.get()), control_lost_handler_);
+  if (!is_lost() && !unreachable_stream_) return;
+  // Aravis says goodbye to the camera with five attempts of 0.5 s for every register; nobody should wait for that when
+  // the camera has gone, and nothing depends on its end.
+  std::thread([stream = std::move(unreachable_stream_),
+               camera = std::shared_ptr<ArvCamera>(std::move(camera_))]() mutable {
+    stream.reset();
+    camera.reset();
+  }).detach();
 }
 
 Result<std::unique_ptr<FrameSource>> AravisSource::create(GObjectPtr<ArvCamera> camera, AravisOptions options,
@@ -132,7 +141,7 @@ Result<void> AravisSource::refresh() {
   info_.frame_rate_hz = read_frame_rate(camera_.get());
   info_.scale = *scale_;
   info_.settings = read_settings(device);
-  info_.warnings = setup_warnings_;
+  publish_socket_buffer();
   return {};
 }
 
@@ -160,16 +169,23 @@ void AravisSource::check_socket_buffer(ArvStream* stream) {
   g_object_set(stream, "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size",
                static_cast<gint>(std::min<std::uint64_t>(wanted, G_MAXINT / 2)), nullptr);
   const auto granted = request_socket_buffer(arv_gv_stream_get_port(ARV_GV_STREAM(stream)), wanted);
-  info_.warnings = setup_warnings_;
-  info_.settings["SocketBufferBytes"] = granted ? std::to_string(*granted) : "unknown";
+  socket_buffer_bytes_ = granted ? std::to_string(*granted) : "unknown";
+  socket_buffer_warning_.clear();
   if (!granted) {
-    info_.warnings.emplace_back("The size of the socket receive buffer cannot be read.");
+    socket_buffer_warning_ = "The size of the socket receive buffer cannot be read.";
   } else if (*granted < wanted) {
-    info_.warnings.push_back(
+    socket_buffer_warning_ =
         "The system granted a socket receive buffer of " + std::to_string(*granted) + " instead of " +
         std::to_string(wanted) +
-        " bytes; frames may be lost. Mend it with: sysctl -w net.core.rmem_max=" + std::to_string(wanted));
+        " bytes; frames may be lost. Mend it with: sysctl -w net.core.rmem_max=" + std::to_string(wanted);
   }
+  publish_socket_buffer();
+}
+
+void AravisSource::publish_socket_buffer() {
+  info_.warnings = setup_warnings_;
+  if (!socket_buffer_bytes_.empty()) info_.settings["SocketBufferBytes"] = socket_buffer_bytes_;
+  if (!socket_buffer_warning_.empty()) info_.warnings.push_back(socket_buffer_warning_);
 }
 
 void AravisSource::on_stream_event(void* data, ArvStreamCallbackType type, ArvBuffer*) {
@@ -205,6 +221,7 @@ Result<void> AravisSource::start() {
     return fail("starting " + info_.id, error);
   };
   if (const auto read = refresh(); !read) return failed(read.error());
+  unreachable_stream_.reset();
   auto stream = create_stream();
   if (!stream) return failed(stream.error());
   for (int i = buffer_count(info_.frame_rate_hz, format_.payload_bytes); i > 0; --i) {
@@ -253,7 +270,12 @@ void AravisSource::stop() {
   }
   if (!stream) return;
   if (reachable && silent) reachable = answers();
-  if (reachable) arv_camera_stop_acquisition(camera_.get(), nullptr);
+  if (reachable) {
+    arv_camera_stop_acquisition(camera_.get(), nullptr);
+  } else {
+    // Closing the stream writes to the camera, which takes seconds when it does not answer.
+    unreachable_stream_ = std::move(stream);
+  }
 }
 
 Result<Frame> AravisSource::next(std::chrono::milliseconds timeout) {
@@ -352,7 +374,7 @@ Error AravisSource::silence(std::chrono::milliseconds timeout) {
 
 bool AravisSource::answers() const {
   if (device_address_.empty()) return true;
-  return gvcp_read_register(device_address_, gvcp_control_privilege_register, ping_patience).has_value();
+  return gvcp_read_register(device_address_, gvcp_version_register, ping_patience).has_value();
 }
 
 bool AravisSource::is_lost() const {
@@ -384,13 +406,7 @@ Result<void> AravisSource::set(const std::string& feature, const std::string& va
   const std::lock_guard control(control_);
   if (is_lost()) return tl::unexpected(disconnected());
   auto done = set_feature(arv_camera_get_device(camera_.get()), feature, value);
-  if (done) {
-    const auto warnings = info_.warnings;
-    const auto buffer = info_.settings["SocketBufferBytes"];
-    done = refresh();
-    info_.warnings = warnings;
-    info_.settings["SocketBufferBytes"] = buffer;
-  }
+  if (done) done = refresh();
   if (!done && done.error().code == ErrorCode::disconnected) mark_lost();
   return done;
 }

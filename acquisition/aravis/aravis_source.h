@@ -53,6 +53,7 @@ class AravisSource : public FrameSource {
   [[nodiscard]] Result<std::shared_ptr<ArvStream>> create_stream();
   void configure_transport();
   void check_socket_buffer(ArvStream* stream);
+  void publish_socket_buffer();
   [[nodiscard]] Frame converted(ArvBuffer* buffer, std::int64_t arrived_ns);
   [[nodiscard]] Error silence(std::chrono::milliseconds timeout);
   [[nodiscard]] bool answers() const;
@@ -66,6 +67,7 @@ class AravisSource : public FrameSource {
   std::string device_address_;
   bool loopback_ = false;
   std::vector<std::string> setup_warnings_;
+  std::string socket_buffer_bytes_, socket_buffer_warning_;
   StreamFormat format_;
   std::shared_ptr<const RadiometricScale> scale_;
   FrameSequence sequence_{FrameIdKind::gvsp16};
@@ -73,7 +75,8 @@ class AravisSource : public FrameSource {
 
   std::mutex control_;  ///< one conversation with the camera at a time; taken before events_->mutex
   std::shared_ptr<Events> events_ = std::make_shared<Events>();
-  std::shared_ptr<ArvStream> stream_;  ///< guarded by events_->mutex; next() keeps it alive while it copies
+  std::shared_ptr<ArvStream> stream_;              ///< guarded by events_->mutex; next() keeps it alive while it copies
+  std::shared_ptr<ArvStream> unreachable_stream_;  ///< of a camera that did not answer at stop(); guarded by control_
 };
 
 }  // namespace todbench

@@ -12,7 +12,10 @@ namespace todbench {
 
 /// UDP port of every GigE Vision device; fixed by the standard.
 inline constexpr std::uint16_t gvcp_port = 3956;
-/// Control channel privilege: any device must answer a read of it, from any client.
+/// Version register: every device answers a read of it, from any client, without side effect.
+inline constexpr std::uint32_t gvcp_version_register = 0x0000;
+/// Control channel privilege: not zero while a client controls the device. Not for polling: some devices take a read of
+/// it for the controller's heartbeat.
 inline constexpr std::uint32_t gvcp_control_privilege_register = 0x0A00;
 
 /// Reads a 32-bit register of the device at `ipv4` without being its controller. Repeats the request every 50 ms until

@@ -78,8 +78,8 @@ class MemoryFile {
   int fd_;
 };
 
-struct CameraUnref {
-  void operator()(ArvGvFakeCamera* camera) const { g_object_unref(camera); }
+struct Unref {
+  void operator()(void* object) const { g_object_unref(object); }
 };
 
 Result<void> validate(const EmulatedGigeCameraConfig& config) {
@@ -131,7 +131,8 @@ struct EmulatedGigeCamera::State {
   cv::Mat1w last_sent;
   std::condition_variable_any polled;
 
-  std::unique_ptr<ArvGvFakeCamera, CameraUnref> camera;
+  std::unique_ptr<ArvFakeCamera, Unref> registers;  ///< outlives the camera's thread, which reads it until the end
+  std::unique_ptr<ArvGvFakeCamera, Unref> camera;
   std::jthread poll;  ///< last member: stops before anything that it uses goes
 
   ~State() {
@@ -139,23 +140,22 @@ struct EmulatedGigeCamera::State {
     camera.reset();  // joins the camera's thread, which uses this state
   }
 
-  [[nodiscard]] ArvFakeCamera* registers() const { return arv_gv_fake_camera_get_fake_camera(camera.get()); }
   [[nodiscard]] std::uint32_t read(std::uint32_t address) const {
     guint32 value = 0;
-    arv_fake_camera_read_register(registers(), address, &value);
+    arv_fake_camera_read_register(registers.get(), address, &value);
     return value;
   }
   void write(std::uint32_t address, std::uint32_t value) const {
-    arv_fake_camera_write_register(registers(), address, value);
+    arv_fake_camera_write_register(registers.get(), address, value);
   }
   void write(std::uint32_t address, double value) const {
     const std::uint64_t big_endian = GUINT64_TO_BE(std::bit_cast<std::uint64_t>(value));
-    arv_fake_camera_write_memory(registers(), address, sizeof big_endian, &big_endian);
+    arv_fake_camera_write_memory(registers.get(), address, sizeof big_endian, &big_endian);
   }
   void write(std::uint32_t address, const std::string& text, std::size_t size) const {
     std::vector<char> field(size, '\0');
     std::memcpy(field.data(), text.data(), std::min(text.size(), size - 1));
-    arv_fake_camera_write_memory(registers(), address, static_cast<guint32>(size), field.data());
+    arv_fake_camera_write_memory(registers.get(), address, static_cast<guint32>(size), field.data());
   }
 
   void power_up();
@@ -196,7 +196,7 @@ void EmulatedGigeCamera::State::power_up() {
   write(register_planck + 24, planck.o);
   next_frame_id = config.first_frame_id;
   radiometric = radiometric_table(config);
-  arv_fake_camera_set_fill_pattern(registers(), &State::on_fill, this);
+  arv_fake_camera_set_fill_pattern(registers.get(), &State::on_fill, this);
 }
 
 void EmulatedGigeCamera::State::begin_correction() {
@@ -319,6 +319,7 @@ Result<std::unique_ptr<EmulatedGigeCamera>> EmulatedGigeCamera::start(EmulatedGi
     return fail(ErrorCode::not_found,
                 "emulated camera: no interface with address " + address + " is up, or its UDP port 3956 is busy");
   }
+  state->registers.reset(ARV_FAKE_CAMERA(g_object_ref(arv_gv_fake_camera_get_fake_camera(state->camera.get()))));
   state->power_up();
   // is_running says true even when the port was taken, and a client would then drive somebody else's camera. Only the
   // answer over the wire tells: a value that no other camera has (clock and process) must come back.
