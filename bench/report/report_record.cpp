@@ -176,8 +176,8 @@ Markup statements_section(const ReportData& data) {
   item("The results relate only to the item tested, in the state and with the settings listed here.");
   item(
       "Intervals have a coverage of 95 %. They are profile-likelihood intervals (likelihood drop 3.84) of the fitted "
-      "function, widened "
-      "by the variance between presentations, whose trials share a frame, with Student's t.");
+      "function, widened by the variance between groups of trials that share a frame or a place on the plate, with "
+      "Student's t.");
   item(
       "The intervals hold what varies between trials: noise, sampling phase and the finite number of answers. They do "
       "not hold what is "

@@ -12,7 +12,8 @@ constexpr std::string_view one_sided_note =
     "A single bound in brackets (≥ or ≤) is a one-sided 95 % limit: the data do not bound the other side.";
 
 constexpr std::string_view groups_note =
-    "Groups: trials that share a frame are one group; the intervals allow for what they have in common.";
+    "Groups: trials that share a frame, or a place on the plate, are one group; the intervals allow for what they have "
+    "in common.";
 
 Markup cell(std::string_view text) {
   return escaped(text);
@@ -239,7 +240,7 @@ Markup psychometric_section(const ReportData& data) {
   const Markup explanation = cell(
       "Points: proportion correct with Wilson 95 % intervals, every trial taken as independent. Lines: fitted "
       "functions. Shaded: 95 % "
-      "interval of S₇₅, widened for trials that share a frame. Dashed: threshold (75 %) and chance (25 %).");
+      "interval of S₇₅, widened for groups of trials. Dashed: threshold (75 %) and chance (25 %).");
   return section("Psychometric functions", element("div", figures, "class=\"pairs\"") + paragraph(explanation, "note"));
 }
 
@@ -269,13 +270,13 @@ Markup comparison_section(const ReportData& data) {
   }
   const Markup overall = paragraph(cell("Over all contrasts: ") +
                                    badge(in_words(data.comparison->verdict), mood_of(data.comparison->verdict)));
-  const Markup explanation =
-      paragraph(cell("p different: likelihood-ratio test of a common threshold, corrected for trials that share a "
-                     "frame. p equivalent: two "
-                     "one-sided tests that the ratio lies within the margin, chosen before the measurement; below 0.05 "
-                     "the 90 % interval lies "
-                     "within it. Neither test significant is inconclusive: more trials are needed, nothing is shown."),
-                "note");
+  const Markup explanation = paragraph(
+      cell(
+          "p different: likelihood-ratio test of a common threshold, corrected for groups of trials. p equivalent: two "
+          "one-sided tests that the ratio lies within the margin, chosen before the measurement; below 0.05 "
+          "the 90 % interval lies "
+          "within it. Neither test significant is inconclusive: more trials are needed, nothing is shown."),
+      "note");
   return section("Measured against simulated", table(rows) + overall + explanation);
 }
 
