@@ -15,11 +15,11 @@ cv::Point2d scene_pixel(const PlateScene& scene, cv::Point2d plate_mm, double if
   return turned + scene.centre_px + cv::Point2d((sensor.width - 1) / 2.0, (sensor.height - 1) / 2.0);
 }
 
-bool same_scene(const PlateScene& a, const PlateScene& b) {
+bool same_geometry(const PlateScene& a, const PlateScene& b) {
   const auto same_triangle = [](const PlateTriangle& s, const PlateTriangle& t) {
     return s.position_mm == t.position_mm && s.size_mm == t.size_mm && s.apex == t.apex;
   };
-  return a.delta_t_k == b.delta_t_k && a.background_k == b.background_k && a.distance_m == b.distance_m &&
+  return a.distance_m == b.distance_m &&
          a.shift_mm == b.shift_mm && a.centre_px == b.centre_px && a.rotation_deg == b.rotation_deg &&
          std::equal(a.plate.triangles.begin(), a.plate.triangles.end(), b.plate.triangles.begin(),
                     b.plate.triangles.end(), same_triangle);

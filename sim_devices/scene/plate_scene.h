@@ -21,7 +21,7 @@ struct PlateScene {
 /// Position in pixels (column, row; pixel centres at integers) of a place on the plate.
 [[nodiscard]] cv::Point2d scene_pixel(const PlateScene& scene, cv::Point2d plate_mm, double ifov_mrad, cv::Size sensor);
 
-/// Whether two scenes give the same picture (names are not compared).
-[[nodiscard]] bool same_scene(const PlateScene& a, const PlateScene& b);
+/// Whether two scenes differ at most in temperatures and names.
+[[nodiscard]] bool same_geometry(const PlateScene& a, const PlateScene& b);
 
 }  // namespace todbench

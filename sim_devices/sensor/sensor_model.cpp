@@ -25,11 +25,11 @@ Polygon turned(const Polygon& polygon, double degrees) {
   return out;
 }
 
-/// Adds contrast times values to the part of the picture that is inside it.
-void add_clipped(cv::Mat1f& picture, const cv::Mat1d& values, cv::Point origin, double contrast) {
+/// Adds values to the part of the picture that is inside it.
+void add_clipped(cv::Mat1f& picture, const cv::Mat1d& values, cv::Point origin) {
   for (int j = std::max(0, -origin.y); j < values.rows && origin.y + j < picture.rows; ++j) {
     for (int i = std::max(0, -origin.x); i < values.cols && origin.x + i < picture.cols; ++i) {
-      picture(origin.y + j, origin.x + i) += static_cast<float>(contrast * values(j, i));
+      picture(origin.y + j, origin.x + i) += static_cast<float>(values(j, i));
     }
   }
 }
@@ -77,7 +77,7 @@ struct SensorModel::State {
       const cv::Point origin(static_cast<int>(std::lround(centre.x)) - n / 2,
                              static_cast<int>(std::lround(centre.y)) - n / 2);
       const cv::Point2d first((origin.x - centre.x) * sample_pitch, (origin.y - centre.y) * sample_pitch);
-      add_clipped(picture, image->sample(first, sample_pitch, {n, n}), origin, scene.delta_t_k);
+      add_clipped(picture, image->sample(first, sample_pitch, {n, n}), origin);
     }
     return picture;
   }
@@ -113,10 +113,10 @@ cv::Size SensorModel::size() const {
   return {state_->spec.width * state_->spec.microscan, state_->spec.height * state_->spec.microscan};
 }
 
-std::shared_ptr<const cv::Mat1f> SensorModel::signal(const PlateScene& scene) const {
+std::shared_ptr<const cv::Mat1f> SensorModel::unit_signal(const PlateScene& scene) const {
   const std::scoped_lock lock(state_->mutex);
   for (const auto& [cached, picture] : state_->scenes) {
-    if (same_scene(cached, scene)) return picture;
+    if (same_geometry(cached, scene)) return picture;
   }
   if (state_->shapes.size() > cached_shapes) state_->shapes.clear();
   auto picture = std::make_shared<const cv::Mat1f>(state_->draw(scene, size()));
@@ -126,8 +126,7 @@ std::shared_ptr<const cv::Mat1f> SensorModel::signal(const PlateScene& scene) co
 }
 
 cv::Mat1f SensorModel::picture(const PlateScene& scene, std::uint64_t index) const {
-  const auto clean = signal(scene);
-  cv::Mat1f out = clean->clone();
+  cv::Mat1f out = *unit_signal(scene) * scene.delta_t_k;
   const auto count = static_cast<std::size_t>(out.total());
   float* pixels = out.ptr<float>();
   if (state_->plan.simulates(Effect::temporal_noise) && state_->spec.netd_k > 0) {
@@ -152,11 +151,12 @@ cv::Mat1f SensorModel::picture(const PlateScene& scene, std::uint64_t index) con
 }
 
 cv::Mat1w SensorModel::expose(const PlateScene& scene, std::uint64_t index) const {
-  const auto clean = signal(scene);
+  const auto unit = unit_signal(scene);
   const SensorSpec& spec = state_->spec;
-  const auto count = static_cast<std::size_t>(clean->total());
-  cv::Mat1w counts(clean->size());
-  const float* signal_k = clean->ptr<float>();
+  const auto count = static_cast<std::size_t>(unit->total());
+  cv::Mat1w counts(unit->size());
+  const float* signal = unit->ptr<float>();
+  const auto contrast = static_cast<float>(scene.delta_t_k);
   const float* pattern = state_->fixed_pattern.empty() ? nullptr : state_->fixed_pattern.ptr<float>();
   const bool noisy = state_->plan.simulates(Effect::temporal_noise) && spec.netd_k > 0;
   const auto sd = static_cast<float>(noisy ? spec.netd_k : 0);
@@ -171,7 +171,7 @@ cv::Mat1w SensorModel::expose(const PlateScene& scene, std::uint64_t index) cons
     const std::size_t n = std::min(strip, count - first);
     if (noisy) stream.fill_normal(std::span(noise, n), first);
     for (std::size_t i = 0; i < n; ++i) {
-      float value = signal_k[first + i] + sd * noise[i];
+      float value = contrast * signal[first + i] + sd * noise[i];
       if (pattern != nullptr) value += pattern[first + i];
       const double level = base + static_cast<double>(value) * per_kelvin;
       out[first + i] = static_cast<std::uint16_t>(static_cast<int>(std::clamp(level, 0.0, full_scale)));

@@ -29,8 +29,8 @@ class SensorModel {
 
   /// Picture elements: detectors times microscan.
   [[nodiscard]] cv::Size size() const;
-  /// The picture before noise, in kelvin above the surround. The last few scenes are cached.
-  [[nodiscard]] std::shared_ptr<const cv::Mat1f> signal(const PlateScene& scene) const;
+  /// The picture before noise at a contrast of 1 K, above the surround. The last few geometries are cached.
+  [[nodiscard]] std::shared_ptr<const cv::Mat1f> unit_signal(const PlateScene& scene) const;
   /// Picture `index` in kelvin above the surround: signal, temporal noise, fixed pattern, quantisation; each as
   /// planned.
   [[nodiscard]] cv::Mat1f picture(const PlateScene& scene, std::uint64_t index) const;

@@ -1,0 +1,63 @@
+// The emulated laboratory: a GigE Vision camera, a black body and a plate stage, each on its real protocol, around one
+// simulated sensor. What the instruments show is what the camera sees, also while they settle.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "acquisition/core/accuracy.h"
+#include "sim_devices/lab/black_body.h"
+#include "sim_devices/lab/gige_camera.h"
+#include "sim_devices/lab/plate_stage.h"
+#include "sim_devices/sensor/sensor_model.h"
+#include "tod/target_plate.h"
+
+namespace todbench {
+
+struct LaboratoryOptions {
+  SensorSpec sensor;
+  SensorPlan plan;  ///< of the camera's effects
+  Accuracy accuracy;
+  std::vector<TargetPlate> plates;  ///< in the slots of the stage, identity mounting
+  double distance_m = 2;
+  cv::Point2d centre_px{0.3, -0.2};  ///< aim of the camera: where the plate's middle is, from the middle of the picture
+  double rotation_deg = 0.4;         ///< of the plate about the line of sight
+  EmulatedGigeCameraConfig camera;   ///< geometry, rate and scale are filled in from the sensor
+  BlackBodyOptions black_body;
+  PlateStageOptions stage;  ///< plates are filled in
+  std::uint64_t seed = 1;
+};
+
+/// Runs from creation to destruction. Thread-safe.
+class Laboratory {
+ public:
+  /// Precondition: validate(sensor) succeeds. Errors: `not_found` (address or port in use), `invalid_input` (options).
+  [[nodiscard]] static Result<std::unique_ptr<Laboratory>> start(LaboratoryOptions options);
+  ~Laboratory();
+  Laboratory(const Laboratory&) = delete;
+  Laboratory& operator=(const Laboratory&) = delete;
+
+  /// "gige:VENDOR-SERIAL".
+  [[nodiscard]] std::string camera_id() const;
+  /// IPv4 address of the camera.
+  [[nodiscard]] std::string camera_address() const;
+  /// "address:port".
+  [[nodiscard]] std::string black_body_endpoint() const;
+  [[nodiscard]] std::string stage_endpoint() const;
+  /// What is in front of the camera now.
+  [[nodiscard]] PlateScene scene() const;
+  [[nodiscard]] const SensorModel& model() const;
+  [[nodiscard]] EmulatedGigeCamera& camera();
+
+  /// Switches the camera off without a word to its client, as a pulled cable does.
+  void switch_camera_off();
+
+ private:
+  struct State;
+  explicit Laboratory(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace todbench
