@@ -1,0 +1,25 @@
+# cmake -D SOURCE_DIR=... -D OUTPUT=... -P EmbedResources.cmake
+# Writes the C++ source that holds every shipped plate, sensor, observer and plan.
+
+set(content "#include <array>\n\n#include \"bench/session/resources.h\"\n\nnamespace todbench {\n\nnamespace {\n\n")
+set(rows "")
+set(count 0)
+foreach(entry "plate:tod/plates" "sensor:sim_devices/sensors" "observer:hvs/observers" "plan:bench/plans")
+  string(REPLACE ":" ";" entry "${entry}")
+  list(GET entry 0 kind)
+  list(GET entry 1 folder)
+  file(GLOB files "${SOURCE_DIR}/${folder}/*.toml")
+  list(SORT files)
+  foreach(file IN LISTS files)
+    get_filename_component(name "${file}" NAME_WLE)
+    # Semicolons and brackets would be taken for list syntax of CMake: read as hexadecimal, write as an array of characters.
+    file(READ "${file}" bytes HEX)
+    string(REGEX REPLACE "([0-9a-f][0-9a-f])" "'\\\\x\\1'," bytes "${bytes}")
+    string(APPEND content "constexpr char text_${count}[] = {${bytes}'\\0'};\n")
+    string(APPEND rows "    EmbeddedResource{ResourceKind::${kind}, \"${name}\", {text_${count}, sizeof text_${count} - 1}},\n")
+    math(EXPR count "${count} + 1")
+  endforeach()
+endforeach()
+string(APPEND content "\nconstexpr std::array<EmbeddedResource, ${count}> resources{\n${rows}};\n\n}  // namespace\n\n"
+  "std::span<const EmbeddedResource> embedded_resources() { return resources; }\n\n}  // namespace todbench\n")
+file(WRITE "${OUTPUT}" "${content}")

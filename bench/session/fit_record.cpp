@@ -1,0 +1,161 @@
+#include "bench/session/fit_record.h"
+
+#include <array>
+
+#include "bench/session/json_reader.h"
+
+namespace todbench {
+
+namespace {
+
+constexpr std::array fit_verdicts{
+    FitVerdict::no_data, FitVerdict::above_range,        FitVerdict::below_range,     FitVerdict::slope_unidentifiable,
+    FitVerdict::step,    FitVerdict::flat_or_decreasing, FitVerdict::underdetermined, FitVerdict::extrapolated,
+    FitVerdict::ok};
+constexpr std::array comparison_verdicts{ComparisonVerdict::equivalent, ComparisonVerdict::different,
+                                         ComparisonVerdict::inconclusive};
+
+Json fit_record(const PsychometricFit& fit) {
+  Json json = fit_json(fit);
+  json["ci90"] = json_interval(fit.ci90);
+  json["se_ln_threshold"] = json_number(fit.se_ln_threshold);
+  json["trials"] = json_number(fit.trials);
+  json["clusters"] = json_number(fit.clusters);
+  json["variance_inflation"] = json_number(fit.variance_inflation);
+  return json;
+}
+
+PsychometricFit read_fit(const JsonReader& reader) {
+  PsychometricFit fit;
+  fit.verdict = reader.at("verdict").named(fit_verdicts);
+  fit.threshold = reader.at("threshold").optional_number();
+  fit.ci95 = reader.at("ci95").interval();
+  fit.ci90 = reader.at("ci90").interval();
+  fit.slope = reader.at("slope").optional_number();
+  fit.lapse = reader.at("lapse").number();
+  fit.log_likelihood = reader.at("log_likelihood").optional_number();
+  fit.deviance = reader.at("deviance").optional_number();
+  fit.degrees_of_freedom = static_cast<int>(reader.at("degrees_of_freedom").whole());
+  fit.se_ln_threshold = reader.at("se_ln_threshold").optional_number();
+  fit.trials = reader.at("trials").number();
+  fit.clusters = reader.at("clusters").number();
+  fit.variance_inflation = reader.at("variance_inflation").number();
+  if (const JsonReader posterior = reader.at("posterior"); !posterior.is_null()) {
+    const Interval interval = posterior.at("ci95").interval();
+    fit.posterior = Posterior{posterior.at("median").number(), interval.low.value_or(0), interval.high.value_or(0),
+                              posterior.at("prior_bound").flag()};
+  }
+  return fit;
+}
+
+Json level_record(const Level& level) {
+  Json json;
+  json["size_mrad"] = json_number(level.size);
+  json["correct"] = json_number(level.correct);
+  json["total"] = json_number(level.total);
+  json["cluster"] = level.cluster;
+  return json;
+}
+
+Json point_record(const TodPoint& point) {
+  Json json;
+  json["set_delta_t_k"] = json_number(point.set_delta_t_k);
+  json["delta_t_k"] = json_number(point.delta_t_k);
+  json["delta_t_se_k"] = json_number(point.delta_t_se_k);
+  json["fit"] = fit_record(point.fit);
+  json["free_lapse_fit"] = point.free_lapse_fit ? fit_record(*point.free_lapse_fit) : Json(nullptr);
+  json["lapse_warning"] = point.lapse_warning;
+  json["direct_s75_mrad"] = json_number(point.direct_s75_mrad);
+  json["direct_s75_se_mrad"] = json_number(point.direct_s75_se_mrad);
+  json["levels"] = Json::array();
+  for (const Level& level : point.levels) json["levels"].push_back(level_record(level));
+  return json;
+}
+
+TodPoint read_point(const JsonReader& reader) {
+  TodPoint point;
+  point.set_delta_t_k = reader.at("set_delta_t_k").number();
+  point.delta_t_k = reader.at("delta_t_k").number();
+  point.delta_t_se_k = reader.at("delta_t_se_k").number();
+  point.fit = read_fit(reader.at("fit"));
+  if (const JsonReader free = reader.at("free_lapse_fit"); !free.is_null()) point.free_lapse_fit = read_fit(free);
+  point.lapse_warning = reader.at("lapse_warning").flag();
+  point.direct_s75_mrad = reader.at("direct_s75_mrad").optional_number();
+  point.direct_s75_se_mrad = reader.at("direct_s75_se_mrad").optional_number();
+  for (const JsonReader& level : reader.at("levels").elements()) {
+    point.levels.push_back({level.at("size_mrad").number(), level.at("correct").number(), level.at("total").number(),
+                            static_cast<int>(level.at("cluster").whole())});
+  }
+  return point;
+}
+
+}  // namespace
+
+Json curve_record(const TodCurve& curve) {
+  Json json;
+  json["observer"] = curve.observer;
+  json["sensor"] = curve.sensor;
+  json["points"] = Json::array();
+  for (const TodPoint& point : curve.points) json["points"].push_back(point_record(point));
+  return json;
+}
+
+Result<TodCurve> curve_from(const Json& record) {
+  const JsonReader reader(record);
+  TodCurve curve;
+  curve.observer = reader.at("observer").text();
+  curve.sensor = reader.at("sensor").text();
+  for (const JsonReader& point : reader.at("points").elements()) curve.points.push_back(read_point(point));
+  if (const Result<void> read = reader.finish(); !read) return tl::unexpected(read.error());
+  return curve;
+}
+
+Json comparison_record(const Comparison& comparison) {
+  Json json = comparison_json(comparison);
+  for (std::size_t i = 0; i < comparison.points.size(); ++i) {
+    const ComparisonPoint& point = comparison.points[i];
+    json["points"][i]["delta_t_a_k"] = json_number(point.delta_t_a_k);
+    json["points"][i]["delta_t_b_k"] = json_number(point.delta_t_b_k);
+    json["points"][i]["ratio_ci90"] = json_interval(point.ratio_ci90);
+  }
+  return json;
+}
+
+Result<Comparison> comparison_from(const Json& record) {
+  const JsonReader reader(record);
+  Comparison comparison;
+  comparison.verdict = reader.at("verdict").named(comparison_verdicts);
+  for (const JsonReader& item : reader.at("points").elements()) {
+    ComparisonPoint point;
+    point.set_delta_t_k = item.at("delta_t_k").number();
+    point.delta_t_a_k = item.at("delta_t_a_k").number();
+    point.delta_t_b_k = item.at("delta_t_b_k").number();
+    point.ratio = item.at("ratio").optional_number();
+    point.ratio_ci95 = item.at("ratio_ci95").interval();
+    point.ratio_ci90 = item.at("ratio_ci90").interval();
+    point.p_difference = item.at("p_difference").optional_number();
+    point.p_equivalence = item.at("p_equivalence").optional_number();
+    point.margin_percent = item.at("margin_percent").number();
+    point.verdict = item.at("verdict").named(comparison_verdicts);
+    comparison.points.push_back(point);
+  }
+  if (const Result<void> read = reader.finish(); !read) return tl::unexpected(read.error());
+  return comparison;
+}
+
+Result<SensorPlan> effects_from(const Json& effects) {
+  const JsonReader reader(effects);
+  SensorPlan plan;
+  for (const JsonReader& item : reader.elements()) {
+    EffectDecision decision;
+    decision.effect = item.at("name").named(all_effects);
+    decision.decision = item.at("decision").text() == "skip" ? Decision::skip : Decision::simulate;
+    decision.reason = item.at("reason").text();
+    decision.predicted_change_percent = item.at("predicted_change_percent").optional_number();
+    plan.decisions.push_back(std::move(decision));
+  }
+  if (const Result<void> read = reader.finish(); !read) return tl::unexpected(read.error());
+  return plan;
+}
+
+}  // namespace todbench

@@ -1,0 +1,132 @@
+#include "bench/session/json_output.h"
+
+#include <cmath>
+
+namespace todbench {
+
+Json json_number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json json_number(const std::optional<double>& value) {
+  return value ? json_number(*value) : Json(nullptr);
+}
+
+Json json_interval(const Interval& interval) {
+  return Json::array({json_number(interval.low), json_number(interval.high)});
+}
+
+std::string to_line(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string to_page(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+namespace {
+
+std::optional<double> reciprocal(const std::optional<double>& size_mrad) {
+  if (!size_mrad || !std::isfinite(*size_mrad) || *size_mrad <= 0) return std::nullopt;
+  return 1 / *size_mrad;
+}
+
+}  // namespace
+
+std::optional<double> acuity_per_mrad(const PsychometricFit& fit) {
+  return reciprocal(fit.threshold);
+}
+
+Interval acuity_interval(const Interval& s75_mrad) {
+  return {reciprocal(s75_mrad.high), reciprocal(s75_mrad.low)};
+}
+
+Json fit_json(const PsychometricFit& fit) {
+  Json json;
+  json["verdict"] = to_string(fit.verdict);
+  json["threshold"] = json_number(fit.threshold);
+  json["ci95"] = json_interval(fit.ci95);
+  json["slope"] = json_number(fit.slope);
+  json["lapse"] = json_number(fit.lapse);
+  json["log_likelihood"] = json_number(fit.log_likelihood);
+  json["deviance"] = json_number(fit.deviance);
+  json["degrees_of_freedom"] = fit.degrees_of_freedom;
+  json["posterior"] = nullptr;
+  if (fit.posterior) {
+    Json posterior;
+    posterior["median"] = json_number(fit.posterior->median);
+    posterior["ci95"] = Json::array({json_number(fit.posterior->low), json_number(fit.posterior->high)});
+    posterior["prior_bound"] = fit.posterior->prior_bound;
+    json["posterior"] = std::move(posterior);
+  }
+  return json;
+}
+
+Json effects_json(const SensorPlan& plan) {
+  Json effects = Json::array();
+  for (const EffectDecision& decision : plan.decisions) {
+    Json effect;
+    effect["name"] = to_string(decision.effect);
+    effect["decision"] = decision.decision == Decision::simulate ? "simulate" : "skip";
+    effect["reason"] = decision.reason;
+    effect["predicted_change_percent"] = json_number(decision.predicted_change_percent);
+    effects.push_back(std::move(effect));
+  }
+  return effects;
+}
+
+Json curve_json(const TodCurve& curve, const SensorPlan& plan, const RunFigures& figures) {
+  Json points = Json::array();
+  for (const TodPoint& point : curve.points) {
+    Json json;
+    json["delta_t_k"] = json_number(point.set_delta_t_k);
+    json["s75_mrad"] = json_number(point.fit.threshold);
+    json["s75_ci95_mrad"] = json_interval(point.fit.ci95);
+    json["s75_direct_mrad"] = json_number(point.direct_s75_mrad);
+    json["s75_direct_se_mrad"] = json_number(point.direct_s75_se_mrad);
+    json["acuity_per_mrad"] = json_number(acuity_per_mrad(point.fit));
+    json["trials"] = static_cast<std::int64_t>(std::llround(point.fit.trials));
+    json["verdict"] = to_string(point.fit.verdict);
+    points.push_back(std::move(json));
+  }
+  Json json;
+  json["observer"] = curve.observer;
+  json["sensor"] = curve.sensor;
+  json["points"] = std::move(points);
+  json["plan"] = effects_json(plan);
+  json["wall_s"] = json_number(figures.wall_s);
+  json["frames"]["used"] = figures.frames_used;
+  json["frames"]["rejected"] = Json::object();
+  for (const auto& [reason, count] : figures.frames_rejected) json["frames"]["rejected"][reason] = count;
+  return json;
+}
+
+Json comparison_json(const Comparison& comparison) {
+  Json points = Json::array();
+  for (const ComparisonPoint& point : comparison.points) {
+    Json json;
+    json["delta_t_k"] = json_number(point.set_delta_t_k);
+    json["ratio"] = json_number(point.ratio);
+    json["ratio_ci95"] = json_interval(point.ratio_ci95);
+    json["p_difference"] = json_number(point.p_difference);
+    json["p_equivalence"] = json_number(point.p_equivalence);
+    json["margin_percent"] = json_number(point.margin_percent);
+    json["verdict"] = to_string(point.verdict);
+    points.push_back(std::move(json));
+  }
+  Json json;
+  json["points"] = std::move(points);
+  json["verdict"] = to_string(comparison.verdict);
+  return json;
+}
+
+Json plan_json(const SensorPlan& plan, const PlanFigures& figures) {
+  Json json;
+  json["effects"] = effects_json(plan);
+  json["trials"] = figures.trials;
+  json["predicted_uncertainty_percent"] = json_number(figures.predicted_uncertainty_percent);
+  json["predicted_s"] = json_number(figures.predicted_s);
+  return json;
+}
+
+}  // namespace todbench

@@ -1,0 +1,36 @@
+// What the plan says, in the terms of the parts that do it.
+#pragma once
+
+#include <vector>
+
+#include "bench/session/plan.h"
+#include "sim_devices/sensor/sensor_spec.h"
+#include "tod/comparison.h"
+#include "tod/target.h"
+
+namespace todbench {
+
+/// Which side of the comparison runs.
+enum class Side {
+  measured,   ///< the camera of the plan
+  simulated,  ///< the simulated sensor of the plan
+};
+[[nodiscard]] std::string_view to_string(Side side);
+
+/// The simulated sensor of a plan, with the microscan of the plan.
+[[nodiscard]] Result<SensorSpec> sensor_of(const Plan& plan);
+/// The plates of a plan, in its order.
+[[nodiscard]] Result<std::vector<TargetPlate>> plates_of(const Plan& plan);
+/// `ifov_mrad` is that of the camera, or of the sensor for the simulated side. The seed is that of the plan.
+[[nodiscard]] MeasurementOptions measurement_options(const Plan& plan, const std::vector<TargetPlate>& plates,
+                                                     double ifov_mrad);
+/// Every plate (by its own name) in every mounting at every contrast; phases as the side has them.
+[[nodiscard]] ConstantStimuliOptions stimuli_options(const Plan& plan, const std::vector<TargetPlate>& plates,
+                                                     double ifov_mrad, Side side);
+[[nodiscard]] FitOptions fit_options(const Plan& plan);
+/// The margin of the limits, or 10 % where none is demanded.
+[[nodiscard]] ComparisonOptions comparison_options(const Plan& plan);
+/// The named accuracy with the tolerance of the plan.
+[[nodiscard]] Result<Accuracy> accuracy_of(const Plan& plan);
+
+}  // namespace todbench

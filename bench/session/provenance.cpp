@@ -1,0 +1,255 @@
+#include "bench/session/provenance.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <ctime>
+
+#include "bench/session/build_info.h"
+#include "bench/session/fit_record.h"
+#include "bench/session/json_reader.h"
+
+namespace todbench {
+
+namespace {
+
+constexpr std::array states{SessionState::running, SessionState::complete, SessionState::interrupted};
+constexpr std::array sides{Side::measured, Side::simulated};
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? std::string(name.data()) : "unknown";
+}
+
+template <typename Value>
+Json object_of(const std::map<std::string, Value>& values) {
+  Json json = Json::object();
+  for (const auto& [key, value] : values) json[key] = value;
+  return json;
+}
+
+std::map<std::string, std::uint64_t> read_counts(const JsonReader& reader) {
+  std::map<std::string, std::uint64_t> counts;
+  for (const auto& [key, value] : reader.items()) counts[key] = value.count();
+  return counts;
+}
+
+Json camera_json(const CameraRecord& camera) {
+  Json json;
+  json["id"] = camera.id;
+  json["vendor"] = camera.vendor;
+  json["model"] = camera.model;
+  json["serial"] = camera.serial;
+  json["firmware"] = camera.firmware;
+  json["transport"] = camera.transport;
+  json["pixel_format"] = camera.pixel_format;
+  json["width"] = camera.width;
+  json["height"] = camera.height;
+  json["significant_bits"] = camera.significant_bits;
+  json["frame_rate_hz"] = json_number(camera.frame_rate_hz);
+  json["calibration"] = camera.calibration;
+  json["settings"] = object_of(camera.settings);
+  json["warnings"] = camera.warnings;
+  return json;
+}
+
+CameraRecord read_camera(const JsonReader& reader) {
+  CameraRecord camera;
+  camera.id = reader.at("id").text();
+  camera.vendor = reader.at("vendor").text();
+  camera.model = reader.at("model").text();
+  camera.serial = reader.at("serial").text();
+  camera.firmware = reader.at("firmware").text();
+  camera.transport = reader.at("transport").text();
+  camera.pixel_format = reader.at("pixel_format").text();
+  camera.width = static_cast<int>(reader.at("width").whole());
+  camera.height = static_cast<int>(reader.at("height").whole());
+  camera.significant_bits = static_cast<int>(reader.at("significant_bits").whole());
+  camera.frame_rate_hz = reader.at("frame_rate_hz").optional_number().value_or(0);
+  camera.calibration = reader.at("calibration").text();
+  for (const auto& [key, value] : reader.at("settings").items()) camera.settings[key] = value.text();
+  camera.warnings = reader.at("warnings").texts();
+  return camera;
+}
+
+Json set_up_json(const SetUpRecord& set_up) {
+  const Registration& registration = set_up.registration;
+  Json json;
+  json["plate"] = set_up.plate;
+  json["mounting"] = to_string(set_up.mounting);
+  json["plate_to_pixel"] = Json::array();
+  for (const double value : registration.plate_to_pixel.val) json["plate_to_pixel"].push_back(json_number(value));
+  json["residual_px"] = json_number(registration.residual_px);
+  json["triangles_used"] = registration.triangles_used;
+  json["scale_px_per_mm"] = json_number(registration.scale_px_per_mm);
+  json["rotation_deg"] = json_number(registration.rotation_deg);
+  json["scale_deviation"] = json_number(registration.scale_deviation);
+  json["contrast_sign"] = json_number(registration.contrast_sign);
+  return json;
+}
+
+SetUpRecord read_set_up(const JsonReader& reader) {
+  SetUpRecord set_up;
+  Registration& registration = set_up.registration;
+  set_up.plate = reader.at("plate").text();
+  set_up.mounting = reader.at("mounting").named(all_mountings);
+  const std::vector<JsonReader> matrix = reader.at("plate_to_pixel").elements();
+  for (std::size_t i = 0; i < 9; ++i) registration.plate_to_pixel.val[i] = i < matrix.size() ? matrix[i].number() : 0;
+  registration.residual_px = reader.at("residual_px").number();
+  registration.triangles_used = static_cast<int>(reader.at("triangles_used").whole());
+  registration.scale_px_per_mm = reader.at("scale_px_per_mm").number();
+  registration.rotation_deg = reader.at("rotation_deg").number();
+  registration.scale_deviation = reader.at("scale_deviation").number();
+  registration.contrast_sign = reader.at("contrast_sign").number();
+  return set_up;
+}
+
+Json run_json(const RunRecord& run) {
+  Json json;
+  json["wall_s"] = json_number(run.wall_s);
+  json["frames_used"] = run.frames_used;
+  json["frames_rejected"] = object_of(run.frames_rejected);
+  json["frames_lost"] = run.frames_lost;
+  json["temporal_noise_k"] = json_number(run.temporal_noise_k);
+  json["set_ups"] = Json::array();
+  for (const SetUpRecord& set_up : run.set_ups) json["set_ups"].push_back(set_up_json(set_up));
+  json["notes"] = run.notes;
+  json["ended_by"] = run.ended_by;
+  return json;
+}
+
+RunRecord read_run(const JsonReader& reader) {
+  RunRecord run;
+  run.wall_s = reader.at("wall_s").number();
+  run.frames_used = reader.at("frames_used").count();
+  run.frames_rejected = read_counts(reader.at("frames_rejected"));
+  run.frames_lost = reader.at("frames_lost").count();
+  run.temporal_noise_k = reader.at("temporal_noise_k").optional_number().value_or(0);
+  for (const JsonReader& set_up : reader.at("set_ups").elements()) run.set_ups.push_back(read_set_up(set_up));
+  run.notes = reader.at("notes").texts();
+  run.ended_by = reader.at("ended_by").text();
+  return run;
+}
+
+Json instruments_json(const std::vector<InstrumentPlan>& instruments) {
+  Json list = Json::array();
+  for (const InstrumentPlan& instrument : instruments) {
+    Json json;
+    json["name"] = instrument.name;
+    json["serial"] = instrument.serial;
+    json["certificate"] = instrument.certificate;
+    json["calibration_due"] = instrument.calibration_due;
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string_view to_string(SessionState state) {
+  switch (state) {
+    case SessionState::running:
+      return "running";
+    case SessionState::complete:
+      return "complete";
+    case SessionState::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
+CameraRecord camera_record(const SourceInfo& info) {
+  return {info.id,       info.vendor,           info.model,         info.serial,
+          info.firmware, info.transport,        info.pixel_format,  info.width,
+          info.height,   info.significant_bits, info.frame_rate_hz, info.scale.describe(),
+          info.settings, info.warnings};
+}
+
+RunRecord run_record(const MeasurementResult& result, double wall_s) {
+  return {wall_s,
+          result.frames_used,
+          result.frames_rejected,
+          result.frames_lost,
+          result.temporal_noise_k,
+          result.set_ups,
+          result.notes,
+          result.ended_by ? result.ended_by->message : std::string()};
+}
+
+RunFigures figures_of(const RunRecord& run) {
+  return {run.wall_s, run.frames_used, run.frames_rejected};
+}
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  ::gmtime_r(&now, &parts);
+  std::array<char, 32> text{};
+  const std::size_t length = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return {text.data(), length};
+}
+
+Provenance begin_provenance(const Plan& plan, Side side) {
+  Provenance provenance;
+  const BuildInfo build = build_info();
+  provenance.program_version = build.version;
+  provenance.git_commit = build.commit;
+  provenance.compiler = build.compiler;
+  provenance.host = host_name();
+  provenance.started_utc = utc_now();
+  provenance.side = side;
+  provenance.seeds["plan"] = plan.seed;
+  provenance.instruments = plan.instruments;
+  return provenance;
+}
+
+Json provenance_json(const Provenance& provenance) {
+  Json json;
+  json["schema"] = "todbench-provenance-1";
+  json["state"] = to_string(provenance.state);
+  json["side"] = to_string(provenance.side);
+  json["program_version"] = provenance.program_version;
+  json["git_commit"] = provenance.git_commit;
+  json["compiler"] = provenance.compiler;
+  json["host"] = provenance.host;
+  json["started_utc"] = provenance.started_utc;
+  json["ended_utc"] = provenance.ended_utc;
+  json["seeds"] = object_of(provenance.seeds);
+  json["camera"] = provenance.camera ? camera_json(*provenance.camera) : Json(nullptr);
+  json["target"] = provenance.target;
+  json["instruments"] = instruments_json(provenance.instruments);
+  json["effects"] = effects_json(provenance.effects);
+  json["run"] = provenance.run ? run_json(*provenance.run) : Json(nullptr);
+  json["twin_run"] = provenance.twin_run ? run_json(*provenance.twin_run) : Json(nullptr);
+  return json;
+}
+
+Result<Provenance> provenance_from(const Json& json) {
+  const JsonReader reader(json);
+  Provenance provenance;
+  provenance.state = reader.at("state").named(states);
+  provenance.side = reader.at("side").named(sides);
+  provenance.program_version = reader.at("program_version").text();
+  provenance.git_commit = reader.at("git_commit").text();
+  provenance.compiler = reader.at("compiler").text();
+  provenance.host = reader.at("host").text();
+  provenance.started_utc = reader.at("started_utc").text();
+  provenance.ended_utc = reader.at("ended_utc").text();
+  provenance.seeds = read_counts(reader.at("seeds"));
+  if (const JsonReader camera = reader.at("camera"); !camera.is_null()) provenance.camera = read_camera(camera);
+  provenance.target = reader.at("target").text();
+  for (const JsonReader& item : reader.at("instruments").elements()) {
+    provenance.instruments.push_back({item.at("name").text(), item.at("serial").text(), item.at("certificate").text(),
+                                      item.at("calibration_due").text()});
+  }
+  if (const JsonReader run = reader.at("run"); !run.is_null()) provenance.run = read_run(run);
+  if (const JsonReader run = reader.at("twin_run"); !run.is_null()) provenance.twin_run = read_run(run);
+  if (const Result<void> read = reader.finish(); !read) return tl::unexpected(read.error());
+  if (!json.contains("effects")) return fail(ErrorCode::invalid_input, "missing key 'effects'");
+  const Result<SensorPlan> effects = effects_from(json["effects"]);
+  if (!effects) return fail("effects", effects.error());
+  provenance.effects = *effects;
+  return provenance;
+}
+
+}  // namespace todbench

@@ -1,0 +1,74 @@
+// Where a session comes from: program, host, camera, instruments, what happened on the way.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "acquisition/core/frame_source.h"
+#include "bench/session/json_output.h"
+#include "bench/session/plan_options.h"
+#include "tod/measurement.h"
+
+namespace todbench {
+
+enum class SessionState {
+  running,  ///< still being written, or cut off by a crash
+  complete,
+  interrupted,  ///< stopped on request or by an error; the trials so far are valid
+};
+[[nodiscard]] std::string_view to_string(SessionState state);
+
+/// The camera as it was read back.
+struct CameraRecord {
+  std::string id, vendor, model, serial, firmware, transport, pixel_format;
+  int width = 0, height = 0, significant_bits = 0;
+  double frame_rate_hz = 0;                     ///< 0: unknown
+  std::string calibration;                      ///< of counts to kelvin, in words
+  std::map<std::string, std::string> settings;  ///< feature -> value
+  std::vector<std::string> warnings;
+  bool operator==(const CameraRecord&) const = default;
+};
+[[nodiscard]] CameraRecord camera_record(const SourceInfo& info);
+
+/// What one run left behind besides its trials.
+struct RunRecord {
+  double wall_s = 0;
+  std::uint64_t frames_used = 0;
+  std::map<std::string, std::uint64_t> frames_rejected;
+  std::uint64_t frames_lost = 0;
+  double temporal_noise_k = 0;  ///< 0: not measured
+  std::vector<SetUpRecord> set_ups;
+  std::vector<std::string> notes;
+  std::string ended_by;  ///< why it stopped early; empty: it did not
+};
+[[nodiscard]] RunRecord run_record(const MeasurementResult& result, double wall_s);
+[[nodiscard]] RunFigures figures_of(const RunRecord& run);
+
+struct Provenance {
+  std::string program_version, git_commit, compiler;
+  std::string host;
+  std::string started_utc, ended_utc;  ///< ISO 8601 with Z; empty: not yet
+  SessionState state = SessionState::running;
+  Side side = Side::measured;  ///< what trials.csv holds
+  std::map<std::string, std::uint64_t> seeds;
+  std::optional<CameraRecord> camera;  ///< nothing for a simulated curve
+  std::string target;                  ///< instruments in words, with serial numbers
+  std::vector<InstrumentPlan> instruments;
+  SensorPlan effects;                 ///< of the simulated curve
+  std::optional<RunRecord> run;       ///< of trials.csv
+  std::optional<RunRecord> twin_run;  ///< of trials_simulated.csv
+};
+
+/// Program, host, start and the seed and instruments of the plan filled in; state running.
+[[nodiscard]] Provenance begin_provenance(const Plan& plan, Side side);
+/// Now, as "2026-01-31T12:34:56Z".
+[[nodiscard]] std::string utc_now();
+
+[[nodiscard]] Json provenance_json(const Provenance& provenance);
+/// `invalid_input` naming the key.
+[[nodiscard]] Result<Provenance> provenance_from(const Json& json);
+
+}  // namespace todbench

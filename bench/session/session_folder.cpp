@@ -1,0 +1,245 @@
+#include "bench/session/session_folder.h"
+
+#include <cmath>
+#include <set>
+
+#include "bench/session/files.h"
+#include "bench/session/fit_record.h"
+#include "bench/session/text.h"
+
+namespace todbench {
+
+namespace {
+
+std::filesystem::path trials_file(const std::filesystem::path& folder, SessionCurve which) {
+  return folder / (which == SessionCurve::main ? "trials.csv" : "trials_simulated.csv");
+}
+
+Result<void> remove_session_files(const std::filesystem::path& folder) {
+  std::vector<std::string> files = session_files(folder);
+  files.emplace_back("manifest.json");
+  for (const std::string& file : files) {
+    std::error_code problem;
+    std::filesystem::remove(folder / file, problem);
+    if (problem) return fail(ErrorCode::io, (folder / file).string() + ": cannot be removed: " + problem.message());
+  }
+  return {};
+}
+
+/// Copies of descriptions in inputs/, each under a name of its own.
+class InputCopies {
+ public:
+  explicit InputCopies(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// Copies a description; the result is the reference to be written into session.toml.
+  Result<std::string> copy(ResourceKind kind, const std::string& reference) {
+    const Result<Resource> resource = find_resource(kind, reference);
+    if (!resource) return tl::unexpected(resource.error());
+    const std::string stem = std::string(to_string(kind)) + "-" + std::filesystem::path(reference).stem().string();
+    std::string name = stem + ".toml";
+    for (int i = 2; !used_.insert(name).second; ++i) name = stem + "-" + std::to_string(i) + ".toml";
+    std::error_code problem;
+    std::filesystem::create_directories(folder_ / "inputs", problem);
+    if (problem)
+      return fail(ErrorCode::io, (folder_ / "inputs").string() + ": cannot be created: " + problem.message());
+    if (const Result<void> written = write_file_atomically(folder_ / "inputs" / name, resource->text); !written) {
+      return tl::unexpected(written.error());
+    }
+    return is_file_reference(reference) ? "inputs/" + name : reference;
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::set<std::string> used_;
+};
+
+std::string csv_number(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? number_text(*value) : "";
+}
+
+void add_rows(std::string& text, const TodCurve& curve, Side side) {
+  for (const TodPoint& point : curve.points) {
+    const Interval acuity = acuity_interval(point.fit.ci95);
+    text += to_string(side);
+    for (const std::optional<double>& value :
+         {std::optional(point.set_delta_t_k), std::optional(point.delta_t_k), std::optional(point.delta_t_se_k),
+          point.fit.threshold, point.fit.ci95.low, point.fit.ci95.high, acuity_per_mrad(point.fit), acuity.low,
+          acuity.high, point.fit.slope, std::optional(point.fit.lapse), std::optional(point.fit.trials),
+          point.direct_s75_mrad, point.direct_s75_se_mrad}) {
+      text += "," + csv_number(value);
+    }
+    text += "," + std::string(to_string(point.fit.verdict)) + "\n";
+  }
+}
+
+Result<Json> read_json(const std::filesystem::path& file) {
+  const Result<std::string> text = read_text_file(file);
+  if (!text) return tl::unexpected(text.error());
+  Json json = Json::parse(*text, nullptr, false);
+  if (json.is_discarded()) return fail(ErrorCode::invalid_input, file.string() + ": not valid JSON");
+  return json;
+}
+
+bool is_there(const std::filesystem::path& file) {
+  std::error_code problem;
+  return std::filesystem::exists(file, problem);
+}
+
+Result<void> read_curves(const std::filesystem::path& file, Session& session) {
+  const Result<Json> json = read_json(file);
+  if (!json) return tl::unexpected(json.error());
+  for (const auto& [key, target] : {std::pair("main", &session.curve), std::pair("twin", &session.twin)}) {
+    if (!json->is_object() || !json->contains(key)) {
+      return fail(ErrorCode::invalid_input, file.string() + ": missing key '" + key + "'");
+    }
+    if ((*json)[key].is_null()) continue;
+    Result<TodCurve> curve = curve_from((*json)[key]);
+    if (!curve) return fail(file.string() + ": " + key, curve.error());
+    *target = *std::move(curve);
+  }
+  return {};
+}
+
+Result<void> read_all_trials(const std::filesystem::path& folder, Session& session) {
+  for (const auto& [which, target] :
+       {std::pair(SessionCurve::main, &session.trials), std::pair(SessionCurve::twin, &session.twin_trials)}) {
+    const std::filesystem::path file = trials_file(folder, which);
+    if (!is_there(file)) continue;
+    Result<std::vector<Trial>> trials = read_trials(file);
+    if (!trials) return tl::unexpected(trials.error());
+    *target = *std::move(trials);
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<SessionFolder> SessionFolder::create(const std::filesystem::path& folder, ExistingFolder existing) {
+  std::error_code problem;
+  if (std::filesystem::exists(folder, problem) && !std::filesystem::is_directory(folder, problem)) {
+    return fail(ErrorCode::invalid_input, folder.string() + ": is a file, expected a folder");
+  }
+  std::filesystem::create_directories(folder, problem);
+  if (problem) return fail(ErrorCode::io, folder.string() + ": cannot be created: " + problem.message());
+  const bool empty = std::filesystem::is_empty(folder, problem);
+  if (problem) return fail(ErrorCode::io, folder.string() + ": cannot be read: " + problem.message());
+  if (!empty && existing == ExistingFolder::refuse) {
+    return fail(ErrorCode::invalid_input,
+                folder.string() + ": the folder is not empty; choose another or allow overwriting (--force)");
+  }
+  if (const Result<void> removed = remove_session_files(folder); !removed) return tl::unexpected(removed.error());
+  return SessionFolder(folder);
+}
+
+Result<void> SessionFolder::write_plan(const Plan& plan) {
+  Plan stored = plan;
+  InputCopies copies(folder_);
+  std::vector<std::pair<ResourceKind, std::string*>> references{{ResourceKind::observer, &stored.observer},
+                                                                {ResourceKind::sensor, &stored.simulation.sensor}};
+  for (std::string& plate : stored.target.plates) references.emplace_back(ResourceKind::plate, &plate);
+  for (const auto& [kind, reference] : references) {
+    Result<std::string> copied = copies.copy(kind, *reference);
+    if (!copied) return tl::unexpected(copied.error());
+    *reference = *std::move(copied);
+  }
+  return write_file_atomically(folder_ / "session.toml", to_toml(stored));
+}
+
+Result<void> SessionFolder::write_provenance(const Provenance& provenance) {
+  return write_file_atomically(folder_ / "provenance.json", to_page(provenance_json(provenance)));
+}
+
+Result<TrialsWriter> SessionFolder::open_trials(SessionCurve which) {
+  return TrialsWriter::create(trials_file(folder_, which));
+}
+
+Result<void> SessionFolder::write_curves(const TodCurve& main, const std::optional<TodCurve>& twin, Side side) {
+  Json json;
+  json["main"] = curve_record(main);
+  json["twin"] = twin ? curve_record(*twin) : Json(nullptr);
+  if (const Result<void> written = write_file_atomically(folder_ / "fits.json", to_page(json)); !written)
+    return written;
+  return write_file_atomically(folder_ / "curve.csv", curve_csv(main, twin, side));
+}
+
+Result<void> SessionFolder::write_comparison(const Comparison& comparison) {
+  return write_file_atomically(folder_ / "comparison.json", to_page(comparison_record(comparison)));
+}
+
+Result<void> SessionFolder::write_report(std::string_view html) {
+  return write_file_atomically(folder_ / "report.html", html);
+}
+
+Result<void> SessionFolder::log(std::string_view sentence) {
+  Result<AppendFile> file = AppendFile::open(folder_ / "log.txt", AppendFile::Start::at_end);
+  if (!file) return tl::unexpected(file.error());
+  return file->append(utc_now() + " " + one_line(sentence) + "\n");
+}
+
+Result<void> SessionFolder::finish(Provenance provenance, SessionState state) {
+  provenance.state = state;
+  provenance.ended_utc = utc_now();
+  if (const Result<void> written = write_provenance(provenance); !written) return written;
+  return write_manifest(folder_);
+}
+
+std::string curve_csv(const TodCurve& main, const std::optional<TodCurve>& twin, Side side) {
+  std::string text =
+      "side,set_delta_t_k,delta_t_k,delta_t_se_k,s75_mrad,s75_ci95_low_mrad,s75_ci95_high_mrad,acuity_per_mrad,"
+      "acuity_ci95_low_per_mrad,acuity_ci95_high_per_mrad,slope,lapse,trials,s75_direct_mrad,s75_direct_se_mrad,"
+      "verdict\n";
+  add_rows(text, main, side);
+  if (twin) add_rows(text, *twin, Side::simulated);
+  return text;
+}
+
+Result<Session> read_session(const std::filesystem::path& folder) {
+  if (!is_there(folder / "session.toml")) {
+    return fail(ErrorCode::invalid_input, folder.string() + ": not a session folder (there is no session.toml)");
+  }
+  Session session;
+  Result<Plan> plan = load_plan((folder / "session.toml").string());
+  if (!plan) return tl::unexpected(plan.error());
+  session.plan = *std::move(plan);
+
+  const std::filesystem::path provenance_file = folder / "provenance.json";
+  const Result<Json> provenance_text = read_json(provenance_file);
+  if (!provenance_text) return tl::unexpected(provenance_text.error());
+  Result<Provenance> provenance = provenance_from(*provenance_text);
+  if (!provenance) return fail(provenance_file.string(), provenance.error());
+  session.provenance = *std::move(provenance);
+
+  if (const Result<void> read = read_all_trials(folder, session); !read) return tl::unexpected(read.error());
+  if (is_there(folder / "fits.json")) {
+    if (const Result<void> read = read_curves(folder / "fits.json", session); !read)
+      return tl::unexpected(read.error());
+  }
+  if (is_there(folder / "comparison.json")) {
+    const Result<Json> json = read_json(folder / "comparison.json");
+    if (!json) return tl::unexpected(json.error());
+    Result<Comparison> comparison = comparison_from(*json);
+    if (!comparison) return fail((folder / "comparison.json").string(), comparison.error());
+    session.comparison = *std::move(comparison);
+  }
+  return session;
+}
+
+Result<TodCurve> refit(const Session& session, SessionCurve which) {
+  const std::vector<Trial>& trials = which == SessionCurve::main ? session.trials : session.twin_trials;
+  const std::optional<TodCurve>& stored = which == SessionCurve::main ? session.curve : session.twin;
+  if (trials.empty()) return fail(ErrorCode::invalid_input, "the session has no trials to fit");
+  Result<TodCurve> curve = tod_curve(trials, fit_options(session.plan));
+  if (!curve || !stored) return curve;
+  curve->observer = stored->observer;
+  curve->sensor = stored->sensor;
+  for (TodPoint& point : curve->points) {
+    for (const TodPoint& old : stored->points) {
+      if (old.set_delta_t_k != point.set_delta_t_k) continue;
+      point.direct_s75_mrad = old.direct_s75_mrad;
+      point.direct_s75_se_mrad = old.direct_s75_se_mrad;
+    }
+  }
+  return curve;
+}
+
+}  // namespace todbench

@@ -1,0 +1,83 @@
+// A session: the folder that a run leaves behind, written so that it is valid at every moment, and read back into
+// values.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bench/session/manifest.h"
+#include "bench/session/plan.h"
+#include "bench/session/provenance.h"
+#include "bench/session/trials_csv.h"
+#include "tod/comparison.h"
+#include "tod/tod_curve.h"
+
+namespace todbench {
+
+/// What to do with a folder that is not empty.
+enum class ExistingFolder {
+  refuse,
+  overwrite,  ///< removes the files of an earlier session, never anything else
+};
+
+/// Which of the two curves of a session: the one that the session is about, or its simulated twin.
+enum class SessionCurve { main, twin };
+
+/// Writes a session. Everything but trials and log is written atomically. One thread at a time.
+/// Every function fails with `io` and the path when the disk refuses.
+class SessionFolder {
+ public:
+  /// Creates the folder with its parents. `invalid_input` when it exists, is not empty and may not be overwritten, or
+  /// is a file.
+  [[nodiscard]] static Result<SessionFolder> create(const std::filesystem::path& folder, ExistingFolder existing);
+
+  [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
+  /// session.toml; the plates, sensor and observer used are copied to inputs/, and references to files point there.
+  /// References to built-in descriptions stay names.
+  [[nodiscard]] Result<void> write_plan(const Plan& plan);
+  /// provenance.json. Written with state running at the start and again whenever more is known.
+  [[nodiscard]] Result<void> write_provenance(const Provenance& provenance);
+  /// trials.csv or trials_simulated.csv.
+  [[nodiscard]] Result<TrialsWriter> open_trials(SessionCurve which);
+  /// fits.json and curve.csv.
+  [[nodiscard]] Result<void> write_curves(const TodCurve& main, const std::optional<TodCurve>& twin, Side side);
+  /// comparison.json.
+  [[nodiscard]] Result<void> write_comparison(const Comparison& comparison);
+  /// report.html.
+  [[nodiscard]] Result<void> write_report(std::string_view html);
+  /// One line in log.txt, with the time.
+  [[nodiscard]] Result<void> log(std::string_view sentence);
+  /// Writes provenance with `state` and the time, then the manifest. To be called last, also when interrupted.
+  [[nodiscard]] Result<void> finish(Provenance provenance, SessionState state);
+
+ private:
+  explicit SessionFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  std::filesystem::path folder_;
+};
+
+/// A session as values.
+struct Session {
+  Plan plan;
+  Provenance provenance;
+  std::vector<Trial> trials;  ///< of the main curve
+  std::vector<Trial> twin_trials;
+  std::optional<TodCurve> curve;  ///< as it was fitted; nothing where the run ended before
+  std::optional<TodCurve> twin;
+  std::optional<Comparison> comparison;
+  /// False when the run was interrupted or cut off.
+  [[nodiscard]] bool complete() const { return provenance.state == SessionState::complete; }
+};
+
+/// `invalid_input`: not a session folder, or a file in it that cannot be read, with its path and line or key.
+[[nodiscard]] Result<Session> read_session(const std::filesystem::path& folder);
+/// A curve fitted again from the trials with the options of the plan; figures of the direct estimate are taken over.
+/// `invalid_input` when there are no trials.
+[[nodiscard]] Result<TodCurve> refit(const Session& session, SessionCurve which);
+
+/// curve.csv.
+[[nodiscard]] std::string curve_csv(const TodCurve& main, const std::optional<TodCurve>& twin, Side side);
+
+}  // namespace todbench
