@@ -24,12 +24,12 @@ struct PreparedPlate {
   }
 };
 
-Result<void> prepare(PreparedPlate& plate, Observer& observer, double scale_px_per_mm) {
+Result<void> prepare(PreparedPlate& plate, Observer& observer, double scale_px_per_mm, int samples_per_pitch) {
   plate.observers.clear();
   plate.size_px.clear();
   for (const auto& t : plate.plate.triangles) {
     const double size_px = t.size_mm * scale_px_per_mm;
-    auto prepared = observer.prepare(size_px, 1);
+    auto prepared = observer.prepare(size_px, samples_per_pitch);
     if (!prepared) return fail("plate " + plate.plate.name + ", " + t.name, prepared.error());
     plate.observers.push_back(*prepared);
     plate.size_px.push_back(size_px);
@@ -177,7 +177,7 @@ class Run {
     registered_[{state.plate, state.mounting}] = base_;
     if (scale_px_per_mm_ == 0) scale_px_per_mm_ = base_.scale_px_per_mm;
     if (plate.observers.empty()) {
-      if (auto prepared = prepare(plate, observer_, scale_px_per_mm_); !prepared) return prepared;
+      if (auto prepared = prepare(plate, observer_, scale_px_per_mm_, options_.samples_per_pitch); !prepared) return prepared;
     }
     return {};
   }
@@ -204,7 +204,8 @@ class Run {
                     state.delta_t_k, contrast->value, contrast->standard_error);
       return fail(ErrorCode::calibration, text);
     }
-    contrast_k_ = contrast->value;
+    const auto response = options_.contrast_response.find(state.plate);
+    contrast_k_ = contrast->value / (response == options_.contrast_response.end() ? 1.0 : response->second);
     const double deviation = contrast_k_ / state.delta_t_k - 1;
     if (std::abs(deviation) > 0.2 && std::abs(contrast_k_ - state.delta_t_k) > 3 * contrast->standard_error) {
       char text[200];
@@ -286,7 +287,7 @@ Result<std::vector<std::string>> sizes_that_do_not_fit(const MeasurementOptions&
   std::vector<std::string> out;
   for (const auto& plate : options.plates) {
     PreparedPlate prepared{plate, {}, {}};
-    if (auto ready = prepare(prepared, observer, scale); !ready) return tl::unexpected(ready.error());
+    if (auto ready = prepare(prepared, observer, scale, options.samples_per_pitch); !ready) return tl::unexpected(ready.error());
     const auto sides = prepared.sides();
     const double search = prepared.observers.empty() ? 0 : prepared.observers.front()->search_samples();
     for (const auto& problem : touching_windows(plate, scale, sides, search)) {

@@ -192,6 +192,7 @@ class SizeLadder {
       : chain_(chain), observer_(observer), options_(options), stream_(options.seed, "direct_estimate") {}
 
   [[nodiscard]] Result<Proportion> proportion(int index, double white, double fixed, int draws) {
+    if (options_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
     auto& slot = sizes_[index];
     if (slot == nullptr) {
       const double size = size_of(index);

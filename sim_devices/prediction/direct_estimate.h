@@ -2,6 +2,7 @@
 // of the searching observer, interpolated.
 #pragma once
 
+#include <stop_token>
 #include <vector>
 
 #include "acquisition/core/accuracy.h"
@@ -23,6 +24,7 @@ struct DirectEstimateOptions {
   int samples_per_pitch = 1;  ///< 2: 2x2 microscan
   Accuracy accuracy;
   std::uint64_t seed = 1;
+  std::stop_token stop;  ///< ends with `interrupted`, within a few hundredths of a second
 };
 
 /// One point per contrast (kelvin, > 0). Noise is drawn once per size and shared by phases and contrasts.

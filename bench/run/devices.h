@@ -1,0 +1,35 @@
+// From the words of a plan to opened devices.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <stop_token>
+
+#include "acquisition/core/camera_registry.h"
+#include "bench/session/plan.h"
+#include "sim_devices/sensor/simulated_camera.h"
+#include "tod/target.h"
+
+namespace todbench {
+
+/// Every back end of this build: GigE Vision, USB3 Vision, recordings, simulated sensors.
+[[nodiscard]] CameraRegistry camera_registry();
+
+/// A camera and what changes the target before it.
+struct OpenedBench {
+  std::unique_ptr<FrameSource> camera;
+  std::unique_ptr<Target> target;
+};
+
+/// Opens what the plan names and writes its settings into the camera. Errors: `not_found`, `invalid_input` (a target
+/// that cannot work with this camera, a setting that is refused), `interrupted`.
+[[nodiscard]] Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>& plates,
+                                             std::stop_token stop);
+
+/// A simulated sensor behind a scene. `shown_delta_t_k`: set-point -> contrast really shown, so that a twin shows what
+/// a camera saw; set-points that are not in it are shown as they are.
+[[nodiscard]] OpenedBench simulated_bench(std::shared_ptr<const SensorModel> model,
+                                          const std::vector<TargetPlate>& plates, double distance_m,
+                                          std::map<double, double> shown_delta_t_k);
+
+}  // namespace todbench

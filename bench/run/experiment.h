@@ -1,0 +1,54 @@
+// From a plan to a session folder: measure, simulate the twin, compare, judge, report.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <string_view>
+
+#include "bench/run/devices.h"
+#include "bench/session/json_output.h"
+#include "bench/session/plan.h"
+#include "bench/session/plan_options.h"
+#include "bench/session/session_folder.h"
+#include "bench/session/verdict.h"
+
+namespace todbench {
+
+/// What goes on, for a terminal or a window. Called from the thread of the run.
+struct ExperimentListener {
+  std::function<void(std::string_view phase)> on_phase;
+  std::function<void(std::size_t done, std::size_t planned)> on_progress;
+  std::function<void(std::string_view sentence)> on_note;
+};
+
+struct ExperimentOptions {
+  std::filesystem::path folder;
+  ExistingFolder existing = ExistingFolder::refuse;
+};
+
+/// What a run came to. The session folder holds the same.
+struct ExperimentOutcome {
+  std::filesystem::path folder;
+  TodCurve curve;                ///< measured, or simulated for simulate_plan()
+  std::optional<TodCurve> twin;  ///< simulated, beside a measured curve
+  std::optional<Comparison> comparison;
+  Verdict verdict;
+  SensorPlan effects;             ///< of the simulated sensor
+  RunFigures figures;             ///< of `curve`
+  std::optional<Error> ended_by;  ///< why it stopped early; the folder is valid and marked interrupted
+};
+
+/// Measures with the devices of the plan, runs its simulated twin and compares. Fails when nothing could be measured; a
+/// folder that was begun is then left marked interrupted.
+[[nodiscard]] Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions& options,
+                                                     const ExperimentListener& listener, std::stop_token stop);
+
+/// The same with the simulated sensor in place of the camera, and its direct estimate.
+[[nodiscard]] Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOptions& options,
+                                                      const ExperimentListener& listener, std::stop_token stop);
+
+}  // namespace todbench

@@ -1,0 +1,127 @@
+#include "bench/run/report_data.h"
+
+#include "bench/session/descriptions.h"
+#include "bench/session/plan_options.h"
+#include "bench/session/verdict.h"
+
+namespace todbench {
+namespace {
+
+SourceInfo source_info(const CameraRecord& record) {
+  SourceInfo info;
+  info.id = record.id;
+  info.vendor = record.vendor;
+  info.model = record.model;
+  info.serial = record.serial;
+  info.firmware = record.firmware;
+  info.transport = record.transport;
+  info.pixel_format = record.pixel_format;
+  info.width = record.width;
+  info.height = record.height;
+  info.significant_bits = record.significant_bits;
+  info.frame_rate_hz = record.frame_rate_hz;
+  info.settings = record.settings;
+  info.settings["temperature scale"] = record.calibration;
+  info.warnings = record.warnings;
+  return info;
+}
+
+LimitVerdict limit_verdict(VerdictKind kind) {
+  switch (kind) {
+    case VerdictKind::pass:
+      return LimitVerdict::pass;
+    case VerdictKind::fail:
+      return LimitVerdict::fail;
+    case VerdictKind::inconclusive:
+      return LimitVerdict::inconclusive;
+  }
+  return LimitVerdict::inconclusive;
+}
+
+std::vector<LimitLine> limit_lines(const Verdict& verdict) {
+  std::vector<LimitLine> lines;
+  for (const auto& item : verdict.items) {
+    LimitLine line;
+    line.quantity = item.demand;
+    line.limit = item.limit.value_or(0);
+    line.value = item.value;
+    line.ci95 = item.interval;
+    line.verdict = limit_verdict(item.kind);
+    line.reason = item.reason;
+    if (item.delta_t_k != 0) line.acuity_at_delta_t_k = item.delta_t_k;
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+void add_provenance(ReportData& data, const Provenance& provenance) {
+  data.provenance = {{"program", "todbench " + provenance.program_version},
+                     {"source commit", provenance.git_commit},
+                     {"compiler", provenance.compiler},
+                     {"host", provenance.host}};
+  for (const auto& [name, seed] : provenance.seeds) data.provenance.emplace_back("seed " + name, std::to_string(seed));
+  for (const auto& instrument : provenance.instruments) {
+    data.conditions.emplace_back(instrument.name,
+                                 "serial " + instrument.serial + ", certificate " + instrument.certificate +
+                                     (instrument.calibration_due.empty() ? "" : ", due " + instrument.calibration_due));
+  }
+}
+
+}  // namespace
+
+Result<ReportData> report_data(const Session& session, const std::string& name) {
+  const Plan& plan = session.plan;
+  const Provenance& provenance = session.provenance;
+  ReportData data;
+  data.session = name;
+  data.description = plan.name + (plan.description.empty() ? "" : ": " + plan.description);
+  data.started = provenance.started_utc;
+  data.finished = provenance.ended_utc;
+  data.operator_name = plan.operator_name;
+  data.place = plan.place;
+  if (!plan.unit.empty()) data.conditions.emplace_back("unit under test", plan.unit);
+  if (!plan.notes.empty()) data.notes.push_back(plan.notes);
+  if (provenance.camera) data.camera = source_info(*provenance.camera);
+  data.distance_m = plan.target.distance_m;
+  data.ifov_mrad = plan.camera.ifov_mrad;
+  data.target = provenance.target;
+  auto plates = plates_of(plan);
+  if (!plates) return tl::unexpected(plates.error());
+  data.plates = std::move(*plates);
+  data.observer = plan.observer;
+  data.fit = fit_options(plan);
+  if (provenance.side == Side::measured) {
+    data.measured = session.curve;
+    data.simulated = session.twin;
+  } else {
+    data.simulated = session.curve;
+  }
+  data.comparison = session.comparison;
+  auto sensor = sensor_of(plan);
+  if (!sensor) return tl::unexpected(sensor.error());
+  data.simulated_sensor = *sensor;
+  if (data.ifov_mrad == 0) data.ifov_mrad = sensor->ifov_mrad();
+  data.plan = provenance.effects;
+  if (session.curve) {
+    const Verdict verdict = judge(plan.limits, *session.curve, session.comparison);
+    data.decision_rule = verdict.rule;
+    data.limits = limit_lines(verdict);
+  }
+  if (provenance.run) {
+    data.set_ups = provenance.run->set_ups;
+    data.frames_used = provenance.run->frames_used;
+    data.frames_rejected = provenance.run->frames_rejected;
+    data.frames_lost = provenance.run->frames_lost;
+    data.temporal_noise_k = provenance.run->temporal_noise_k;
+    data.notes.insert(data.notes.end(), provenance.run->notes.begin(), provenance.run->notes.end());
+    if (!provenance.run->ended_by.empty()) data.interrupted = provenance.run->ended_by;
+  }
+  if (!session.complete() && !data.interrupted) data.interrupted = "the session was not finished";
+  if (provenance.twin_run) {
+    for (const auto& note : provenance.twin_run->notes) data.notes.push_back("Simulated twin: " + note);
+  }
+  add_provenance(data, provenance);
+  return data;
+}
+
+}  // namespace todbench

@@ -1,0 +1,15 @@
+// A session as the report shows it.
+#pragma once
+
+#include <string>
+
+#include "bench/report/report.h"
+#include "bench/session/session_folder.h"
+
+namespace todbench {
+
+/// Everything for render_report() from what the session folder holds. `name` is that of the session. `invalid_input`
+/// when a plate or sensor that the plan names cannot be read.
+[[nodiscard]] Result<ReportData> report_data(const Session& session, const std::string& name);
+
+}  // namespace todbench

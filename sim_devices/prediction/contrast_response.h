@@ -1,0 +1,16 @@
+// What the measure of effective contrast makes of a known contrast, blur included.
+#pragma once
+
+#include "acquisition/core/result.h"
+#include "sim_devices/sensor/sensor_model.h"
+#include "tod/registration.h"
+
+namespace todbench {
+
+/// Mean of effective_contrast() over the four mountings and several sampling phases of noise-free pictures at a
+/// contrast of 1 K: just below 1, because blur reaches the inside of small triangles. Errors as register_plate() and
+/// effective_contrast().
+[[nodiscard]] Result<double> contrast_response(const SensorModel& model, const TargetPlate& plate, double distance_m,
+                                               double min_reference_px, const RegistrationOptions& registration);
+
+}  // namespace todbench
