@@ -63,18 +63,25 @@ Markup literal(std::string_view markup) {
   return Markup{std::string(markup)};
 }
 
-Markup escaped(std::string_view plain) {
-  Markup result;
+std::string valid_text(std::string_view plain) {
+  std::string text;
   for (std::size_t i = 0; i < plain.size();) {
     const std::size_t length = character_length(plain, i);
-    if (length == 0) {
-      result.text += replacement;
-      ++i;
-      continue;
+    text += length == 0 ? replacement : plain.substr(i, length);
+    i += length == 0 ? 1 : length;
+  }
+  return text;
+}
+
+Markup escaped(std::string_view plain) {
+  Markup result;
+  for (const char character : valid_text(plain)) {
+    const std::string_view known = entity(character);
+    if (known.empty()) {
+      result.text += character;
+    } else {
+      result.text += known;
     }
-    const std::string_view known = length == 1 ? entity(plain[i]) : std::string_view{};
-    result.text += known.empty() ? plain.substr(i, length) : known;
-    i += length;
   }
   return result;
 }

@@ -20,8 +20,10 @@ struct Markup {
 /// Markup written in the program itself.
 [[nodiscard]] Markup literal(std::string_view markup);
 
-/// Text from outside: & < > " ' become entities; bytes that are not UTF-8 and control characters that XML forbids
-/// become U+FFFD.
+/// Text from outside as valid UTF-8: bytes that are none and control characters become U+FFFD.
+[[nodiscard]] std::string valid_text(std::string_view plain);
+
+/// valid_text() with & < > " ' as entities.
 [[nodiscard]] Markup escaped(std::string_view plain);
 
 /// <tag attributes>content</tag>. Attributes are written in the program: `class="x"`.

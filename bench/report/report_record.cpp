@@ -67,6 +67,7 @@ Markup plate_table(const ReportData& data) {
 
 std::vector<NamedValue> text_values(const std::vector<std::pair<std::string, std::string>>& pairs) {
   std::vector<NamedValue> values;
+  values.reserve(pairs.size());
   for (const auto& [name, value] : pairs) values.push_back({name, text_or_missing(value, "not recorded")});
   return values;
 }

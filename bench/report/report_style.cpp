@@ -4,19 +4,19 @@ namespace todbench {
 
 namespace {
 
-/// A CSS string: everything but ASCII letters and digits becomes an escape by number (CSS Syntax 3, 4.3.7), so that no
-/// text ends it early.
+/// A CSS string: every ASCII character but letters and digits becomes an escape by number (CSS Syntax 3, 4.3.7), so
+/// that no text ends it or the style element early.
 std::string css_string(std::string_view plain) {
   constexpr std::string_view digits = "0123456789abcdef";
   std::string text = "\"";
-  for (const char character : plain) {
+  for (const char character : valid_text(plain)) {
     const auto byte = static_cast<unsigned char>(character);
-    if ((byte >= '0' && byte <= '9') || (byte >= 'A' && byte <= 'Z') || (byte >= 'a' && byte <= 'z')) {
+    const bool harmless =
+        byte >= 0x80U || (byte >= '0' && byte <= '9') || (byte >= 'A' && byte <= 'Z') || (byte >= 'a' && byte <= 'z');
+    if (harmless) {
       text += character;
-    } else if (byte >= 0x20U && byte < 0x7FU) {
-      text.append({'\\', digits[byte >> 4U], digits[byte & 15U], ' '});
     } else {
-      text += '_';
+      text.append({'\\', digits[byte >> 4U], digits[byte & 15U], ' '});
     }
   }
   return text + "\"";

@@ -229,6 +229,19 @@ TEST(Report, EscapesEveryTextFromOutside) {
   EXPECT_FALSE(contains(page, "O'Neil"));
 }
 
+TEST(Report, NamesSessionAndItemAtTheFootOfEveryPrintedPage) {
+  ReportData data = sample_report();
+  data.session = "a\"}</style>\\";
+  data.camera->serial = "7é";
+
+  const std::string page = render_report(data);
+
+  EXPECT_EQ(complaint(page), "");
+  EXPECT_TRUE(
+      contains(page, R"(@bottom-left{content:"a\22 \7d \3c \2f style\3e \5c \2c \20 serial\20 number\20 7é"})"));
+  EXPECT_TRUE(contains(page, "counter(page)"));
+}
+
 TEST(Report, BytesThatAreNoTextBecomeReplacementCharacters) {
   ReportData data = sample_report();
   data.camera->serial = std::string("12\x01") + '\0' + "\xE9" + "34\xC0\x80" + "\xED\xA0\x80";
