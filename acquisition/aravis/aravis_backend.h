@@ -26,7 +26,7 @@ struct AravisOptions {
   AravisTransport transport = AravisTransport::gige_vision;
   /// PFNC name; empty: the unpacked monochrome format that carries the most significant bits, Mono14 before Mono16 when
   /// equal.
-  std::string pixel_format;
+  std::string pixel_format = {};
   PacketResend packet_resend = PacketResend::automatic;
   /// GigE packet size including IP and UDP headers; 0: 8000 on loopback, elsewhere what the camera says, tested once
   /// when a stream is created and negotiated only when the test packet does not arrive.

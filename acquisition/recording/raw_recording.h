@@ -11,8 +11,8 @@ namespace todbench {
 struct RawRecordingFormat {
   int width = 0, height = 0;
   int significant_bits = 16;
-  double frame_rate_hz = 0;  ///< 0: unknown
-  RadiometricScale scale;    ///< uncalibrated unless stated
+  double frame_rate_hz = 0;     ///< 0: unknown
+  RadiometricScale scale = {};  ///< uncalibrated unless stated
 };
 
 /// Errors: `io` (cannot be read), `invalid_input` (impossible geometry; a file that is empty or does not hold a whole

@@ -1,0 +1,607 @@
+// The Aravis back end and the emulated camera, over the real protocol on loopback.
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <filesystem>
+#include <future>
+
+#include "acquisition/recording/flir_seq.h"
+#include "acquisition/recording/raw_recording.h"
+#include "sim_devices/sensor/sensor_model.h"
+#include "tests/acquisition/gige_test_support.h"
+
+namespace todbench {
+namespace {
+
+using namespace std::chrono_literals;
+using namespace testing_support;
+using testing::HasSubstr;
+
+/// Far longer than any frame takes on a loaded machine; a test that waits this long has failed.
+constexpr auto patience = 20s;
+
+TEST(GigeDiscovery, FindsTheCameraByVendorAndSerial) {
+  EmulatedGigeCameraConfig config;
+  config.vendor = "Acme Infrared AB";
+  config.model = "T-1";
+  config.serial = "48/0123";
+  const auto camera = start_camera(config);
+  const auto backend = aravis_backend();
+
+  const auto cameras = backend->list();
+
+  ASSERT_TRUE(cameras) << cameras.error().message;
+  ASSERT_EQ(cameras->size(), 1U);
+  EXPECT_EQ(cameras->front().id, "gige:Acme_Infrared_AB-48_0123");
+  EXPECT_EQ(cameras->front().vendor, "Acme Infrared AB");
+  EXPECT_EQ(cameras->front().model, "T-1");
+  EXPECT_EQ(cameras->front().serial, "48/0123");
+  EXPECT_EQ(cameras->front().address, "127.0.0.1");
+}
+
+TEST(GigeDiscovery, OpensByIdentityAndTellsTheSameIdentityWhenOpenedByAddress) {
+  const auto camera = start_camera({});
+  const auto backend = aravis_backend();
+
+  const auto by_identity = backend->open("gige:todbench-TB0001");
+
+  ASSERT_TRUE(by_identity) << by_identity.error().message;
+  const SourceInfo first = (*by_identity)->info();
+  EXPECT_EQ(first.id, "gige:todbench-TB0001");
+  const_cast<std::unique_ptr<FrameSource>&>(*by_identity).reset();
+  const auto by_address = open_camera();
+  ASSERT_TRUE(by_address);
+  EXPECT_EQ(by_address->info().id, first.id);
+  EXPECT_EQ(by_address->info().model, "Emulated LWIR");
+  EXPECT_EQ(by_address->info().firmware, "1.0");
+  EXPECT_EQ(by_address->info().transport, "GigE Vision");
+}
+
+TEST(GigeDiscovery, SaysWhichCamerasItSeesWhenTheIdentityIsAbsent) {
+  const auto camera = start_camera({});
+
+  const auto source = aravis_backend()->open("gige:todbench-OTHER");
+
+  ASSERT_FALSE(source);
+  EXPECT_EQ(source.error().code, ErrorCode::not_found);
+  EXPECT_THAT(source.error().message, HasSubstr("gige:todbench-TB0001"));
+}
+
+TEST(GigeDiscovery, SaysNotFoundWhenNobodyAnswersAtTheAddress) {
+  const auto source = aravis_backend()->open("gige:127.0.0.1");
+
+  ASSERT_FALSE(source);
+  EXPECT_EQ(source.error().code, ErrorCode::not_found);
+}
+
+TEST(GigeDiscovery, RefusesAnIdOfAnotherScheme) {
+  const auto source = aravis_backend()->open("u3v:todbench-TB0001");
+
+  ASSERT_FALSE(source);
+  EXPECT_EQ(source.error().code, ErrorCode::invalid_input);
+}
+
+TEST(GigeDiscovery, TellsASecondClientThatTheCameraIsBusy) {
+  const auto camera = start_camera({});
+  const auto first = open_camera();
+  ASSERT_TRUE(first);
+
+  const auto second = aravis_backend()->open("gige:127.0.0.1");
+
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().code, ErrorCode::not_found);
+  EXPECT_THAT(second.error().message, HasSubstr("busy"));
+}
+
+TEST(EmulatedCamera, RefusesAnAddressThatAnotherCameraHas) {
+  EmulatedGigeCameraConfig config;
+  const auto first = start_camera(config);
+  config.serial = "TB0002";
+
+  const auto second = EmulatedGigeCamera::start(config, test_exposures(config));
+
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().code, ErrorCode::not_found);
+  EXPECT_THAT(second.error().message, HasSubstr("busy"));
+}
+
+TEST(EmulatedCamera, RefusesAnInterfaceThatDoesNotExist) {
+  EmulatedGigeCameraConfig config;
+  config.interface_address = "10.255.255.1";
+
+  const auto camera = EmulatedGigeCamera::start(config, test_exposures(config));
+
+  ASSERT_FALSE(camera);
+  EXPECT_EQ(camera.error().code, ErrorCode::not_found);
+}
+
+TEST(EmulatedCamera, CountsExposuresOfTheWrongSizeInsteadOfSendingThem) {
+  const EmulatedGigeCameraConfig config;
+  const auto camera = EmulatedGigeCamera::start(config, [](std::uint64_t) { return cv::Mat1w(2, 2, ushort{9}); });
+  ASSERT_TRUE(camera) << camera.error().message;
+  const auto source = open_camera();
+  ASSERT_TRUE(source && source->start());
+
+  const auto frame = source->next(patience);
+
+  ASSERT_TRUE(frame) << frame.error().message;
+  EXPECT_EQ(cv::countNonZero(frame->counts), 0);
+  EXPECT_GE((*camera)->failed_exposures(), 1U);
+}
+
+struct FormatCase {
+  int bits;
+  std::string wanted;
+  std::string chosen;
+  int significant_bits;
+};
+
+class GigePixelFormat : public testing::TestWithParam<FormatCase> {};
+
+TEST_P(GigePixelFormat, CarriesEveryBit) {
+  const auto& [bits, wanted, chosen, significant_bits] = GetParam();
+  EmulatedGigeCameraConfig config;
+  config.significant_bits = bits;
+  const auto camera = start_camera(config);
+  AravisOptions options;
+  options.pixel_format = wanted;
+  const auto source = open_camera(options);
+  ASSERT_TRUE(source && source->start());
+
+  const auto frame = source->next(patience);
+
+  ASSERT_TRUE(frame) << frame.error().message;
+  EXPECT_EQ(source->info().pixel_format, chosen);
+  EXPECT_EQ(source->info().significant_bits, significant_bits);
+  EXPECT_EQ(frame->significant_bits, significant_bits);
+  cv::Mat1w expected = test_picture(exposure_index(*frame, 50), 320, 240, bits);
+  for (auto& count : expected) count = std::min<ushort>(count, static_cast<ushort>((1 << significant_bits) - 1));
+  EXPECT_TRUE(same_pixels(frame->counts, expected));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, GigePixelFormat,
+                         testing::Values(FormatCase{14, "", "Mono14", 14}, FormatCase{16, "", "Mono16", 16},
+                                         FormatCase{14, "Mono16", "Mono16", 14},
+                                         FormatCase{16, "Mono14", "Mono14", 14}),
+                         [](const auto& test_case) {
+                           return "Sensor" + std::to_string(test_case.param.bits) + "BitAsked" +
+                                  (test_case.param.wanted.empty() ? "Nothing" : test_case.param.wanted);
+                         });
+
+TEST(GigePixels, RefusesAPixelFormatThatTheCameraDoesNotHave) {
+  const auto camera = start_camera({});
+  AravisOptions options;
+  options.pixel_format = "Mono12";
+
+  const auto source = aravis_backend(options)->open("gige:127.0.0.1");
+
+  ASSERT_FALSE(source);
+  EXPECT_EQ(source.error().code, ErrorCode::not_found);
+  EXPECT_THAT(source.error().message, HasSubstr("Mono14, Mono16"));
+}
+
+TEST(GigePixels, TwoHundredConsecutiveFramesEqualTheExposuresByteForByteAcrossTheWrapOfTheFrameId) {
+  EmulatedGigeCameraConfig config;
+  config.frame_rate_hz = 100;
+  const auto camera = start_camera(config);
+  const auto source = open_camera();
+  ASSERT_TRUE(source && source->start());
+
+  // The first id is 65400, so frame 136 is the first after the wrap.
+  for (std::uint64_t k = 0; k < 200; ++k) {
+    const auto frame = source->next(patience);
+
+    ASSERT_TRUE(frame) << frame.error().message;
+    ASSERT_EQ(frame->status, FrameStatus::complete);
+    ASSERT_EQ(frame->sequence, k);
+    ASSERT_EQ(exposure_index(*frame, 100), k);
+    ASSERT_TRUE(same_pixels(frame->counts, test_picture(k, 320, 240, 14))) << "frame " << k;
+  }
+}
+
+TEST(GigePixels, AHundredFramesFromACameraInAnotherProcessEqualTheExposuresByteForByte) {
+  const CameraProcess camera(100);
+  ASSERT_TRUE(camera.started());
+  const auto source = open_camera();
+  ASSERT_TRUE(source && source->start());
+
+  for (std::uint64_t k = 0; k < 100; ++k) {
+    const auto frame = source->next(patience);
+
+    ASSERT_TRUE(frame) << frame.error().message;
+    ASSERT_EQ(frame->sequence, k);
+    ASSERT_TRUE(same_pixels(frame->counts, test_picture(exposure_index(*frame, 100), 320, 240, 14))) << "frame " << k;
+  }
+}
+
+TEST(GigePixels, AHundredFramesOfASimulatedSensorEqualItsExposuresByteForByte) {
+  SensorSpec spec;
+  spec.width = 160;
+  spec.height = 120;
+  const SensorModel sensor(spec, full_plan(spec, {}, {}), Accuracy::draft(), 7);
+  PlateScene scene;
+  scene.plate.triangles.push_back({.name = "one", .x_mm = 0, .y_mm = 0, .size_mm = 20, .apex = Apex::up});
+  scene.delta_t_k = 2;
+  EmulatedGigeCameraConfig config;
+  config.width = spec.width;
+  config.height = spec.height;
+  config.significant_bits = spec.bits;
+  config.kelvin_per_count = spec.kelvin_per_count;
+  config.offset_k = spec.offset_k;
+  const auto camera =
+      EmulatedGigeCamera::start(config, [&](std::uint64_t index) { return sensor.expose(scene, index); });
+  ASSERT_TRUE(camera) << camera.error().message;
+  const auto source = open_camera();
+  ASSERT_TRUE(source && source->start());
+
+  for (std::uint64_t k = 0; k < 100; ++k) {
+    const auto frame = source->next(patience);
+
+    ASSERT_TRUE(frame) << frame.error().message;
+    ASSERT_EQ(frame->sequence, k);
+    ASSERT_TRUE(same_pixels(frame->counts, sensor.expose(scene, k))) << "frame " << k;
+  }
+  EXPECT_DOUBLE_EQ(source->info().scale.kelvin(5000).value(), spec.offset_k + 5000 * spec.kelvin_per_count);
+}
+
+TEST(GigePixels, ServesGeometriesThatDoNotFillThePacketsEvenly) {
+  EmulatedGigeCameraConfig config;
+  config.width = 161;
+  config.height = 123;
+  const auto camera = start_camera(config);
+  const auto source = open_camera();
+  ASSERT_TRUE(source && source->start());
+
+  const auto frame = source->next(patience);
+
+  ASSERT_TRUE(frame) << frame.error().message;
+  EXPECT_EQ(frame->status, FrameStatus::complete);
+  EXPECT_TRUE(same_pixels(frame->counts, test_picture(exposure_index(*frame, 50), 161, 123, 14)));
+}
+
+TEST(GigePixels, AreUnswappedWhenTheCameraSendsTheHighByteFirst) {
+  const auto camera = start_camera({});
+  const auto source = open_camera();
+  ASSERT_TRUE(source && source->set("GevSCPSBigEndian", "true"));
+  ASSERT_TRUE(source->start());
+
+  const auto frame = source->next(patience);
+
+  ASSERT_TRUE(frame) << frame.error().message;
+  EXPECT_EQ(source->info().settings.at("GevSCPSBigEndian"), "true");
+  EXPECT_TRUE(same_pixels(frame->counts, test_picture(exposure_index(*frame, 50), 320, 240, 14)));
+}
+
+TEST(GigePixels, ShowTheNoiseReductionOnlyWhenItIsSwitchedOnOnPurpose) {
+  const auto camera = start_camera({});
+  const auto source = open_camera();
+  ASSERT_TRUE(source);
+  ASSERT_EQ(source->info().settings.at("NoiseReduction"), "Off");
+  ASSERT_TRUE(source->set("NoiseReduction", "On"));
+  ASSERT_TRUE(source->start());
+
+  const auto first = source->next(patience);
+  const auto second = source->next(patience);
+
+  ASSERT_TRUE(first && second);
+  const auto a = test_picture(0, 320, 240, 14);
+  const auto b = test_picture(1, 320, 240, 14);
+  EXPECT_EQ(second->counts(0, 0), (a(0, 0) + b(0, 0) + 1) / 2);
+  EXPECT_FALSE(same_pixels(second->counts, b));
+}
+
+TEST(GigeScale, IsReadBackFromTheCameraWithItsOffset) {
+  EmulatedGigeCameraConfig config;
+  config.kelvin_per_count = 0.02;
+  config.offset_k = 250;
+  const auto camera = start_camera(config);
+  const auto source = open_camera();
+  ASSERT_TRUE(source);
+
+  const auto kelvin = source->info().scale.kelvin(2500);
+
+  ASSERT_TRUE(kelvin);
+  EXPECT_DOUBLE_EQ(*kelvin, 300);
+}
+
+TEST(GigeScale, FollowsTheFormatSoThatATemperatureReadsTheSameWithinItsStep) {
+  EmulatedGigeCameraConfig config;
+  config.significant_bits = 16;
+  const auto camera =
+      EmulatedGigeCamera::start(config, [](std::uint64_t) { return cv::Mat1w(240, 320, ushort{30'012}); });
+  ASSERT_TRUE(camera) << camera.error().message;
+  const auto source = open_camera();
+  ASSERT_TRUE(source);
+  // 30012 counts of 0.01 K are 300.12 K. Half a step: 5 mK, 50 mK; the radiometric formula has 51 counts per kelvin
+  // there (dS/dT = R B e^(B/T) / (T^2 (e^(B/T) - F)^2)), half a step is 10 mK.
+  const std::vector<std::pair<std::string, double>> half_steps{
+      {"TemperatureLinear10mK", 0.005}, {"TemperatureLinear100mK", 0.05}, {"Radiometric", 0.0101}};
+
+  for (const auto& [format, half_step] : half_steps) {
+    ASSERT_TRUE(source->set("IRFormat", format));
+    ASSERT_TRUE(source->start());
+    const auto frame = source->next(patience);
+    source->stop();
+
+    ASSERT_TRUE(frame) << frame.error().message;
+    const auto kelvin = frame->scale->kelvin(frame->counts(120, 160));
+    ASSERT_TRUE(kelvin) << format;
+    EXPECT_NEAR(*kelvin, 300.12, half_step * 1.0001) << format;
+  }
+}
+
+TEST(GigeFeatures, AreReadAndWrittenAsTextWhateverTheirType) {
+  const auto camera = start_camera({});
+  const auto source = open_camera();
+  ASSERT_TRUE(source);
+
+  ASSERT_TRUE(source->set("NUCIntervalFrames", "1234"));
+  ASSERT_TRUE(source->set("AcquisitionFrameRate", "25"));
+  ASSERT_TRUE(source->set("NUCMode", "Automatic"));
+  ASSERT_TRUE(source->set("GevSCPSBigEndian", "true"));
+  camera->set_device_temperature_c(-12.25);
+
+  EXPECT_EQ(source->get("NUCIntervalFrames").value(), "1234");
+  EXPECT_EQ(source->get("AcquisitionFrameRate").value(), "25");
+  EXPECT_EQ(source->get("NUCMode").value(), "Automatic");
+  EXPECT_EQ(source->get("GevSCPSBigEndian").value(), "true");
+  EXPECT_EQ(source->get("DeviceSerialNumber").value(), "TB0001");
+  EXPECT_EQ(source->get("DeviceTemperature").value(), "-12.25");
+  EXPECT_EQ(source->info().frame_rate_hz, 25);
+  EXPECT_EQ(source->info().settings.at("NUCMode"), "Automatic");
+}
+
+TEST(GigeFeatures, RefuseWhatTheCameraWouldNotUnderstandAndSayWhatItWould) {
+  const auto camera = start_camera({});
+  const auto source = open_camera();
+  ASSERT_TRUE(source);
+  const std::vector<std::tuple<std::string, std::string, std::string>> refused{
+      {"NoSuchFeature", "1", "no feature"},          {"NUCIntervalFrames", "0", "1 ... 1000000"},
+      {"NUCIntervalFrames", "many", "whole number"}, {"AcquisitionFrameRate", "5000", "0.1 ... 1000"},
+      {"NUCMode", "Sometimes", "Manual, Automatic"}, {"GevSCPSBigEndian", "perhaps", "true or false"},
+      {"DeviceSerialNumber", "X", "read-only"},      {"Width", "100", "read-only"}};
+
+  for (const auto& [feature, value, reason] : refused) {
+    const auto done = source->set(feature, value);
+
+    ASSERT_FALSE(done) << feature;
+    EXPECT_EQ(done.error().code, ErrorCode::invalid_input) << feature;
+    EXPECT_THAT(done.error().message, HasSubstr(reason));
+  }
+  EXPECT_EQ(source->get("NUCAction").error().code, ErrorCode::invalid_input);
+}
+
+TEST(GigeNonuniformity, TheCommandReachesTheCameraAlsoWhileItStands) {
+  std::promise<void> corrected;
+  const EmulatedGigeCameraConfig config;
+  const auto camera =
+      EmulatedGigeCamera::start(config, test_exposures(config), [&corrected] { corrected.set_value(); });
+  ASSERT_TRUE(camera) << camera.error().message;
+  const auto source = open_camera();
+  ASSERT_TRUE(source);
+
+  const auto commanded = source->correct_nonuniformity();
+
+  ASSERT_TRUE(commanded) << commanded.error().message;
+  ASSERT_EQ(corrected.get_future().wait_for(patience), std::future_status::ready);
+  EXPECT_EQ((*camera)->nonuniformity_corrections(), 1U);
+}
+
+TEST(GigeNonuniformity, FreezesThePictureForTheStatedFramesAndThenContinuesInStep) {
+  EmulatedGigeCameraConfig config;
+  config.nuc_freeze_frames = 5;
+  const auto camera = start_camera(config);
+  const auto source = open_camera();
+  ASSERT_TRUE(source && source->start());
+  const auto first = source->next(patience);
+  ASSERT_TRUE(first) << first.error().message;
+  ASSERT_TRUE(source->correct_nonuniformity());
+
+  int frozen = 0;
+  bool thawed = false;
+  cv::Mat1w previous = first->counts;
+  for (int k = 0; k < 100 && !thawed; ++k) {
+    const auto frame = source->next(patience);
+    ASSERT_TRUE(frame) << frame.error().message;
+    const bool repeated = same_pixels(frame->counts, previous);
+    if (repeated) ++frozen;
+    thawed = frozen > 0 && !repeated;
+    if (thawed) {
+      EXPECT_TRUE(same_pixels(frame->counts, test_picture(exposure_index(*frame, 50), 320, 240, 14)));
+    }
+    previous = frame->counts;
+  }
+
+  EXPECT_TRUE(thawed);
+  EXPECT_EQ(frozen, 5);
+}
+
+TEST(GigeNonuniformity, HappensByItselfInAutomaticMode) {
+  EmulatedGigeCameraConfig config;
+  config.frame_rate_hz = 100;
+  const auto camera = start_camera(config);
+  const auto source = open_camera();
+  ASSERT_TRUE(source && source->set("NUCMode", "Automatic") && source->set("NUCIntervalFrames", "10"));
+  ASSERT_TRUE(source->start());
+
+  for (int k = 0; k < 35; ++k) ASSERT_TRUE(source->next(patience));
+
+  // Before exposures 10, 20 and 30; the camera may be ahead of the client.
+  EXPECT_GE(camera->nonuniformity_corrections(), 3U);
+}
+
+TEST(GigeLoss, LostExposuresLeaveAGapOfExactlyThatManyFrames) {
+  const auto camera = start_camera({});
+  const auto source = open_camera();
+  ASSERT_TRUE(source && source->start());
+  auto last = source->next(patience);
+  ASSERT_TRUE(last) << last.error().message;
+  camera->lose_exposures(7);
+
+  std::uint64_t gap = 0;
+  for (int k = 0; k < 50 && gap == 0; ++k) {
+    const auto frame = source->next(patience);
+    ASSERT_TRUE(frame) << frame.error().message;
+    gap = frame->sequence - last->sequence - 1;
+    EXPECT_EQ(frame->sequence, exposure_index(*frame, 50));
+    last = frame;
+  }
+
+  EXPECT_EQ(gap, 7U);
+}
+
+TEST(GigeLoss, FramesWithMissingPacketsAreMarkedAndCompleteOnesAreTrue) {
+  EmulatedGigeCameraConfig config;
+  config.frame_rate_hz = 100;
+  const auto camera = start_camera(config);
+  AravisOptions options;
+  options.packet_size_bytes = 1400;
+  const auto source = open_camera(options);
+  ASSERT_TRUE(source && source->start() && source->next(patience));
+  camera->set_packet_loss(0.005, 7);
+
+  // 115 packets per frame, so about 1 - 0.995^115 = 44 % of the frames have a hole.
+  int complete = 0;
+  int incomplete = 0;
+  std::uint64_t last_sequence = 0;
+  for (int k = 0; k < 100; ++k) {
+    const auto frame = source->next(patience);
+    ASSERT_TRUE(frame) << frame.error().message;
+    ASSERT_GT(frame->sequence, last_sequence);
+    last_sequence = frame->sequence;
+    if (frame->status != FrameStatus::complete) {
+      ++incomplete;
+      continue;
+    }
+    ++complete;
+    const auto index = exposure_index(*frame, 100);
+    ASSERT_EQ(frame->sequence, index);
+    ASSERT_TRUE(same_pixels(frame->counts, test_picture(index, 320, 240, 14)));
+  }
+
+  // Binomial, n = 100, p = 0.44: outside 10 ... 80 with probability below 1e-11.
+  EXPECT_GT(incomplete, 10);
+  EXPECT_GT(complete, 20);
+}
+
+TEST(GigeDisconnection, IsReportedWhenTheProcessOfTheCameraIsKilledAndAFreshOneCanBeOpened) {
+  auto camera = std::make_unique<CameraProcess>(50);
+  ASSERT_TRUE(camera->started());
+  auto source = open_camera();
+  ASSERT_TRUE(source && source->start());
+  for (int k = 0; k < 10; ++k) ASSERT_TRUE(source->next(patience));
+  camera->kill();
+
+  // Frames that were on their way, then silence: five timeouts of 0.5 s pass before the 3 s of silence do, and a sixth
+  // with a slow answer; Aravis's own heartbeat notices after 5 s.
+  Error error;
+  int timeouts = 0;
+  for (int k = 0; k < 200 && error.code != ErrorCode::disconnected; ++k) {
+    const auto frame = source->next(500ms);
+    if (frame) continue;
+    error = frame.error();
+    if (error.code == ErrorCode::timeout) ++timeouts;
+  }
+
+  EXPECT_EQ(error.code, ErrorCode::disconnected);
+  EXPECT_LE(timeouts, 12);
+  EXPECT_EQ(source->start().error().code, ErrorCode::disconnected);
+  EXPECT_EQ(source->get("Width").error().code, ErrorCode::disconnected);
+  EXPECT_EQ(source->next(1ms).error().code, ErrorCode::disconnected);
+  source.reset();
+  camera = std::make_unique<CameraProcess>(50);
+  ASSERT_TRUE(camera->started());
+  source = open_camera();
+  ASSERT_TRUE(source && source->start());
+  EXPECT_TRUE(source->next(patience));
+}
+
+TEST(GigeDisconnection, IsReportedToAReaderThatWaitsPatiently) {
+  auto camera = start_camera({});
+  const auto source = open_camera();
+  ASSERT_TRUE(source && source->start() && source->next(patience));
+  camera.reset();
+
+  Error error;
+  for (int k = 0; k < 200 && error.code != ErrorCode::disconnected; ++k) {
+    const auto frame = source->next(patience);
+    if (!frame) error = frame.error();
+    ASSERT_NE(error.code, ErrorCode::timeout) << "the heartbeat has to end the wait";
+  }
+
+  EXPECT_EQ(error.code, ErrorCode::disconnected);
+}
+
+TEST(GigeDisconnection, ACameraThatIsOnlySlowIsNotTakenForLost) {
+  EmulatedGigeCameraConfig config;
+  config.frame_rate_hz = 0.2;
+  const auto camera = start_camera(config);
+  const auto source = open_camera();
+  ASSERT_TRUE(source && source->start());
+
+  // The camera exposes at whole multiples of 5 s of the wall clock: up to two periods until the second frame.
+  int frames = 0;
+  for (int k = 0; k < 60 && frames < 2; ++k) {
+    const auto frame = source->next(500ms);
+    if (frame) ++frames;
+    if (!frame) {
+      ASSERT_EQ(frame.error().code, ErrorCode::timeout) << frame.error().message;
+    }
+  }
+
+  EXPECT_EQ(frames, 2);
+}
+
+TEST(GigeSocket, TellsTheGrantedBufferAndWarnsWhenItIsLessThanAsked) {
+  const auto camera = start_camera({});
+  AravisOptions options;
+  options.min_socket_buffer_bytes = 512U << 20U;
+  const auto source = open_camera(options);
+  ASSERT_TRUE(source);
+
+  const auto granted = std::stoull(source->info().settings.at("SocketBufferBytes"));
+
+  EXPECT_GT(granted, 0U);
+  EXPECT_EQ(source->info().warnings.empty(), granted >= options.min_socket_buffer_bytes);
+  for (const auto& warning : source->info().warnings) EXPECT_THAT(warning, HasSubstr("net.core.rmem_max"));
+}
+
+class GigeRealRecording : public testing::TestWithParam<const char*> {};
+
+TEST_P(GigeRealRecording, ArrivesByteForByte) {
+  const auto path = std::filesystem::path(TODBENCH_SOURCE_DIR) / "tests/golden/real" / GetParam();
+  const auto recording =
+      path.extension() == ".seq" ? open_flir_seq(path) : open_raw_recording(path, {.width = 160, .height = 120});
+  ASSERT_TRUE(recording) << recording.error().message;
+  std::vector<cv::Mat1w> pictures;
+  for (std::uint64_t k = 0; k < recording->frame_count; ++k) pictures.push_back(recording->read(k).value().counts);
+  EmulatedGigeCameraConfig config;
+  config.width = recording->info.width;
+  config.height = recording->info.height;
+  config.significant_bits = 16;
+  config.frame_rate_hz = 100;
+  const auto camera =
+      EmulatedGigeCamera::start(config, [&pictures](std::uint64_t index) { return pictures[index % pictures.size()]; });
+  ASSERT_TRUE(camera) << camera.error().message;
+  const auto source = open_camera();
+  ASSERT_TRUE(source && source->start());
+
+  for (std::size_t k = 0; k < pictures.size(); ++k) {
+    const auto frame = source->next(patience);
+
+    ASSERT_TRUE(frame) << frame.error().message;
+    ASSERT_EQ(frame->status, FrameStatus::complete);
+    ASSERT_EQ(exposure_index(*frame, 100), k);
+    ASSERT_TRUE(same_pixels(frame->counts, pictures[k])) << k;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, GigeRealRecording,
+                         testing::Values("lepton_a_160x120_u16le.raw", "lepton_b_160x120_u16le.raw", "flir_sc660.seq"),
+                         [](const auto& test_case) {
+                           std::string name = test_case.param;
+                           return name.substr(0, name.find("_1")).substr(0, name.find('.'));
+                         });
+
+}  // namespace
+}  // namespace todbench
