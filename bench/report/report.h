@@ -25,7 +25,7 @@ struct LimitLine {
   std::string quantity;  ///< "Acuity at 16.9 K"
   std::string unit;      ///< "1/mrad"; empty for a pure number
   Side side = Side::at_least;
-  double limit = 0;
+  std::optional<double> limit;  ///< nothing: the demand is no number, such as equivalence or an identified threshold
   std::optional<double> value;
   Interval ci95;
   LimitVerdict verdict = LimitVerdict::inconclusive;

@@ -45,10 +45,10 @@ std::string simulated_name(const ReportData& data) {
 std::vector<AcuityLimit> acuity_limits(const ReportData& data) {
   std::vector<AcuityLimit> limits;
   for (const LimitLine& line : data.limits) {
-    if (!line.acuity_at_delta_t_k || line.side != LimitLine::Side::at_least) continue;
+    if (!line.limit || !line.acuity_at_delta_t_k || line.side != LimitLine::Side::at_least) continue;
     const TodPoint* point = data.measured ? point_at(*data.measured, *line.acuity_at_delta_t_k) : nullptr;
     const bool seen = point != nullptr && point->delta_t_k != 0;
-    limits.push_back({seen ? point->delta_t_k : *line.acuity_at_delta_t_k, line.limit});
+    limits.push_back({seen ? point->delta_t_k : *line.acuity_at_delta_t_k, *line.limit});
   }
   return limits;
 }
@@ -129,9 +129,10 @@ std::string form_in_words(const ReportData& data) {
   return form + ", " + lapse + ", fitted by maximum likelihood; S₇₅ is the size at which ψ = 0.75 exactly.";
 }
 
-std::string limit_text(const LimitLine& line) {
+Markup limit_cell(const LimitLine& line) {
+  if (!line.limit || !std::isfinite(*line.limit)) return missing("no number");
   const std::string sign = line.side == LimitLine::Side::at_least ? "≥ " : "≤ ";
-  return sign + stated(line.limit);
+  return unbroken(sign + stated(*line.limit));
 }
 
 Markup answers_table(const std::string& caption, const TodCurve& curve) {
@@ -191,8 +192,8 @@ Markup limits_section(const ReportData& data) {
   MarkupTable rows;
   rows.header = {"Quantity", "Unit", "Limit", "Result [95 %]", "Verdict", "Reason"};
   for (const LimitLine& line : data.limits) {
-    rows.rows.push_back({cell(line.quantity), line.unit.empty() ? cell("1") : cell(line.unit),
-                         unbroken(limit_text(line)), interval_cell(line.value, line.ci95, "no value"),
+    rows.rows.push_back({cell(line.quantity), line.unit.empty() ? cell("1") : cell(line.unit), limit_cell(line),
+                         interval_cell(line.value, line.ci95, "no value"),
                          badge(in_words(line.verdict), mood_of(line.verdict)),
                          text_or_missing(line.reason, "none given")});
   }

@@ -338,6 +338,20 @@ TEST(Report, TheSameValuesGiveTheSameBytes) {
   EXPECT_EQ(render_report(sample_report()), render_report(sample_report()));
 }
 
+TEST(Report, ADemandThatIsNoNumberIsShownWithItsReason) {
+  ReportData data = sample_report();
+  LimitLine demand;
+  demand.quantity = "Equivalent to the simulated sensor";
+  demand.reason = "The 90 % interval leaves the margin.";
+  data.limits = {demand};
+
+  const std::string page = render_report(data);
+
+  EXPECT_TRUE(contains(page, "(no number)"));
+  EXPECT_TRUE(contains(page, "The 90 % interval leaves the margin."));
+  EXPECT_FALSE(contains(page, "limit (least acuity)"));
+}
+
 TEST(ReportVerdict, IsTheWorstOfItsLimits) {
   ReportData data = sample_report();
   const std::vector<LimitLine> limits = data.limits;  // pass, inconclusive, fail
