@@ -9,7 +9,7 @@ namespace {
 
 constexpr double first_u = -30;  // below it z < 2e-13
 constexpr double last_u = 5.5;   // above it z > 60: exp(-z) is below rounding
-constexpr double step_u = 1.0 / 8;
+constexpr double step_u = 1.0 / 16;
 
 // Quintic through values, first and second derivatives at both ends of a cell.
 std::array<double, 6> hermite(const LogTerm& a, const LogTerm& b) {

@@ -8,8 +8,8 @@
 
 namespace todbench {
 
-/// ln psi and ln(1 - psi) of one link as piecewise quintics in u (Hermite, step 1/8): good to 1e-8 relative, several
-/// times faster than the functions themselves. For scans and integrals, never for a reported likelihood.
+/// ln psi and ln(1 - psi) of one link as piecewise quintics in u (Hermite, step 1/16): good to 1e-7, several times
+/// faster than the functions themselves. For scans and integrals, never for a reported likelihood.
 class LinkTable {
  public:
   explicit LinkTable(const Link& link);
