@@ -12,7 +12,7 @@ struct Accuracy {
   double acuity_tolerance_percent = 1;  ///< of the 75 % acuity, all numerical causes together
   double wrap_tolerance = 1.5e-5;       ///< of the contrast: signal that periodicity folds back into a pixel
   double band_tolerance = 1e-4;         ///< of the contrast: signal beyond the highest computed frequency
-  int wavelengths = 4;                  ///< Gauss-Legendre nodes over the band
+  int wavelengths = 16;                 ///< Gauss-Legendre nodes over the band
   int phases_per_axis = 8;              ///< sampling phases averaged by the direct estimate, per pitch and axis
   int noise_draws = 600;                ///< draws of the direct estimate per size, shared by phases and contrasts
   bool operator==(const Accuracy&) const = default;

@@ -24,7 +24,7 @@ struct DirectEstimateOptions {
   int samples_per_pitch = 1;  ///< 2: 2x2 microscan
   Accuracy accuracy;
   std::uint64_t seed = 1;
-  std::stop_token stop;  ///< ends with `interrupted`, within a few hundredths of a second
+  std::stop_token stop{};  ///< ends with `interrupted`, within a few hundredths of a second
 };
 
 /// One point per contrast (kelvin, > 0). Noise is drawn once per size and shared by phases and contrasts.

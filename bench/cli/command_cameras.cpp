@@ -1,0 +1,89 @@
+// todbench devices, todbench emulate
+#include <memory>
+
+#include "bench/cli/commands.h"
+#include "bench/cli/demonstration.h"
+#include "bench/run/devices.h"
+
+namespace todbench {
+namespace {
+
+int run_devices(Console& console) {
+  const auto listing = camera_registry().list();
+  for (const auto& warning : listing.warnings) console.note(warning);
+  if (console.json()) {
+    Json cameras = Json::array();
+    for (const auto& c : listing.cameras) {
+      cameras.push_back({{"id", c.id},
+                         {"vendor", c.vendor},
+                         {"model", c.model},
+                         {"serial", c.serial},
+                         {"transport", c.transport},
+                         {"address", c.address}});
+    }
+    console.object({{"cameras", cameras}, {"warnings", listing.warnings}});
+    return 0;
+  }
+  std::vector<TableRow> rows;
+  for (const auto& c : listing.cameras) rows.push_back({c.id, c.vendor, c.model, c.serial, c.transport, c.address});
+  console.table({"id", "vendor", "model", "serial", "transport", "address"}, rows);
+  return 0;
+}
+
+int run_emulate(Console& console, const EmulationArguments& arguments, StopSignals& stop) {
+#ifdef TODBENCH_WITH_ARAVIS
+  auto laboratory = start_laboratory(arguments);
+  if (!laboratory) return report_error(console, laboratory.error());
+  const Laboratory& lab = **laboratory;
+  if (console.json()) {
+    console.object({{"camera", {{"id", lab.camera_id()}, {"address", lab.camera_address()}}},
+                    {"black_body", lab.black_body_endpoint()},
+                    {"stage", lab.stage_endpoint()}});
+  } else {
+    console.table(
+        {"device", "address", "for the plan"},
+        {{"camera", lab.camera_address(),
+          "[camera] id = \"" + lab.camera_id() + "\" or \"gige:" + lab.camera_address() + "\""},
+         {"black body", lab.black_body_endpoint(), "[target] black_body = \"" + lab.black_body_endpoint() + "\""},
+         {"plate stage", lab.stage_endpoint(), "[target] stage = \"" + lab.stage_endpoint() + "\""}});
+    console.text("running until Ctrl-C");
+  }
+  stop.wait();
+  return 130;
+#else
+  (void)arguments;
+  (void)stop;
+  return report_error(console,
+                      {ErrorCode::not_found, "this build has no camera libraries, so nothing can be emulated"});
+#endif
+}
+
+}  // namespace
+
+void add_devices_command(CLI::App& app, Program& program) {
+  auto* command = app.add_subcommand("devices", "the cameras that every back end sees");
+  finish_command(*command, program, [](Console& console) { return run_devices(console); });
+}
+
+void add_emulate_command(CLI::App& app, Program& program) {
+  auto* command =
+      app.add_subcommand("emulate", "runs the emulated laboratory until Ctrl-C: GigE camera, black body, plate stage");
+  auto a = std::make_shared<EmulationArguments>();
+  command->add_option("--sensor", a->sensor, "name or file of the sensor inside the camera")->capture_default_str();
+  command->add_option("--interface", a->interface_address, "IPv4 address to serve on")->capture_default_str();
+  command->add_option("--serial", a->serial, "serial number of the camera")->capture_default_str();
+  command->add_option("--plates", a->plates, "names or files, separated by commas")
+      ->delimiter(',')
+      ->capture_default_str();
+  command->add_option("--distance-m", a->distance_m, "from camera to plate")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str();
+  command->add_option("--black-body-port", a->black_body_port, "0: the system chooses")->capture_default_str();
+  command->add_option("--stage-port", a->stage_port, "0: the system chooses")->capture_default_str();
+  finish_command(*command, program, [a, &program](Console& console) {
+    a->seed = program.common.seed;
+    return run_emulate(console, *a, *program.stop);
+  });
+}
+
+}  // namespace todbench

@@ -1,0 +1,75 @@
+// todbench fit
+#include <memory>
+
+#include "bench/cli/commands.h"
+#include "bench/session/text.h"
+#include "bench/session/trials_csv.h"
+#include "bench/session/verdict.h"
+
+namespace todbench {
+namespace {
+
+struct FitArguments {
+  std::string file, lapse = "0", form = "size";
+};
+
+Result<FitOptions> options_of(const FitArguments& arguments) {
+  FitOptions options;
+  options.form = arguments.form == "acuity" ? PsychometricForm::acuity : PsychometricForm::size;
+  if (arguments.lapse == "free") {
+    options.fixed_lapse.reset();
+    return options;
+  }
+  const auto lapse = parse_number(arguments.lapse);
+  if (!lapse || *lapse < 0 || *lapse > 0.1) {
+    return fail(ErrorCode::invalid_input, "--lapse " + arguments.lapse + ": expected a number from 0 to 0.1, or free");
+  }
+  options.fixed_lapse = *lapse;
+  return options;
+}
+
+void print(const Console& console, const PsychometricFit& fit) {
+  std::vector<TableRow> rows{
+      {"verdict", std::string(to_string(fit.verdict)), ""},
+      {"threshold (75 % correct)", fixed(fit.threshold, 6), "95 %: " + range(fit.ci95, 6)},
+      {"slope", fixed(fit.slope, 4), ""},
+      {"lapse", fixed(fit.lapse, 4), ""},
+      {"log likelihood", fixed(fit.log_likelihood, 4), ""},
+      {"deviance", fixed(fit.deviance, 4), std::to_string(fit.degrees_of_freedom) + " degrees of freedom"}};
+  if (fit.posterior) {
+    rows.push_back({"posterior median", fixed(fit.posterior->median, 6),
+                    "95 %: " + range({fit.posterior->low, fit.posterior->high}, 6) +
+                        (fit.posterior->prior_bound ? " (bound by the prior)" : "")});
+  }
+  console.table({"quantity", "value", ""}, rows);
+}
+
+int run_fit(Console& console, const FitArguments& arguments) {
+  auto options = options_of(arguments);
+  if (!options) return report_error(console, options.error());
+  auto levels = read_levels(arguments.file);
+  if (!levels) return report_error(console, levels.error());
+  auto fit = fit_psychometric(*levels, *options);
+  if (!fit) return report_error(console, {fit.error().code, arguments.file + ": " + fit.error().message});
+  if (console.json()) {
+    console.object(fit_json(*fit));
+  } else {
+    print(console, *fit);
+  }
+  return exit_code(*fit);
+}
+
+}  // namespace
+
+void add_fit_command(CLI::App& app, Program& program) {
+  auto* command = app.add_subcommand("fit", "one psychometric fit of counts in a CSV file: size,correct,total");
+  auto arguments = std::make_shared<FitArguments>();
+  command->add_option("TRIALS.csv", arguments->file, "file with the columns size, correct, total")->required();
+  command->add_option("--lapse", arguments->lapse, "0 to 0.1, or free")->capture_default_str();
+  command->add_option("--form", arguments->form, "Weibull in size or in acuity")
+      ->check(CLI::IsMember({"size", "acuity"}))
+      ->capture_default_str();
+  finish_command(*command, program, [arguments](Console& console) { return run_fit(console, *arguments); });
+}
+
+}  // namespace todbench

@@ -1,0 +1,183 @@
+// todbench render, todbench mtf
+#include <cmath>
+#include <memory>
+#include <opencv2/imgcodecs.hpp>
+
+#include "bench/cli/commands.h"
+#include "bench/session/descriptions.h"
+#include "sim_devices/sensor/image_chain.h"
+#include "sim_devices/sensor/transfer_functions.h"
+#include "tod/test_pattern.h"
+
+namespace todbench {
+namespace {
+
+struct RenderArguments {
+  std::string sensor, apex = "up", accuracy = "normal", noise = "off", tiff;
+  double size_pitch = 0, x_pitch = 0, y_pitch = 0, delta_t_k = 1;
+  int microscan = 0, window = 9;
+};
+
+struct MtfArguments {
+  std::string sensor;
+  std::vector<double> frequency_per_pitch;
+};
+
+Json rows_of(const cv::Mat1d& values) {
+  Json rows = Json::array();
+  for (int j = 0; j < values.rows; ++j) {
+    Json row = Json::array();
+    for (int i = 0; i < values.cols; ++i) row.push_back(json_number(values(j, i)));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+/// A window of the degraded triangle for an infinite plane, at a contrast of 1 K, with a bound on its numerical error.
+ImageChain::InfinitePlane degraded(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy,
+                                   const RenderArguments& a) {
+  const double step = 1.0 / spec.microscan;
+  const double first = -step * (a.window / 2);
+  const Polygon shape = triangle(a.size_pitch, *apex_from(a.apex), {a.x_pitch, a.y_pitch});
+  auto image = ImageChain(spec, plan, accuracy).infinite_plane(shape, {first, first}, step, {a.window, a.window});
+  // The band's wavelengths: what twice as many nodes change.
+  Accuracy finer = accuracy;
+  finer.wavelengths = std::min(64, 2 * accuracy.wavelengths);
+  const auto check = ImageChain(spec, plan, finer).infinite_plane(shape, {first, first}, step, {a.window, a.window});
+  image.max_error_estimate += cv::norm(image.values, check.values, cv::NORM_INF);
+  return image;
+}
+
+void add_noise(cv::Mat1d& values, const SensorSpec& spec, std::uint64_t seed) {
+  std::vector<float> temporal(values.total());
+  RandomStream(seed, "render.temporal").fill_normal(temporal);
+  const int detectors = (values.cols + spec.microscan - 1) / spec.microscan;
+  std::vector<float> fixed_pattern(static_cast<std::size_t>(detectors) * static_cast<std::size_t>(detectors));
+  RandomStream(seed, "render.fixed").fill_normal(fixed_pattern);
+  for (int j = 0; j < values.rows; ++j) {
+    for (int i = 0; i < values.cols; ++i) {
+      double& value = values(j, i);
+      value += spec.netd_k * static_cast<double>(temporal[static_cast<std::size_t>(j * values.cols + i)]);
+      value += spec.fixed_pattern_k *
+               static_cast<double>(
+                   fixed_pattern[static_cast<std::size_t>(j / spec.microscan * detectors + i / spec.microscan)]);
+      value = std::nearbyint(value / spec.kelvin_per_count) * spec.kelvin_per_count;
+    }
+  }
+}
+
+Result<void> check(const RenderArguments& a) {
+  const auto refuse = [](const char* what) { return fail(ErrorCode::invalid_input, what); };
+  if (!(a.size_pitch >= 0.01 && a.size_pitch <= 500))
+    return refuse("--size-pitch: expected 0.01 to 500 detector pitches");
+  if (!(std::abs(a.x_pitch) <= 1000 && std::abs(a.y_pitch) <= 1000))
+    return refuse("--x-pitch, --y-pitch: expected -1000 to 1000");
+  if (a.window < 1 || a.window > 1024) return refuse("--window: expected 1 to 1024 samples");
+  if (!std::isfinite(a.delta_t_k)) return refuse("--delta-t-k: expected a number");
+  if (!apex_from(a.apex)) return refuse("--apex: expected up, right, down or left");
+  return {};
+}
+
+int run_render(Console& console, RenderArguments a, std::uint64_t seed) {
+  if (auto valid = check(a); !valid) return report_error(console, valid.error());
+  auto spec = load_sensor(a.sensor);
+  if (!spec) return report_error(console, spec.error());
+  if (a.microscan > 0) spec->microscan = a.microscan;
+  if (auto valid = validate(*spec); !valid) return report_error(console, valid.error());
+  auto accuracy = Accuracy::named(a.accuracy);
+  if (!accuracy) return report_error(console, accuracy.error());
+  auto image = degraded(*spec, full_plan(*spec, {}, {}), *accuracy, a);
+  image.values *= a.delta_t_k;
+  image.max_error_estimate *= std::abs(a.delta_t_k);
+  if (a.noise == "on") add_noise(image.values, *spec, seed);
+  if (!a.tiff.empty()) {
+    cv::Mat1f single;
+    image.values.convertTo(single, CV_32F);
+    if (!cv::imwrite(a.tiff, single)) return report_error(console, {ErrorCode::io, "cannot write " + a.tiff});
+  }
+  const double pitch_mrad = spec->ifov_mrad() / spec->microscan;
+  if (console.json()) {
+    console.object({{"values", rows_of(image.values)},
+                    {"pitch_mrad", pitch_mrad},
+                    {"max_error_estimate", json_number(image.max_error_estimate)}});
+    return 0;
+  }
+  for (int j = 0; j < image.values.rows; ++j) {
+    std::string line;
+    for (int i = 0; i < image.values.cols; ++i) {
+      char text[32];
+      std::snprintf(text, sizeof text, "%s%10.6f", i == 0 ? "" : " ", image.values(j, i));
+      line += text;
+    }
+    console.text(line);
+  }
+  char text[120];
+  std::snprintf(text, sizeof text, "kelvin of contrast; %.6f mrad between samples; numerical error below about %.1e K",
+                pitch_mrad, image.max_error_estimate);
+  console.text(text);
+  return 0;
+}
+
+int run_mtf(Console& console, const MtfArguments& a) {
+  auto spec = load_sensor(a.sensor);
+  if (!spec) return report_error(console, spec.error());
+  const SensorPlan plan = full_plan(*spec, {}, {});
+  const OpticsMtf optics(*spec, plan, 16);
+  Json frequency = Json::array(), per_mrad = Json::array(), optical = Json::array(), detector = Json::array(),
+       system = Json::array();
+  std::vector<TableRow> rows;
+  for (const double f : a.frequency_per_pitch) {
+    if (!std::isfinite(f) || f < 0)
+      return report_error(console, {ErrorCode::invalid_input, "--frequency-per-pitch: expected numbers from 0"});
+    const double o = optics(f);
+    const double d = detector_mtf(f, 0, spec->detector_pitch_ratio());
+    frequency.push_back(f);
+    per_mrad.push_back(f / spec->ifov_mrad());
+    optical.push_back(o);
+    detector.push_back(d);
+    system.push_back(o * d);
+    rows.push_back({fixed(f, 4), fixed(f / spec->ifov_mrad(), 4), fixed(o, 6), fixed(d, 6), fixed(o * d, 6)});
+  }
+  if (console.json()) {
+    console.object({{"frequency_per_pitch", frequency},
+                    {"frequency_per_mrad", per_mrad},
+                    {"optics", optical},
+                    {"detector", detector},
+                    {"system", system}});
+  } else {
+    console.table({"1/pitch", "1/mrad", "optics", "detector", "system"}, rows);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, Program& program) {
+  auto* command = app.add_subcommand("render", "the degraded image of one triangle");
+  auto a = std::make_shared<RenderArguments>();
+  command->add_option("--sensor", a->sensor, "name or file")->required();
+  command->add_option("--size-pitch", a->size_pitch, "square root of area, in detector pitches")->required();
+  command->add_option("--apex", a->apex, "up, right, down or left")->capture_default_str();
+  command->add_option("--x-pitch", a->x_pitch, "centroid from the middle sample, to the right");
+  command->add_option("--y-pitch", a->y_pitch, "centroid from the middle sample, downwards");
+  command->add_option("--delta-t-k", a->delta_t_k, "contrast")->capture_default_str();
+  command->add_option("--microscan", a->microscan, "samples per detector pitch and axis, in place of the sensor's");
+  command->add_option("--window", a->window, "samples on a side")->capture_default_str();
+  command->add_option("--accuracy", a->accuracy, "draft, normal or reference")->capture_default_str();
+  command->add_option("--noise", a->noise, "off or on")->check(CLI::IsMember({"off", "on"}))->capture_default_str();
+  command->add_option("--tiff", a->tiff, "also write a 32-bit floating-point TIFF, in kelvin");
+  finish_command(*command, program,
+                 [a, &program](Console& console) { return run_render(console, *a, program.common.seed); });
+}
+
+void add_mtf_command(CLI::App& app, Program& program) {
+  auto* command = app.add_subcommand("mtf", "transfer functions of a sensor along x");
+  auto a = std::make_shared<MtfArguments>();
+  command->add_option("--sensor", a->sensor, "name or file")->required();
+  command->add_option("--frequency-per-pitch", a->frequency_per_pitch, "cycles per detector pitch, separated by commas")
+      ->required()
+      ->delimiter(',');
+  finish_command(*command, program, [a](Console& console) { return run_mtf(console, *a); });
+}
+
+}  // namespace todbench

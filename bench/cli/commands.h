@@ -1,0 +1,45 @@
+// The subcommands. Each adds itself to the parser; when chosen it sets its exit code.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "bench/cli/console.h"
+#include "bench/cli/stop_signals.h"
+
+namespace todbench {
+
+/// What every subcommand takes.
+struct CommonOptions {
+  ConsoleOptions console;
+  std::uint64_t seed = 1;
+  bool seed_given = false;
+};
+
+/// Between the parser and the commands.
+struct Program {
+  CommonOptions common;
+  StopSignals* stop = nullptr;  ///< outlives the run
+  std::function<int()> chosen;  ///< set by the subcommand that was named
+};
+
+/// Adds --json, --quiet and --seed, and makes `action` what runs when the subcommand is chosen.
+void finish_command(CLI::App& command, Program& program, std::function<int(Console&)> action);
+
+/// Says what went wrong and returns the exit code for it.
+[[nodiscard]] int report_error(Console& console, const Error& error);
+
+void add_fit_command(CLI::App& app, Program& program);
+void add_render_command(CLI::App& app, Program& program);
+void add_mtf_command(CLI::App& app, Program& program);
+void add_devices_command(CLI::App& app, Program& program);
+void add_emulate_command(CLI::App& app, Program& program);
+void add_demo_command(CLI::App& app, Program& program);
+void add_measure_command(CLI::App& app, Program& program);
+void add_simulate_command(CLI::App& app, Program& program);
+void add_compare_command(CLI::App& app, Program& program);
+void add_report_command(CLI::App& app, Program& program);
+
+}  // namespace todbench

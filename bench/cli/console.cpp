@@ -1,0 +1,131 @@
+#include "bench/cli/console.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "bench/session/text.h"
+
+namespace todbench {
+namespace {
+
+/// Characters on screen of a UTF-8 text (no combining characters are used here).
+std::size_t width(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+std::string padded(std::string_view text, std::size_t columns, bool left) {
+  const std::string blanks(columns > width(text) ? columns - width(text) : 0, ' ');
+  return left ? std::string(text) + blanks : blanks + std::string(text);
+}
+
+std::string duration(double seconds) {
+  const int whole = static_cast<int>(std::lround(std::max(0.0, seconds)));
+  char text[32];
+  if (whole < 120) {
+    std::snprintf(text, sizeof text, "%d s", whole);
+  } else {
+    std::snprintf(text, sizeof text, "%d:%02d min", whole / 60, whole % 60);
+  }
+  return text;
+}
+
+}  // namespace
+
+Console::Console(ConsoleOptions options) : options_(options) {
+  terminal_ = isatty(STDERR_FILENO) == 1;
+  const char* no_colour = std::getenv("NO_COLOR");
+  colour_ = terminal_ && (no_colour == nullptr || *no_colour == '\0');
+}
+
+void Console::object(const Json& json) const {
+  std::fputs((to_line(json) + "\n").c_str(), stdout);
+  std::fflush(stdout);
+}
+
+void Console::text(std::string_view line) const {
+  if (options_.json) return;
+  std::fputs((std::string(line) + "\n").c_str(), stdout);
+  std::fflush(stdout);
+}
+
+void Console::table(const TableRow& header, const std::vector<TableRow>& rows) const {
+  std::vector<std::size_t> widths;
+  for (const auto& cell : header) widths.push_back(width(cell));
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width(row[i]));
+  }
+  const auto line = [&](const TableRow& row) {
+    std::string out;
+    for (std::size_t i = 0; i < row.size(); ++i)
+      out += (i == 0 ? "" : "   ") + padded(row[i], widths[i], i == 0 || i + 1 == row.size());
+    while (!out.empty() && out.back() == ' ') out.pop_back();
+    return out;
+  };
+  text(line(header));
+  std::string rule;
+  for (std::size_t i = 0; i < widths.size(); ++i)
+    rule += std::string(i == 0 ? 0 : 3, ' ') + std::string(widths[i], '-');
+  text(rule);
+  for (const auto& row : rows) text(line(row));
+}
+
+void Console::note(std::string_view sentence) {
+  if (options_.quiet) return;
+  end_progress();
+  std::fputs((one_line(sentence) + "\n").c_str(), stderr);
+}
+
+void Console::error(std::string_view sentence) {
+  end_progress();
+  const std::string text = "todbench: " + one_line(sentence) + "\n";
+  std::fputs((colour_ ? "\033[31m" + text + "\033[0m" : text).c_str(), stderr);
+}
+
+void Console::phase(std::string_view name) {
+  end_progress();
+  phase_ = name;
+  phase_start_ = std::chrono::steady_clock::now();
+  last_draw_ = {};
+  if (!options_.quiet && !terminal_) std::fputs((phase_ + "\n").c_str(), stderr);
+}
+
+void Console::progress(std::size_t done, std::size_t planned) {
+  const auto now = std::chrono::steady_clock::now();
+  if (options_.quiet || !terminal_ || planned == 0 ||
+      (now - last_draw_ < std::chrono::milliseconds(100) && done < planned))
+    return;
+  last_draw_ = now;
+  const double share = static_cast<double>(done) / static_cast<double>(planned);
+  const double elapsed = std::chrono::duration<double>(now - phase_start_).count();
+  const auto filled = static_cast<std::size_t>(share * 30);
+  std::string bar;
+  for (std::size_t i = 0; i < 30; ++i) bar += i < filled ? "█" : "░";
+  const std::string left = done > 0 ? duration(elapsed / share - elapsed) + " left" : "";
+  std::fprintf(stderr, "\r\033[K%s  %s %3.0f %%  %s", phase_.c_str(), bar.c_str(), 100 * share, left.c_str());
+  std::fflush(stderr);
+  bar_shown_ = true;
+}
+
+void Console::end_progress() {
+  if (!bar_shown_) return;
+  std::fputs("\r\033[K", stderr);
+  bar_shown_ = false;
+}
+
+std::string fixed(const std::optional<double>& value, int decimals) {
+  if (!value || !std::isfinite(*value)) return "–";
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", decimals, *value);
+  return text;
+}
+
+std::string range(const Interval& interval, int decimals) {
+  return fixed(interval.low, decimals) + " … " + fixed(interval.high, decimals);
+}
+
+}  // namespace todbench

@@ -1,0 +1,60 @@
+// What the program says: tables and JSON on standard output, progress and notes on standard error.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "acquisition/core/result.h"
+#include "bench/session/json_output.h"
+
+namespace todbench {
+
+struct ConsoleOptions {
+  bool json = false;   ///< exactly one JSON object on standard output, nothing else there
+  bool quiet = false;  ///< no progress and no notes
+};
+
+/// Columns of a table are aligned; numbers are text already.
+using TableRow = std::vector<std::string>;
+
+/// One thread at a time.
+class Console {
+ public:
+  explicit Console(ConsoleOptions options);
+
+  [[nodiscard]] bool json() const { return options_.json; }
+  /// The one JSON object of the run.
+  void object(const Json& json) const;
+  /// Text for people on standard output; nothing with --json.
+  void text(std::string_view line) const;
+  /// A header and rows, right-aligned but for the first column.
+  void table(const TableRow& header, const std::vector<TableRow>& rows) const;
+  /// A sentence on standard error; nothing with --quiet.
+  void note(std::string_view sentence);
+  /// An error on standard error, always, on one line.
+  void error(std::string_view sentence);
+  /// Begins a phase of work; progress() then draws a bar with the time left where standard error is a terminal.
+  void phase(std::string_view name);
+  void progress(std::size_t done, std::size_t planned);
+  /// Removes the bar.
+  void end_progress();
+
+ private:
+  ConsoleOptions options_;
+  bool terminal_ = false;
+  bool colour_ = false;
+  bool bar_shown_ = false;
+  std::string phase_;
+  std::chrono::steady_clock::time_point phase_start_;
+  std::chrono::steady_clock::time_point last_draw_;
+};
+
+/// "0.480", "–" for a missing number.
+[[nodiscard]] std::string fixed(const std::optional<double>& value, int decimals);
+/// "0.468 … 0.493", with an open side as –.
+[[nodiscard]] std::string range(const Interval& interval, int decimals);
+
+}  // namespace todbench

@@ -1,0 +1,38 @@
+#include "bench/cli/demonstration.h"
+
+#include "bench/session/descriptions.h"
+
+namespace todbench {
+
+#ifdef TODBENCH_WITH_ARAVIS
+Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& arguments) {
+  LaboratoryOptions options;
+  auto sensor = load_sensor(arguments.sensor);
+  if (!sensor) return tl::unexpected(sensor.error());
+  options.sensor = *sensor;
+  options.plan = full_plan(*sensor, {}, {});
+  for (const auto& name : arguments.plates) {
+    auto plate = load_plate(name);
+    if (!plate) return tl::unexpected(plate.error());
+    options.plates.push_back(std::move(*plate));
+  }
+  options.distance_m = arguments.distance_m;
+  options.seed = arguments.seed;
+  options.camera.interface_address = arguments.interface_address;
+  options.camera.serial = arguments.serial;
+  options.camera.model = "Emulated " + sensor->name;
+  options.black_body.server.address = arguments.interface_address;
+  options.black_body.server.port = arguments.black_body_port;
+  options.black_body.time_constant_s = 0.05;
+  options.black_body.stable_dwell_s = 0.05;
+  options.stage.server.address = arguments.interface_address;
+  options.stage.server.port = arguments.stage_port;
+  options.stage.speed_mm_per_s = 200;
+  options.stage.settle_s = 0.02;
+  options.stage.plate_change_s = 0.1;
+  options.stage.mounting_change_s = 0.1;
+  return Laboratory::start(std::move(options));
+}
+#endif
+
+}  // namespace todbench

@@ -1,0 +1,31 @@
+// The emulated laboratory as `emulate` and `demo` start it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "acquisition/core/result.h"
+#include "bench/session/plan.h"
+#ifdef TODBENCH_WITH_ARAVIS
+#include "sim_devices/lab/laboratory.h"
+#endif
+
+namespace todbench {
+
+struct EmulationArguments {
+  std::string sensor = "sc2000";  ///< name or file
+  std::string interface_address = "127.0.0.1";
+  std::string serial = "TB0001";
+  std::vector<std::string> plates{"tcat-a", "tcat-b"};
+  double distance_m = 2;
+  std::uint16_t black_body_port = 5025, stage_port = 5026;  ///< 0: the system chooses
+  std::uint64_t seed = 1;
+};
+
+#ifdef TODBENCH_WITH_ARAVIS
+/// Starts camera, black body and plate stage. Their settling is that of a bench in fast motion: 50 ms time constant,
+/// 0.1 s per plate.
+[[nodiscard]] Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& arguments);
+#endif
+
+}  // namespace todbench

@@ -1,0 +1,50 @@
+#include "bench/run/default_design.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/session/descriptions.h"
+#include "bench/session/plan_options.h"
+#include "sim_devices/prediction/direct_estimate.h"
+#include "tod/test_pattern.h"
+
+namespace todbench {
+
+Result<Plan> with_suitable_distance(Plan plan) {
+  auto sensor = sensor_of(plan);
+  if (!sensor) return tl::unexpected(sensor.error());
+  auto plates = plates_of(plan);
+  if (!plates) return tl::unexpected(plates.error());
+  auto spec = load_observer(plan.observer);
+  if (!spec) return tl::unexpected(spec.error());
+  TemplateObserver observer(*spec, triangle_alternatives());
+  const SensorPlan effects = full_plan(*sensor, plan.simulation.skip, plan.simulation.force);
+  double log_sum = 0;
+  int found = 0;
+  for (const double contrast : plan.target.delta_t_k) {
+    const auto point = direct_estimate(*sensor, effects, observer, {contrast},
+                                       {.samples_per_pitch = sensor->microscan, .accuracy = Accuracy::draft()});
+    if (!point) continue;
+    log_sum += std::log(point->front().s75_pitch * sensor->ifov_mrad());
+    ++found;
+  }
+  if (found == 0) return plan;
+  const double middle_mrad = std::exp(log_sum / found);
+  double smallest = 1e300, largest = 0, extent_mm = 0;
+  for (const auto& plate : *plates) {
+    for (const auto& t : plate.triangles) {
+      smallest = std::min(smallest, t.size_mm);
+      largest = std::max(largest, t.size_mm);
+    }
+    extent_mm = std::max({extent_mm, plate.width_mm * sensor->height / sensor->width, plate.height_mm});
+  }
+  const double middle_mm = std::sqrt(smallest * largest);
+  // The plate may fill nine tenths of the picture.
+  const double nearest_m = extent_mm / (0.9 * sensor->height * sensor->ifov_mrad());
+  // Registration and contrast need triangles of five displayed samples and more.
+  const double farthest_m = largest * sensor->microscan / (5.0 * sensor->ifov_mrad());
+  plan.target.distance_m = std::max(nearest_m, std::min(middle_mm / middle_mrad, farthest_m));
+  return plan;
+}
+
+}  // namespace todbench
