@@ -1,5 +1,5 @@
 # cmake -D SOURCE_DIR=... -D OUTPUT=... -D VERSION=... -D COMPILER=... -P WriteBuildInfo.cmake
-# Writes the header with the version and the commit of the sources. Runs at every build and touches the header only when it changes.
+# Writes the source with the version and the commit. Runs at every build and touches its output only when it changes.
 
 set(commit "unknown")
 find_program(GIT git)
@@ -16,10 +16,13 @@ if(GIT AND EXISTS "${SOURCE_DIR}/.git")
   endif()
 endif()
 
-set(content "#pragma once
-#define TODBENCH_VERSION \"${VERSION}\"
-#define TODBENCH_COMMIT \"${commit}\"
-#define TODBENCH_COMPILER \"${COMPILER}\"
+set(content "#include \"bench/session/build_info.h\"
+
+namespace todbench {
+
+BuildInfo build_info() { return {\"${VERSION}\", \"${commit}\", \"${COMPILER}\"}; }
+
+}  // namespace todbench
 ")
 set(previous "")
 if(EXISTS "${OUTPUT}")

@@ -12,6 +12,7 @@ struct BuildInfo {
   std::string_view compiler;
 };
 
+/// Written by the build.
 [[nodiscard]] BuildInfo build_info();
 
 }  // namespace todbench

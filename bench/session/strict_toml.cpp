@@ -7,7 +7,6 @@
 
 #include "bench/session/text.h"
 
-#define TOML_EXCEPTIONS 0
 #include <toml++/toml.h>
 
 namespace todbench {
@@ -122,15 +121,15 @@ std::optional<std::string> scalar_text(const toml::node& node) {
 }  // namespace
 
 Result<TomlReader> TomlReader::parse(std::string_view text, const std::string& file) {
-  toml::parse_result parsed = toml::parse(text, file);
-  if (!parsed) {
-    const toml::parse_error& error = parsed.error();
+  auto document = std::make_shared<Document>();
+  document->file = file;
+  // The library as packaged reports by exception; it ends here.
+  try {
+    document->root = toml::parse(text, file);
+  } catch (const toml::parse_error& error) {
     return fail(ErrorCode::invalid_input, file + ":" + std::to_string(error.source().begin.line) +
                                               ": not valid TOML: " + one_line(error.description()));
   }
-  auto document = std::make_shared<Document>();
-  document->file = file;
-  document->root = std::move(parsed).table();
   Table* root = document->open(&document->root, "", 1);
   return TomlReader(std::move(document), root);
 }

@@ -19,8 +19,8 @@ namespace todbench {
 /// overflow).
 [[nodiscard]] std::optional<double> parse_number(std::string_view text);
 
-/// The name in `known` with the smallest edit distance to `name`, if it is close enough to be a slip of the pen (at
-/// most a third of its letters, at least one; ties: the first).
+/// The name in `known` with the smallest edit distance to `name` (swapped neighbours count one), if it is close enough
+/// to be a slip of the pen (at most a third of its letters, at least one; ties: the first).
 [[nodiscard]] std::optional<std::string> nearest_name(std::string_view name, std::span<const std::string> known);
 /// ", did you mean 'X'?" or nothing.
 [[nodiscard]] std::string nearest_name_hint(std::string_view name, std::span<const std::string> known);

@@ -16,11 +16,6 @@ Result<Plan> parse(const std::string& text) {
   return parse_plan({"plan.toml", text}, "");
 }
 
-std::string complaint(const std::string& text) {
-  const Result<Plan> plan = parse(text);
-  return plan ? "" : plan.error().message;
-}
-
 /// A plan in which nothing has its default.
 Plan unusual_plan() {
   Plan plan;
@@ -171,7 +166,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"seed", "seed = -1\n", "plan.toml:1: key 'seed': expected a whole number of 0 or more, found -1"},
         Mistake{"date", "[[instrument]]\nname = \"x\"\ncalibration_due = \"2027-02-29\"\n",
                 "plan.toml:3: key 'calibration_due' in [instrument]: expected a date"}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& row) { return std::string(row.param.name); });
 
 TEST(Plan, FilesNamedInAPlanAreRelativeToThePlan) {
   const testing::TemporaryFolder folder;

@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"value_for_table", "target = 3\n", "plan.toml:1: key 'target': expected a table [target], found 3"},
         Mistake{"first_line_first", "[target]\nphases = 0\ndistance_m = 0\n",
                 "plan.toml:2: key 'phases' in [target]: expected a whole number from 1 to 100, found 0"}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& row) { return std::string(row.param.name); });
 
 TEST(TomlReader, WhatIsNotTomlIsRefusedWithItsLine) {
   const std::string message = complaint("name = \"x\"\n[target\n");

@@ -54,6 +54,7 @@ TEST(NearestName, FindsTheSlipOfThePenAndNothingFarther) {
 
   EXPECT_EQ(nearest_name("phasse", known), "phases");
   EXPECT_EQ(nearest_name("distance", known), "distance_m");
+  EXPECT_EQ(nearest_name("lpates", known), "plates");
   EXPECT_EQ(nearest_name("qqqqqq", known), std::nullopt);
   EXPECT_EQ(nearest_name("", known), std::nullopt);
 }

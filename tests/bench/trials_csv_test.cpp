@@ -202,7 +202,7 @@ INSTANTIATE_TEST_SUITE_P(
         Counts{"fraction_of_total", "size,correct,total\n1,2,3.5\n", "t.csv:2: column total"},
         Counts{"negative_count", "size,correct,total\n1,-2,3\n", "t.csv:2: column correct"},
         Counts{"infinite_count", "size,correct,total\n1,2,inf\n", "t.csv:2: column total"}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& row) { return std::string(row.param.name); });
 
 TEST(Counts, AreReadInAnyColumnOrderWithBlanksAndWindowsLineEnds) {
   const auto levels = parse_levels("\xEF\xBB\xBFtotal, size ,correct\r\n10,0.5,7\r\n\r\n2e9, 0, 5\r\n0,3,0", "t.csv");

@@ -71,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(
         Row{"no_data", FitVerdict::no_data, std::nullopt, std::nullopt, VerdictKind::inconclusive},
         // At the lower bound of the slope a threshold number means nothing, however narrow.
         Row{"flat", FitVerdict::flat_or_decreasing, 1.5, 1.8, VerdictKind::inconclusive}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& row) { return std::string(row.param.name); });
 
 TEST(Judge, AContrastThatWasNotMeasuredIsInconclusive) {
   TodPoint other = point_with(FitVerdict::ok, 1.5, 1.8);
