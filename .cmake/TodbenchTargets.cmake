@@ -8,7 +8,9 @@ target_compile_options(todbench_options INTERFACE
   -ffp-contract=off $<$<BOOL:${TODBENCH_WERROR}>:-Werror>)
 if(TODBENCH_SANITIZE)
   target_compile_options(todbench_options INTERFACE -fsanitize=${TODBENCH_SANITIZE} -fno-omit-frame-pointer
-    -fno-sanitize-recover=all)
+    -fno-sanitize-recover=all
+    # GCC: "the sanitizers may cause false positives of -Wmaybe-uninitialized"; release builds have the warning.
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_link_options(todbench_options INTERFACE -fsanitize=${TODBENCH_SANITIZE})
   target_compile_definitions(todbench_options INTERFACE TODBENCH_SANITIZED)
 endif()
