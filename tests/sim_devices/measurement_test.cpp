@@ -1,79 +1,147 @@
-// The measurement on simulated cameras: known answers, agreement with the direct estimate, and faults.
+// The measurement on simulated cameras: agreement with the direct estimate, what it tells apart, and how it ends.
 #include "tod/measurement.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "hvs/template_observer.h"
+#include "sim_devices/prediction/contrast_response.h"
 #include "sim_devices/prediction/direct_estimate.h"
-#include "sim_devices/sensor/simulated_camera.h"
-#include "tests/sim_devices/reference.h"
-#include "tests/sim_devices/test_plates.h"
+#include "tests/sim_devices/measurement_bench.h"
+#include "tod/comparison.h"
 #include "tod/tod_curve.h"
 
 namespace todbench {
 namespace {
 
-struct Bench {
-  SensorSpec spec = test::sc2000();
-  std::vector<TargetPlate> plates = test::two_plates();
-  std::vector<double> contrasts{16.9, 1.93, 0.23};
-  int phases = 4;
-  std::uint64_t seed = 1;
-};
+using test::options_of;
+using test::run;
+using test::SimulatedBench;
 
-MeasurementOptions options_of(const Bench& bench) {
-  MeasurementOptions options;
-  options.ifov_mrad = bench.spec.ifov_mrad();
-  options.distance_m = 2;
-  options.plates = bench.plates;
-  options.frames_after_change = 0;
-  options.seed = bench.seed;
-  return options;
-}
-
-Result<MeasurementResult> run(const Bench& bench, Observer& observer, const MeasurementListener& listener = {}, std::stop_token stop = {}) {
-  const auto model = std::make_shared<const SensorModel>(bench.spec, full_plan(bench.spec, {}, {}), Accuracy::normal(), bench.seed);
-  PlateScene scene;
-  scene.plate = bench.plates.front();
-  const auto holder = std::make_shared<SceneHolder>(scene);
-  const auto source = simulated_source(model, holder, "1");
-  const auto target = scene_target(holder, bench.plates);
-  ConstantStimuliOptions stimuli;
-  for (const auto& plate : bench.plates) stimuli.plates.push_back(plate.name);
-  stimuli.mountings.assign(all_mountings.begin(), all_mountings.end());
-  stimuli.delta_t_k = bench.contrasts;
-  stimuli.phases = bench.phases;
-  stimuli.pixel_mm = 2 * bench.spec.ifov_mrad();
-  ListedSchedule schedule(constant_stimuli(stimuli, RandomStream(bench.seed, "schedule")));
-  return measure(*source, *target, observer, schedule, options_of(bench), listener, stop);
+TodCurve curve_of(const Result<MeasurementResult>& result) {
+  EXPECT_TRUE(result.has_value()) << (result ? "" : result.error().message);
+  if (!result) return {};
+  EXPECT_FALSE(result->ended_by.has_value());
+  auto curve = tod_curve(result->trials, {});
+  EXPECT_TRUE(curve.has_value());
+  return curve ? *curve : TodCurve{};
 }
 
 TEST(Measurement, OfTheSimulatedSC2000AgreesWithTheDirectEstimate) {
-  Bench bench;
+  SimulatedBench bench;
   bench.phases = 12;
   TemplateObserver observer({}, triangle_alternatives());
 
-  const auto result = run(bench, observer);
+  const TodCurve curve = curve_of(run(bench, observer, options_of(bench)));
 
-  ASSERT_TRUE(result.has_value()) << result.error().message;
-  ASSERT_FALSE(result->ended_by.has_value());
-  const auto curve = tod_curve(result->trials, {});
-  ASSERT_TRUE(curve.has_value());
   const auto direct = direct_estimate(bench.spec, full_plan(bench.spec, {}, {}), observer, bench.contrasts, {});
   ASSERT_TRUE(direct.has_value());
-  ASSERT_EQ(curve->points.size(), 3u);
+  ASSERT_EQ(curve.points.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto& point = curve->points[i];
+    const auto& point = curve.points[i];
     const double expected = (*direct)[i].s75_pitch * bench.spec.ifov_mrad();
-    ASSERT_TRUE(point.fit.threshold.has_value());
-    std::printf("dT %.2f (measured %.4f): S75 %.4f [%.4f, %.4f] mrad, direct %.4f, inflation %.2f, %g trials\n", point.set_delta_t_k,
-                point.delta_t_k, *point.fit.threshold, *point.fit.ci95.low, *point.fit.ci95.high, expected,
-                point.fit.variance_inflation, point.fit.trials);
-    // Form of the psychometric function: bias up to 4 % (facts of the direct estimate's source); three standard errors.
+    ASSERT_TRUE(point.fit.usable());
+    // The true curve is no Weibull: a bias of -1.4 % to +4 % that no number of trials removes; and three standard
+    // errors.
     EXPECT_NEAR(*point.fit.threshold, expected, 0.04 * expected + 1.5 * (*point.fit.ci95.high - *point.fit.threshold));
   }
+}
+
+TEST(Measurement, ReadsTheContrastThatTheCameraSeesNotTheOneThatWasSet) {
+  SimulatedBench bench;
+  bench.contrasts = {16.9, 0.23};
+  TemplateObserver observer({}, triangle_alternatives());
+  MeasurementOptions options = options_of(bench);
+  const SensorModel model(bench.spec, full_plan(bench.spec, {}, {}), Accuracy::normal(), 1);
+  RegistrationOptions registration;
+  registration.expected_scale_px_per_mm = 1 / (2 * bench.spec.ifov_mrad());
+  for (const auto& plate : bench.plates) {
+    options.contrast_response[plate.name] =
+        contrast_response(model, plate, 2, options.min_reference_px, registration).value();
+  }
+
+  const TodCurve curve = curve_of(run(bench, observer, options));
+
+  for (const auto& [name, response] : options.contrast_response) {
+    EXPECT_GT(response, 0.95);
+    EXPECT_LT(response, 1);
+  }
+  // Noise 0.07 K / sqrt(16 frames) per pixel, some ten inner pixels in each of four to eight triangles, eight set-ups:
+  // below 1 mK.
+  ASSERT_EQ(curve.points.size(), 2u);
+  EXPECT_NEAR(curve.points[0].delta_t_k, 16.9, 0.03);
+  EXPECT_NEAR(curve.points[1].delta_t_k, 0.23, 0.003);
+}
+
+TEST(Measurement, SpreadsPhasesEvenlyAndRecordsThem) {
+  SimulatedBench bench;
+  bench.contrasts = {16.9};
+  bench.phases = 8;
+  TemplateObserver observer({}, triangle_alternatives());
+
+  const auto result = run(bench, observer, options_of(bench));
+
+  ASSERT_TRUE(result.has_value());
+  std::array<double, 4> quadrant{};
+  for (const auto& trial : result->trials) {
+    ASSERT_GE(trial.phase_x_px, -0.5);
+    ASSERT_LT(trial.phase_x_px, 0.5);
+    quadrant[(trial.phase_x_px < 0 ? 0u : 1u) + (trial.phase_y_px < 0 ? 0u : 2u)] += 1;
+  }
+  const double n = static_cast<double>(result->trials.size());
+  // Spread on purpose: better than chance, whose standard deviation of a quadrant is sqrt(n 3/16).
+  for (const double count : quadrant) EXPECT_NEAR(count, n / 4, 2 * std::sqrt(n * 3 / 16));
+}
+
+TEST(Measurement, RepeatsBitForBit) {
+  SimulatedBench bench;
+  bench.contrasts = {0.23};
+  bench.phases = 2;
+  TemplateObserver observer({}, triangle_alternatives());
+
+  const auto a = run(bench, observer, options_of(bench));
+  const auto b = run(bench, observer, options_of(bench));
+
+  ASSERT_TRUE(a.has_value() && b.has_value());
+  ASSERT_EQ(a->trials.size(), b->trials.size());
+  for (std::size_t i = 0; i < a->trials.size(); ++i) {
+    EXPECT_EQ(a->trials[i].answer, b->trials[i].answer);
+    EXPECT_EQ(a->trials[i].scores, b->trials[i].scores);
+    EXPECT_EQ(a->trials[i].delta_t_k, b->trials[i].delta_t_k);
+  }
+}
+
+/// Trials of a camera against those of the SC2000, enough to see a difference of a few per cent.
+Comparison against_sc2000(const SensorSpec& spec, std::uint64_t seed, double contrast) {
+  SimulatedBench ours;
+  ours.contrasts = {16.9, contrast};
+  ours.phases = 40;
+  SimulatedBench theirs = ours;
+  theirs.spec = spec;
+  theirs.seed = seed;
+  TemplateObserver observer({}, triangle_alternatives());
+  const TodCurve a = curve_of(run(theirs, observer, options_of(theirs)));
+  const TodCurve b = curve_of(run(ours, observer, options_of(ours)));
+  auto comparison = compare(a, b, {.margin_percent = 10, .fit = {}});
+  EXPECT_TRUE(comparison.has_value());
+  return comparison ? *comparison : Comparison{};
+}
+
+TEST(Measurement, FindsATwinEquivalent) {
+  const Comparison comparison = against_sc2000(test::sc2000(), 2, 0.23);
+
+  for (const auto& point : comparison.points) EXPECT_EQ(point.verdict, ComparisonVerdict::equivalent) << *point.ratio;
+}
+
+TEST(Measurement, TellsACameraWithTwiceTheNoiseApart) {
+  SensorSpec noisy = test::sc2000();
+  noisy.netd_k *= 2;
+
+  const Comparison comparison = against_sc2000(noisy, 2, 0.23);
+
+  ASSERT_EQ(comparison.points.size(), 2u);
+  EXPECT_EQ(comparison.points[1].verdict, ComparisonVerdict::different);
+  EXPECT_LT(*comparison.points[1].ratio_ci95.high, 0.85);
 }
 
 }  // namespace

@@ -68,8 +68,7 @@ TEST(SensorModel, PutsTheExactDegradedTriangleWhereTheSceneSaysSo) {
   for (int j = 0; j < 9; ++j) {
     for (int i = 0; i < 9; ++i) {
       // Wrap tolerance of the normal level (1.5e-5), four wavelengths (2e-6) and single precision.
-      EXPECT_NEAR(static_cast<double>((*picture)(origin.y + j, origin.x + i)), exact.values(j, i),
-                  2.5e-5);
+      EXPECT_NEAR(static_cast<double>((*picture)(origin.y + j, origin.x + i)), exact.values(j, i), 2.5e-5);
     }
   }
 }

@@ -12,14 +12,16 @@ namespace todbench::test {
 /// Rows from top to bottom of the given sizes; apexes differ from row to row and between `variant`s.
 inline TargetPlate plate_of_rows(const std::string& name, const std::array<double, 5>& sizes_mm, int variant) {
   TargetPlate plate{.name = name, .description = "", .width_mm = 200, .height_mm = 280, .triangles = {}};
-  const std::array<std::array<int, 4>, 6> apexes{{{3, 0, 2, 3}, {2, 0, 3, 1}, {1, 1, 0, 2}, {0, 2, 1, 3}, {1, 3, 0, 2}, {2, 1, 1, 0}}};
+  const std::array<std::array<int, 4>, 6> apexes{
+      {{3, 0, 2, 3}, {2, 0, 3, 1}, {1, 1, 0, 2}, {0, 2, 1, 3}, {1, 3, 0, 2}, {2, 1, 1, 0}}};
   for (int row = 0; row < 5; ++row) {
     for (int column = 0; column < 4; ++column) {
       plate.triangles.push_back(
           {.name = "row " + std::to_string(row + 1) + ", triangle " + std::to_string(column + 1),
            .position_mm = {-71.5 + 47.6 * column + 0.37 * row, -112.0 + 55.9 * row + 0.53 * column},
            .size_mm = sizes_mm[static_cast<std::size_t>(row)],
-           .apex = static_cast<Apex>(apexes[static_cast<std::size_t>((row + variant) % 6)][static_cast<std::size_t>(column)])});
+           .apex = static_cast<Apex>(
+               apexes[static_cast<std::size_t>((row + variant) % 6)][static_cast<std::size_t>(column)])});
     }
   }
   return plate;
