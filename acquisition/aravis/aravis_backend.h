@@ -41,7 +41,8 @@ struct AravisOptions {
 /// Lists by discovery (1 s on a network) and opens "gige:VENDOR-SERIAL", or "gige:192.168.1.10" where broadcasts do not
 /// pass; the source then tells the true identity. Opening sets linear temperature, switches noise reduction, sharpening
 /// and compression off and reads everything back. Opening fails with `not_found` when the camera is absent, busy
-/// (another program controls it; found out after 2.5 s) or offers no 10 ... 16 bit monochrome format.
+/// (another program controls it, or crashed less than its heartbeat of about 3 s ago) or offers no 10 ... 16 bit
+/// monochrome format.
 ///
 /// The sources' stop() returns within milliseconds while the camera answers and within 0.4 s when it has vanished; only
 /// a get or set that is just waiting for a vanished camera delays it, by up to 2.5 s (five attempts of 0.5 s inside
