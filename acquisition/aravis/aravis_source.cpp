@@ -187,22 +187,25 @@ void AravisSource::on_control_lost(ArvDevice*, void* data) {
 Result<void> AravisSource::start() {
   const std::lock_guard control(control_);
   if (is_lost()) return tl::unexpected(disconnected());
-  std::shared_ptr<ArvStream> left_over = std::move(unreachable_stream_);
+  // Destroyed without any lock: a stream joins its thread, whose callback takes events_->mutex.
+  std::shared_ptr<ArvStream> unreachable = std::move(unreachable_stream_);
+  std::shared_ptr<ArvStream> left_over;
   {
     const std::lock_guard lock(events_->mutex);
     if (stream_ && events_->running) return {};
-    if (stream_) left_over = std::move(stream_);
+    left_over = std::move(stream_);
   }
   const auto failed = [&](const Error& error) {
     if (error.code == ErrorCode::disconnected) mark_lost();
     return fail("starting " + info_.id, error);
   };
   if (const auto read = refresh(); !read) return failed(read.error());
-  if (left_over) {
+  if (left_over || unreachable) {
     // The camera did not answer at stop(), or another thread is about to stop it: it may still be sending to the old
     // stream.
     arv_camera_stop_acquisition(camera_.get(), nullptr);
     left_over.reset();
+    unreachable.reset();
   }
   auto stream = create_stream();
   if (!stream) return failed(stream.error());
@@ -292,8 +295,7 @@ Result<Frame> AravisSource::next(std::chrono::milliseconds timeout) {
 }
 
 Error AravisSource::silence(std::chrono::milliseconds timeout) {
-  const Error nothing{ErrorCode::timeout,
-                      "no frame from " + info_.id + " within " + std::to_string(timeout.count()) + " ms"};
+  Error nothing{ErrorCode::timeout, "no frame from " + info_.id + " within " + std::to_string(timeout.count()) + " ms"};
   Clock::time_point since;
   {
     const std::lock_guard lock(events_->mutex);
