@@ -41,9 +41,10 @@ struct AravisOptions {
 /// Lists by discovery (1 s on a network) and opens "gige:VENDOR-SERIAL", or "gige:192.168.1.10" where broadcasts do not
 /// pass; the source then tells the true identity. Opening sets linear temperature, switches noise reduction, sharpening
 /// and compression off and reads everything back. Opening fails with `not_found` when the camera is absent, busy
-/// (another program controls it; found out after 2.5 s) or offers no 10 ... 16 bit monochrome format.
+/// (another program controls it, or crashed less than its heartbeat of about 3 s ago) or offers no 10 ... 16 bit
+/// monochrome format.
 ///
-/// The sources' stop() returns within milliseconds while the camera answers and within 0.3 s when it has vanished; only
+/// The sources' stop() returns within milliseconds while the camera answers and within 0.4 s when it has vanished; only
 /// a get or set that is just waiting for a vanished camera delays it, by up to 2.5 s (five attempts of 0.5 s inside
 /// Aravis). A vanished GigE camera is reported as `disconnected` about 3 s after its last frame when next() is called
 /// with timeouts below 1 s, and 5 s after it by Aravis's heartbeat in any case; an unplugged USB camera at once.

@@ -1,10 +1,10 @@
 #include "acquisition/aravis/aravis_source.h"
 
 #include <algorithm>
-#include <cstdlib>
-#include <cstring>
+#include <optional>
 #include <thread>
 
+#include "acquisition/aravis/frame_buffers.h"
 #include "acquisition/aravis/genicam_features.h"
 #include "acquisition/aravis/gvcp_client.h"
 #include "acquisition/aravis/socket_buffer.h"
@@ -14,13 +14,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Marks a buffer whose leader packet, the only one that tells the id, has not arrived. Never a valid id in either
-/// numbering.
-constexpr std::uint64_t no_frame_id = ~std::uint64_t{0};
 /// A camera on loopback is a program: 8000 bytes need six times fewer packets than 1500, and the MTU is 65536.
 constexpr int loopback_packet_bytes = 8000;
 /// Longer than any answer on a working network (measured below 6 ms at full load), short enough for stop().
-constexpr auto ping_patience = 250ms;
+constexpr auto ping_patience = 400ms;
 /// Longer than a non-uniformity correction that interrupts the stream (0.5 s) is silent.
 constexpr auto silence_before_ping = 2s;
 /// Two unanswered pings and this much silence make a camera lost.
@@ -29,28 +26,6 @@ constexpr auto silence_before_lost = 3s;
 std::int64_t monotonic_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
       .count();
-}
-
-/// Enough for two seconds: the consumer may pause for a fit or a disk without losing frames. At most 256 MiB.
-int buffer_count(double frame_rate_hz, std::size_t payload_bytes) {
-  const double two_seconds = frame_rate_hz > 0 ? 2 * frame_rate_hz : 64;
-  const double affordable = static_cast<double>(256U << 20U) / static_cast<double>(payload_bytes);
-  return static_cast<int>(std::max(4.0, std::min({std::max(16.0, two_seconds), affordable, 512.0})));
-}
-
-/// Zeroed, so that the holes of an incomplete first frame are black instead of somebody else's memory.
-ArvBuffer* new_buffer(std::size_t bytes) {
-  void* memory = std::calloc(1, bytes);
-  return arv_buffer_new_full(bytes, memory, memory, std::free);
-}
-
-cv::Mat1w copied_pixels(const void* data, int width, int height, bool big_endian) {
-  cv::Mat1w counts(height, width);
-  std::memcpy(counts.data, data, counts.total() * counts.elemSize());
-  if (big_endian) {
-    for (auto& count : counts) count = static_cast<ushort>(count << 8 | count >> 8);
-  }
-  return counts;
 }
 
 FrameIdKind frame_id_kind(ArvDevice* device, AravisTransport transport) {
@@ -212,22 +187,30 @@ void AravisSource::on_control_lost(ArvDevice*, void* data) {
 Result<void> AravisSource::start() {
   const std::lock_guard control(control_);
   if (is_lost()) return tl::unexpected(disconnected());
+  // Destroyed without any lock: a stream joins its thread, whose callback takes events_->mutex.
+  std::shared_ptr<ArvStream> unreachable = std::move(unreachable_stream_);
+  std::shared_ptr<ArvStream> left_over;
   {
     const std::lock_guard lock(events_->mutex);
     if (stream_ && events_->running) return {};
+    left_over = std::move(stream_);
   }
   const auto failed = [&](const Error& error) {
     if (error.code == ErrorCode::disconnected) mark_lost();
     return fail("starting " + info_.id, error);
   };
   if (const auto read = refresh(); !read) return failed(read.error());
-  unreachable_stream_.reset();
+  if (left_over || unreachable) {
+    // The camera did not answer at stop(), or another thread is about to stop it: it may still be sending to the old
+    // stream.
+    arv_camera_stop_acquisition(camera_.get(), nullptr);
+    left_over.reset();
+    unreachable.reset();
+  }
   auto stream = create_stream();
   if (!stream) return failed(stream.error());
   for (int i = buffer_count(info_.frame_rate_hz, format_.payload_bytes); i > 0; --i) {
-    ArvBuffer* buffer = new_buffer(format_.payload_bytes);
-    arv_buffer_set_frame_id(buffer, no_frame_id);
-    arv_stream_push_buffer(stream->get(), buffer);
+    arv_stream_push_buffer(stream->get(), new_frame_buffer(format_.payload_bytes).release());
   }
   sequence_ = FrameSequence(frame_id_kind(arv_camera_get_device(camera_.get()), options_.transport));
   {
@@ -260,17 +243,14 @@ void AravisSource::stop() {
   const std::lock_guard control(control_);
   std::shared_ptr<ArvStream> stream;
   bool reachable = true;
-  bool silent = false;
   {
     const std::lock_guard lock(events_->mutex);
     events_->running = false;
     stream = std::move(stream_);
     reachable = !events_->lost;
-    silent = Clock::now() - events_->last_sign_of_life > 1s;
   }
   if (!stream) return;
-  if (reachable && silent) reachable = answers();
-  if (reachable) {
+  if (reachable && answers()) {
     arv_camera_stop_acquisition(camera_.get(), nullptr);
   } else {
     // Closing the stream writes to the camera, which takes seconds when it does not answer.
@@ -299,58 +279,23 @@ Result<Frame> AravisSource::next(std::chrono::milliseconds timeout) {
       events_->arrivals_ns.pop_front();
       stream = stream_;
     }
-    const GObjectPtr<ArvBuffer> buffer(arv_stream_try_pop_buffer(stream.get()));
+    GObjectPtr<ArvBuffer> buffer(arv_stream_try_pop_buffer(stream.get()));
     if (!buffer) continue;
-    const auto status = arv_buffer_get_status(buffer.get());
-    const bool exposed = status != ARV_BUFFER_STATUS_ABORTED && status != ARV_BUFFER_STATUS_CLEARED;
     std::optional<Frame> frame;
-    if (exposed) frame = converted(buffer.get(), arrived_ns);
-    arv_buffer_set_frame_id(buffer.get(), no_frame_id);
-    arv_stream_push_buffer(stream.get(), GObjectPtr<ArvBuffer>(ARV_BUFFER(g_object_ref(buffer.get()))).release());
+    if (holds_exposure(buffer.get())) {
+      frame = frame_from_buffer(buffer.get(), format_);
+      frame->sequence = sequence_.next(frame_id_of(buffer.get()));
+      frame->host_time_ns = arrived_ns;
+      frame->scale = scale_;
+    }
+    clear_frame_id(buffer.get());
+    arv_stream_push_buffer(stream.get(), buffer.release());
     if (frame) return std::move(*frame);
   }
 }
 
-Frame AravisSource::converted(ArvBuffer* buffer, std::int64_t arrived_ns) {
-  Frame frame;
-  const auto id = arv_buffer_get_frame_id(buffer);
-  frame.sequence = sequence_.next(id != no_frame_id ? std::optional(id) : std::nullopt);
-  frame.host_time_ns = arrived_ns;
-  frame.significant_bits = format_.significant_bits;
-  frame.scale = scale_;
-  int width = format_.width;
-  int height = format_.height;
-  std::size_t bytes = 0;
-  const void* data = arv_buffer_get_data(buffer, &bytes);
-  switch (arv_buffer_get_status(buffer)) {
-    case ARV_BUFFER_STATUS_SUCCESS: {
-      const bool image = arv_buffer_get_payload_type(buffer) == ARV_BUFFER_PAYLOAD_TYPE_IMAGE;
-      const bool as_negotiated = image && arv_buffer_get_image_width(buffer) == width &&
-                                 arv_buffer_get_image_height(buffer) == height &&
-                                 arv_buffer_get_image_pixel_format(buffer) == format_.code;
-      frame.status = as_negotiated ? FrameStatus::complete : FrameStatus::wrong_size;
-      break;
-    }
-    case ARV_BUFFER_STATUS_SIZE_MISMATCH:
-      frame.status = FrameStatus::wrong_size;
-      break;
-    default:
-      frame.status = FrameStatus::incomplete;
-  }
-  if (id != no_frame_id) frame.device_time_ns = static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer));
-  const auto expected = 2 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  if (data == nullptr || bytes < expected) {
-    if (frame.status == FrameStatus::complete) frame.status = FrameStatus::wrong_size;
-    frame.counts = cv::Mat1w::zeros(height, width);
-    return frame;
-  }
-  frame.counts = copied_pixels(data, width, height, format_.big_endian);
-  return frame;
-}
-
 Error AravisSource::silence(std::chrono::milliseconds timeout) {
-  const Error nothing{ErrorCode::timeout,
-                      "no frame from " + info_.id + " within " + std::to_string(timeout.count()) + " ms"};
+  Error nothing{ErrorCode::timeout, "no frame from " + info_.id + " within " + std::to_string(timeout.count()) + " ms"};
   Clock::time_point since;
   {
     const std::lock_guard lock(events_->mutex);

@@ -54,7 +54,6 @@ class AravisSource : public FrameSource {
   void configure_transport();
   void check_socket_buffer(ArvStream* stream);
   void publish_socket_buffer();
-  [[nodiscard]] Frame converted(ArvBuffer* buffer, std::int64_t arrived_ns);
   [[nodiscard]] Error silence(std::chrono::milliseconds timeout);
   [[nodiscard]] bool answers() const;
   [[nodiscard]] bool is_lost() const;

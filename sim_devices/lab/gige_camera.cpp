@@ -162,7 +162,7 @@ struct EmulatedGigeCamera::State {
   void serve_commands();
   void begin_correction();
   [[nodiscard]] cv::Mat1w expose();
-  [[nodiscard]] cv::Mat1w processed(cv::Mat1w counts, ArvPixelFormat format);
+  [[nodiscard]] cv::Mat1w processed(const cv::Mat1w& counts, ArvPixelFormat format);
   void fill(ArvBuffer* buffer, ArvPixelFormat format);
   static void on_fill(ArvBuffer* buffer, void* state, guint32, guint32, ArvPixelFormat format) {
     static_cast<State*>(state)->fill(buffer, format);
@@ -250,7 +250,7 @@ cv::Mat1w EmulatedGigeCamera::State::expose() {
   return cv::Mat1w::zeros(config.height, config.width);
 }
 
-cv::Mat1w EmulatedGigeCamera::State::processed(cv::Mat1w counts, ArvPixelFormat format) {
+cv::Mat1w EmulatedGigeCamera::State::processed(const cv::Mat1w& counts, ArvPixelFormat format) {
   cv::Mat1w sent = counts.clone();
   const auto ir_format = read(register_ir_format);
   if (ir_format == ir_format_radiometric) {

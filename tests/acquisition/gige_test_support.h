@@ -4,6 +4,7 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <opencv2/core.hpp>
@@ -13,6 +14,9 @@
 #include "sim_devices/lab/gige_camera.h"
 
 namespace todbench::testing_support {
+
+/// Far longer than any frame takes on a loaded machine; a test that waits this long has failed.
+inline constexpr std::chrono::seconds patience{20};
 
 /// Picture `index`: no two within 2^14 are alike, and no pixel has the value of its neighbours, so that a shifted,
 /// torn, repeated or byte-swapped frame differs.

@@ -1,0 +1,85 @@
+#include "acquisition/aravis/frame_buffers.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+
+namespace todbench {
+namespace {
+
+/// Never a valid id in either numbering.
+constexpr std::uint64_t no_frame_id = ~std::uint64_t{0};
+
+cv::Mat1w copied_pixels(const void* data, const StreamFormat& format) {
+  cv::Mat1w counts(format.height, format.width);
+  std::memcpy(counts.data, data, counts.total() * counts.elemSize());
+  if (format.big_endian) {
+    for (auto& count : counts) count = static_cast<ushort>(count << 8 | count >> 8);
+  }
+  return counts;
+}
+
+FrameStatus status_of(ArvBuffer* buffer, const StreamFormat& format) {
+  switch (arv_buffer_get_status(buffer)) {
+    case ARV_BUFFER_STATUS_SUCCESS: {
+      const bool image = arv_buffer_get_payload_type(buffer) == ARV_BUFFER_PAYLOAD_TYPE_IMAGE;
+      const bool as_negotiated = image && arv_buffer_get_image_width(buffer) == format.width &&
+                                 arv_buffer_get_image_height(buffer) == format.height &&
+                                 arv_buffer_get_image_pixel_format(buffer) == format.code;
+      return as_negotiated ? FrameStatus::complete : FrameStatus::wrong_size;
+    }
+    case ARV_BUFFER_STATUS_SIZE_MISMATCH:
+      return FrameStatus::wrong_size;
+    default:
+      return FrameStatus::incomplete;
+  }
+}
+
+}  // namespace
+
+int buffer_count(double frame_rate_hz, std::size_t payload_bytes) {
+  const double two_seconds = frame_rate_hz > 0 ? 2 * frame_rate_hz : 64;
+  const double affordable = static_cast<double>(256U << 20U) / static_cast<double>(payload_bytes);
+  return static_cast<int>(std::max(4.0, std::min({std::max(16.0, two_seconds), affordable, 512.0})));
+}
+
+GObjectPtr<ArvBuffer> new_frame_buffer(std::size_t payload_bytes) {
+  void* memory = std::calloc(1, payload_bytes);
+  GObjectPtr<ArvBuffer> buffer(arv_buffer_new_full(payload_bytes, memory, memory, std::free));
+  clear_frame_id(buffer.get());
+  return buffer;
+}
+
+void clear_frame_id(ArvBuffer* buffer) {
+  arv_buffer_set_frame_id(buffer, no_frame_id);
+}
+
+std::optional<std::uint64_t> frame_id_of(ArvBuffer* buffer) {
+  const auto id = arv_buffer_get_frame_id(buffer);
+  return id != no_frame_id ? std::optional<std::uint64_t>(id) : std::nullopt;
+}
+
+bool holds_exposure(ArvBuffer* buffer) {
+  const auto status = arv_buffer_get_status(buffer);
+  return status != ARV_BUFFER_STATUS_ABORTED && status != ARV_BUFFER_STATUS_CLEARED;
+}
+
+Frame frame_from_buffer(ArvBuffer* buffer, const StreamFormat& format) {
+  Frame frame;
+  frame.status = status_of(buffer, format);
+  frame.significant_bits = format.significant_bits;
+  // Without leader the buffer still holds the time of an older frame.
+  if (frame_id_of(buffer)) frame.device_time_ns = static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer));
+  std::size_t bytes = 0;
+  const void* data = arv_buffer_get_data(buffer, &bytes);
+  const auto expected = 2 * static_cast<std::size_t>(format.width) * static_cast<std::size_t>(format.height);
+  if (data != nullptr && bytes >= expected) {
+    frame.counts = copied_pixels(data, format);
+    return frame;
+  }
+  if (frame.status == FrameStatus::complete) frame.status = FrameStatus::wrong_size;
+  frame.counts = cv::Mat1w::zeros(format.height, format.width);
+  return frame;
+}
+
+}  // namespace todbench
