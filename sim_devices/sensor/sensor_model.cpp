@@ -34,7 +34,7 @@ void add_clipped(cv::Mat1f& picture, const cv::Mat1d& values, cv::Point origin) 
   }
 }
 
-constexpr std::size_t cached_scenes = 8;
+constexpr std::size_t cached_scenes = 64;  // 20 MB of 320 x 240
 constexpr std::size_t cached_shapes = 256;
 
 }  // namespace
