@@ -1,74 +1,53 @@
 #!/bin/sh
 # Layering: which folder may include which, and which third-party headers belong to which folder. Usage: check_layering.sh ROOT
 # Prints each violation as FILE:LINE: reason; exit 1 when there is one.
-root=$1
-cd "$root" || exit 2
-
-# folder | folders of the project that it may include (itself always)
-allowed() {
-  case "$1" in
-    acquisition/core) echo "acquisition/core" ;;
-    acquisition/aravis | acquisition/v4l2 | acquisition/usb | acquisition/recording) echo "acquisition" ;;
-    hvs) echo "acquisition/core" ;;
-    tod) echo "acquisition/core hvs" ;;
-    sim_devices) echo "acquisition/core hvs tod" ;;
-    sim_devices/lab) echo "acquisition/core acquisition/aravis hvs tod sim_devices" ;;
-    bench/gui) echo "acquisition hvs tod sim_devices bench" ;;
-    bench) echo "acquisition hvs tod sim_devices" ;;
-  esac
+cd "$1" || exit 2
+find acquisition hvs tod sim_devices bench \( -name '*.h' -o -name '*.cpp' \) 2>/dev/null | sort | xargs awk '
+BEGIN {
+  # layer: folders of the project that it may include beside itself
+  may["acquisition/core"] = ""
+  may["acquisition/*"] = "acquisition/"
+  may["hvs"] = "acquisition/core/"
+  may["tod"] = "acquisition/core/ hvs/"
+  may["sim_devices"] = "acquisition/core/ hvs/ tod/"
+  may["sim_devices/lab"] = "acquisition/core/ acquisition/aravis/ hvs/ tod/ sim_devices/"
+  may["bench"] = "acquisition/ hvs/ tod/ sim_devices/"
+  may["bench/gui"] = "acquisition/ hvs/ tod/ sim_devices/ bench/"
+  # third-party header: the only folders that may include it
+  home["^arv"] = "^(acquisition/aravis|sim_devices/lab)/"
+  home["^(linux/videodev2.h|libudev.h)"] = "^acquisition/v4l2/"
+  home["^libusb"] = "^acquisition/usb/"
+  home["^(Q[A-Z]|qcustomplot.h)"] = "^bench/gui/"
+  home["^spdlog/"] = "^bench/"
+  home["^toml\\+\\+/"] = "^bench/"
+  home["^CLI/"] = "^bench/cli/"
+  home["^fftw3.h"] = "^hvs/"
 }
-
-layer_of() {
-  case "$1" in
-    acquisition/core/*) echo acquisition/core ;;
-    acquisition/*/*) echo "${1%/*}" | cut -d/ -f1,2 ;;
-    sim_devices/lab/*) echo sim_devices/lab ;;
-    bench/gui/*) echo bench/gui ;;
-    *) echo "${1%%/*}" ;;
-  esac
+function layer_of(file,   parts) {
+  split(file, parts, "/")
+  if (parts[1] == "acquisition") return parts[2] == "core" ? "acquisition/core" : "acquisition/*"
+  if (file ~ /^sim_devices\/lab\//) return "sim_devices/lab"
+  if (file ~ /^bench\/gui\//) return "bench/gui"
+  return parts[1]
 }
-
-# third-party header pattern | the only folders that may include it (regex)
-third_party='arv\.h|arv.*\.h:^(acquisition/aravis|sim_devices/lab)/
-linux/videodev2\.h|libudev\.h:^acquisition/v4l2/
-libusb\.h|libusb-1\.0/:^acquisition/usb/
-Q[A-Z][A-Za-z]*|qcustomplot\.h:^bench/gui/
-spdlog/:^bench/
-toml\+\+/:^bench/
-CLI/:^bench/cli/
-fftw3\.h:^hvs/'
-
-find acquisition hvs tod sim_devices bench \( -name '*.h' -o -name '*.cpp' \) 2>/dev/null | sort | {
-  bad=0
-  while read -r file; do
-    layer=$(layer_of "$file")
-    may="$layer $(allowed "$layer")"
-    while IFS=: read -r line text; do
-      [ -z "$line" ] && continue
-      path=$(printf '%s' "$text" | sed 's/.*#include *["<]\([^">]*\)[">].*/\1/')
-      case "$text" in
-        *'"'*)
-          ok=0
-          for prefix in $may; do case "$path" in "$prefix"/*) ok=1 ;; esac; done
-          if [ $ok = 0 ]; then echo "$file:$line: layer $layer may not include \"$path\""; bad=1; fi
-          ;;
-        *)
-          old=$IFS
-          IFS='
-'
-          for rule in $third_party; do
-            pattern=${rule%:*}
-            home=${rule##*:}
-            if printf '%s' "$path" | grep -Eq "^($pattern)" && ! printf '%s' "$file" | grep -Eq "$home"; then
-              echo "$file:$line: <$path> belongs to $home only"; bad=1
-            fi
-          done
-          IFS=$old
-          ;;
-      esac
-    done <<EOF
-$(grep -nE '^[[:space:]]*#[[:space:]]*include' "$file")
-EOF
-  done
-  exit $bad
+FNR == 1 {
+  layer = layer_of(FILENAME)
+  own = layer == "acquisition/*" ? "acquisition/" : layer "/"
+  allowed = split(own " " may[layer], prefixes, " ")
 }
+/^[ \t]*#[ \t]*include[ \t]*"/ {
+  path = $0; sub(/^[^"]*"/, "", path); sub(/".*/, "", path)
+  ok = 0
+  for (i = 1; i <= allowed; i++) if (index(path, prefixes[i]) == 1) ok = 1
+  if (!ok) { print FILENAME ":" FNR ": layer " layer " may not include \"" path "\""; bad = 1 }
+}
+/^[ \t]*#[ \t]*include[ \t]*</ {
+  path = $0; sub(/^[^<]*</, "", path); sub(/>.*/, "", path)
+  for (pattern in home) if (path ~ pattern && FILENAME !~ home[pattern]) {
+    print FILENAME ":" FNR ": <" path "> belongs to " home[pattern] " only"; bad = 1
+  }
+}
+END { exit bad }'
+status=$?
+# xargs reports 123 when awk found a violation
+[ $status -eq 0 ] || exit 1
