@@ -177,7 +177,8 @@ class Run {
     registered_[{state.plate, state.mounting}] = base_;
     if (scale_px_per_mm_ == 0) scale_px_per_mm_ = base_.scale_px_per_mm;
     if (plate.observers.empty()) {
-      if (auto prepared = prepare(plate, observer_, scale_px_per_mm_, options_.samples_per_pitch); !prepared) return prepared;
+      if (auto prepared = prepare(plate, observer_, scale_px_per_mm_, options_.samples_per_pitch); !prepared)
+        return prepared;
     }
     return {};
   }
@@ -287,7 +288,8 @@ Result<std::vector<std::string>> sizes_that_do_not_fit(const MeasurementOptions&
   std::vector<std::string> out;
   for (const auto& plate : options.plates) {
     PreparedPlate prepared{plate, {}, {}};
-    if (auto ready = prepare(prepared, observer, scale, options.samples_per_pitch); !ready) return tl::unexpected(ready.error());
+    if (auto ready = prepare(prepared, observer, scale, options.samples_per_pitch); !ready)
+      return tl::unexpected(ready.error());
     const auto sides = prepared.sides();
     const double search = prepared.observers.empty() ? 0 : prepared.observers.front()->search_samples();
     for (const auto& problem : touching_windows(plate, scale, sides, search)) {

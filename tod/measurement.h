@@ -21,15 +21,15 @@
 namespace todbench {
 
 struct MeasurementOptions {
-  double ifov_mrad = 0;              ///< of one pixel, from the plan
-  double distance_m = 0;             ///< entrance pupil to plate
-  std::vector<TargetPlate> plates;   ///< in identity mounting
-  int registration_frames = 32;      ///< averaged at the highest contrast
-  int contrast_frames = 16;          ///< averaged for the effective contrast, once per plate, mounting and contrast
-  double min_reference_px = 4;       ///< triangles from this size measure the effective contrast
-  int samples_per_pitch = 1;        ///< displayed samples per detector pitch (2: 2x2 microscan); the IFOV is that of a sample
-  /// By plate name: what effective_contrast() reads of a contrast of 1 K, blur included, from a simulated picture; 1 where it is not known.
-  /// Measured contrasts are divided by it.
+  double ifov_mrad = 0;             ///< of one pixel, from the plan
+  double distance_m = 0;            ///< entrance pupil to plate
+  std::vector<TargetPlate> plates;  ///< in identity mounting
+  int registration_frames = 32;     ///< averaged at the highest contrast
+  int contrast_frames = 16;         ///< averaged for the effective contrast, once per plate, mounting and contrast
+  double min_reference_px = 4;      ///< triangles from this size measure the effective contrast
+  int samples_per_pitch = 1;  ///< displayed samples per detector pitch (2: 2x2 microscan); the IFOV is that of a sample
+  /// By plate name: what effective_contrast() reads of a contrast of 1 K, blur included, from a simulated picture; 1
+  /// where it is not known. Measured contrasts are divided by it.
   std::map<std::string, double> contrast_response;
   int frames_after_change = 2;       ///< exposures discarded after the target moved (frames in flight)
   double nuc_interval_s = 0;         ///< correct the camera's non-uniformity this often; 0: never commanded

@@ -27,7 +27,7 @@ enum class Rejection {
 struct IntegrityOptions {
   int width = 0, height = 0;          ///< expected geometry; 0: not checked
   double max_saturated_share = 0.01;  ///< of all pixels
-  bool reject_frozen = true;          ///< false only for a simulated sensor without noise, whose frames are equal by right
+  bool reject_frozen = true;  ///< false only for a simulated sensor without noise, whose frames are equal by right
 };
 
 /// Looks at every frame in order of arrival. One thread at a time.
