@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -71,22 +72,21 @@ Result<Candidate> widest(const TrialGroup& trials, FitOptions options) {
   return by_place->drop() > by_presentation->drop() ? by_place : by_presentation;
 }
 
-// Effective contrast: mean over trials, standard error over the means of the presentations.
+// Effective contrast: mean over trials, standard error over the measurements of it. The camera measures a contrast once
+// per set-up and set-point; all presentations until the next change carry the same value.
 void add_contrast(TodPoint& point, const TrialGroup& trials) {
-  std::map<std::int64_t, std::pair<double, double>> presentations;
+  std::set<std::tuple<std::string, Mounting, double>> measurements;
   double sum = 0;
   for (const Trial* trial : trials) {
     sum += trial->delta_t_k;
-    auto& [part, number] = presentations[trial->presentation];
-    part += trial->delta_t_k;
-    number += 1;
+    measurements.emplace(trial->plate, trial->mounting, trial->delta_t_k);
   }
   point.delta_t_k = sum / static_cast<double>(trials.size());
-  const auto n = static_cast<double>(presentations.size());
+  const auto n = static_cast<double>(measurements.size());
   if (n < 2) return;
   double mean = 0, square = 0;
-  for (const auto& [id, part] : presentations) mean += part.first / part.second / n;
-  for (const auto& [id, part] : presentations) square += std::pow(part.first / part.second - mean, 2);
+  for (const auto& measurement : measurements) mean += std::get<double>(measurement) / n;
+  for (const auto& measurement : measurements) square += std::pow(std::get<double>(measurement) - mean, 2);
   point.delta_t_se_k = std::sqrt(square / (n - 1) / n);
 }
 

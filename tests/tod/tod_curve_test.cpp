@@ -74,13 +74,13 @@ TEST(TodCurve, GroupsTrialsByContrastStrongestFirst) {
   EXPECT_TRUE(curve->observer.empty() && curve->sensor.empty());
 }
 
-TEST(TodCurve, ReportsTheMeanEffectiveContrastAndItsErrorOverPresentations) {
+TEST(TodCurve, ReportsTheMeanEffectiveContrastAndItsErrorOverMeasurements) {
   const auto curve = tod_curve(trials_at(2, {}, 3), {});
 
   ASSERT_TRUE(curve);
   EXPECT_NEAR(curve->points[0].delta_t_k, 1.805, 1e-12);
-  // Half of the 24 presentations at 1.80, half at 1.81: sd = 0.005 sqrt(24/23), over sqrt(24).
-  EXPECT_NEAR(curve->points[0].delta_t_se_k, 0.005 / std::sqrt(23.0), 1e-12);
+  // Two measurements, 1.80 and 1.81, however many presentations share them: sd 0.01 / sqrt(2), over sqrt(2).
+  EXPECT_NEAR(curve->points[0].delta_t_se_k, 0.005, 1e-12);
 }
 
 TEST(TodCurve, ClustersByPresentationWhenPresentationsDiffer) {
