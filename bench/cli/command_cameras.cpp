@@ -74,12 +74,17 @@ void add_emulate_command(CLI::App& app, Program& program) {
   command->add_option("--serial", a->serial, "serial number of the camera")->capture_default_str();
   command->add_option("--plates", a->plates, "names or files, separated by commas")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->capture_default_str();
   command->add_option("--distance-m", a->distance_m, "from camera to plate")
-      ->check(CLI::Range(0.1, 1000.0))
+      ->check(number_in(0.1, 1000))
       ->capture_default_str();
-  command->add_option("--black-body-port", a->black_body_port, "0: the system chooses")->capture_default_str();
-  command->add_option("--stage-port", a->stage_port, "0: the system chooses")->capture_default_str();
+  command->add_option("--black-body-port", a->black_body_port, "0: the system chooses")
+      ->check(whole_number(0, 65535))
+      ->capture_default_str();
+  command->add_option("--stage-port", a->stage_port, "0: the system chooses")
+      ->check(whole_number(0, 65535))
+      ->capture_default_str();
   finish_command(*command, program, [a, &program](Console& console) {
     a->seed = program.common.seed;
     return run_emulate(console, *a, *program.stop);

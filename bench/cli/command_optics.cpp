@@ -66,20 +66,7 @@ void add_noise(cv::Mat1d& values, const SensorSpec& spec, std::uint64_t seed) {
   }
 }
 
-Result<void> check(const RenderArguments& a) {
-  const auto refuse = [](const char* what) { return fail(ErrorCode::invalid_input, what); };
-  if (!(a.size_pitch >= 0.01 && a.size_pitch <= 500))
-    return refuse("--size-pitch: expected 0.01 to 500 detector pitches");
-  if (!(std::abs(a.x_pitch) <= 1000 && std::abs(a.y_pitch) <= 1000))
-    return refuse("--x-pitch, --y-pitch: expected -1000 to 1000");
-  if (a.window < 1 || a.window > 1024) return refuse("--window: expected 1 to 1024 samples");
-  if (!std::isfinite(a.delta_t_k)) return refuse("--delta-t-k: expected a number");
-  if (!apex_from(a.apex)) return refuse("--apex: expected up, right, down or left");
-  return {};
-}
-
 int run_render(Console& console, RenderArguments a, std::uint64_t seed) {
-  if (auto valid = check(a); !valid) return report_error(console, valid.error());
   auto spec = load_sensor(a.sensor);
   if (!spec) return report_error(console, spec.error());
   if (a.microscan > 0) spec->microscan = a.microscan;
@@ -127,8 +114,6 @@ int run_mtf(Console& console, const MtfArguments& a) {
        system = Json::array();
   std::vector<TableRow> rows;
   for (const double f : a.frequency_per_pitch) {
-    if (!std::isfinite(f) || f < 0)
-      return report_error(console, {ErrorCode::invalid_input, "--frequency-per-pitch: expected numbers from 0"});
     const double o = optics(f);
     const double d = detector_mtf(f, 0, spec->detector_pitch_ratio());
     frequency.push_back(f);
@@ -156,14 +141,23 @@ void add_render_command(CLI::App& app, Program& program) {
   auto* command = app.add_subcommand("render", "the degraded image of one triangle");
   auto a = std::make_shared<RenderArguments>();
   command->add_option("--sensor", a->sensor, "name or file")->required();
-  command->add_option("--size-pitch", a->size_pitch, "square root of area, in detector pitches")->required();
-  command->add_option("--apex", a->apex, "up, right, down or left")->capture_default_str();
-  command->add_option("--x-pitch", a->x_pitch, "centroid from the middle sample, to the right");
-  command->add_option("--y-pitch", a->y_pitch, "centroid from the middle sample, downwards");
-  command->add_option("--delta-t-k", a->delta_t_k, "contrast")->capture_default_str();
-  command->add_option("--microscan", a->microscan, "samples per detector pitch and axis, in place of the sensor's");
-  command->add_option("--window", a->window, "samples on a side")->capture_default_str();
-  command->add_option("--accuracy", a->accuracy, "draft, normal or reference")->capture_default_str();
+  command->add_option("--size-pitch", a->size_pitch, "square root of area, in detector pitches")
+      ->check(number_in(0.01, 500))
+      ->required();
+  command->add_option("--apex", a->apex, "up, right, down or left")
+      ->check(CLI::IsMember({"up", "right", "down", "left"}))
+      ->capture_default_str();
+  command->add_option("--x-pitch", a->x_pitch, "centroid from the middle sample, to the right")
+      ->check(number_in(-1000, 1000));
+  command->add_option("--y-pitch", a->y_pitch, "centroid from the middle sample, downwards")
+      ->check(number_in(-1000, 1000));
+  command->add_option("--delta-t-k", a->delta_t_k, "contrast")->check(number_in(-1e6, 1e6))->capture_default_str();
+  command->add_option("--microscan", a->microscan, "samples per detector pitch and axis, in place of the sensor's")
+      ->check(whole_number(1, 4));
+  command->add_option("--window", a->window, "samples on a side")->check(whole_number(1, 1024))->capture_default_str();
+  command->add_option("--accuracy", a->accuracy, "draft, normal or reference")
+      ->check(CLI::IsMember({"draft", "normal", "reference"}))
+      ->capture_default_str();
   command->add_option("--noise", a->noise, "off or on")->check(CLI::IsMember({"off", "on"}))->capture_default_str();
   command->add_option("--tiff", a->tiff, "also write a 32-bit floating-point TIFF, in kelvin");
   finish_command(*command, program,
@@ -176,7 +170,9 @@ void add_mtf_command(CLI::App& app, Program& program) {
   command->add_option("--sensor", a->sensor, "name or file")->required();
   command->add_option("--frequency-per-pitch", a->frequency_per_pitch, "cycles per detector pitch, separated by commas")
       ->required()
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(number_in(0, 1e6));
   finish_command(*command, program, [a](Console& console) { return run_mtf(console, *a); });
 }
 

@@ -1,13 +1,14 @@
 // todbench measure, todbench simulate, todbench demo
-#include <chrono>
-#include <cmath>
+#include <algorithm>
+#include <cctype>
 #include <memory>
 
 #include "bench/cli/commands.h"
 #include "bench/cli/demonstration.h"
-#include "bench/run/default_design.h"
+#include "bench/cli/simulation_plan.h"
 #include "bench/run/experiment.h"
 #include "bench/session/provenance.h"
+#include "bench/session/resources.h"
 
 namespace todbench {
 namespace {
@@ -15,20 +16,15 @@ namespace {
 struct RunArguments {
   std::string plan;
   std::string out;
-  std::vector<std::string> force;  ///< as a flag: overwrite; with values (simulate): effects
-  bool forced = false;
+  bool overwrite = false;
 };
 
 struct SimulateArguments {
   RunArguments run;
-  std::string sensor, observer, accuracy;
-  int microscan = 0;
-  double tolerance_percent = 0;
-  std::vector<double> delta_t_k;
-  std::vector<std::string> skip;
+  SimulationOverrides overrides;
 };
 
-/// "session-20260131T123456Z-NAME" in the current folder.
+/// "session-20260131T123456Z-NAME" in the current folder; a second one within the same second gets a number.
 std::string default_folder(const std::string& name) {
   std::string stamp;
   for (const char c : utc_now()) {
@@ -40,8 +36,9 @@ std::string default_folder(const std::string& name) {
 }
 
 ExperimentOptions folder_of(const RunArguments& arguments, const Plan& plan) {
-  return {.folder = arguments.out.empty() ? default_folder(plan.name) : arguments.out,
-          .existing = arguments.forced ? ExistingFolder::overwrite : ExistingFolder::refuse};
+  if (arguments.out.empty()) return {.folder = default_folder(plan.name), .existing = ExistingFolder::number};
+  return {.folder = arguments.out,
+          .existing = arguments.overwrite ? ExistingFolder::overwrite : ExistingFolder::refuse};
 }
 
 ExperimentListener listener_of(Console& console) {
@@ -81,22 +78,37 @@ void print_comparison(const Console& console, const ExperimentOutcome& outcome) 
                     twin != nullptr ? range(acuity_interval(twin->fit.ci95), 4) : "–", fixed(c.ratio, 3),
                     range(c.ratio_ci95, 3), std::string(to_string(c.verdict))});
   }
-  console.table({"dT [K]", "acuity real [1/mrad]", "95 %", "acuity simulated", "95 %", "ratio", "95 %", "verdict"},
-                rows);
+  console.table(
+      {"dT [K]", "acuity measured [1/mrad]", "95 %", "simulated [1/mrad]", "95 %", "ratio", "95 %", "verdict"}, rows);
 }
 
-void print_verdict(const Console& console, const Verdict& verdict) {
-  for (const auto& item : verdict.items) {
-    console.text(std::string(to_string(item.kind)) + ": " + item.demand +
-                 (item.reason.empty() ? "" : " (" + item.reason + ")"));
+void print_effects(const Console& console, const SensorPlan& effects) {
+  std::vector<TableRow> rows;
+  for (const auto& d : effects.decisions) {
+    rows.push_back(
+        {std::string(to_string(d.effect)), d.decision == Decision::simulate ? "simulated" : "skipped", d.reason});
   }
-  console.text("verdict: " + std::string(to_string(verdict.overall)));
+  console.table({"effect", "decision", "reason"}, rows);
+}
+
+/// A run that ended early has no verdict: what is missing could have changed it.
+void print_verdict(const Console& console, const ExperimentOutcome& outcome) {
+  if (outcome.ended_by) return;
+  if (!outcome.verdict.items.empty()) console.text("");
+  for (const auto& item : outcome.verdict.items) {
+    console.text(std::string(to_string(item.kind)) + ": " + item.demand +
+                 (item.reason.empty() ? "" : "; " + item.reason));
+  }
+  console.text("");
+  console.text("verdict: " + std::string(to_string(outcome.verdict.overall)) +
+               (outcome.verdict.items.empty() ? " (no limits were asked for, every threshold was found)" : ""));
 }
 
 int finish(Console& console, const ExperimentOutcome& outcome) {
   console.note("session: " + outcome.folder.string());
   if (outcome.ended_by) {
-    console.error("ended early: " + outcome.ended_by->message);
+    console.error("ended early: " + outcome.ended_by->message + "; the trials so far are in " +
+                  outcome.folder.string());
     return exit_code(outcome.ended_by->code);
   }
   return exit_code(outcome.verdict.overall);
@@ -117,59 +129,14 @@ int run_measure(Console& console, const RunArguments& arguments, const Program& 
       console.text("");
       print_comparison(console, *outcome);
     }
-    console.text("");
-    print_verdict(console, outcome->verdict);
+    print_verdict(console, *outcome);
   }
   return finish(console, *outcome);
 }
 
-/// Overrides of the command line; names that are no effect are refused with the known ones.
-Result<std::vector<Effect>> effects_of(const std::vector<std::string>& names, std::string_view option) {
-  std::vector<Effect> effects;
-  for (const auto& name : names) {
-    const auto effect = effect_from(name);
-    if (!effect) {
-      std::string known;
-      for (const Effect e : all_effects) known += (known.empty() ? "" : ", ") + std::string(to_string(e));
-      return fail(ErrorCode::invalid_input, std::string(option) + " " + name + ": not an effect; known are " + known);
-    }
-    effects.push_back(*effect);
-  }
-  return effects;
-}
-
-Result<Plan> simulation_plan(SimulateArguments a, const Program& program) {
-  // "--force" alone overwrites the folder; a value that is no effect is the plan that follows the flag.
-  if (a.run.plan.empty() && !a.run.force.empty() && !effect_from(a.run.force.back())) {
-    a.run.plan = a.run.force.back();
-    a.run.force.pop_back();
-  }
-  auto plan = load_plan(a.run.plan.empty() ? "demo" : a.run.plan);
-  if (!plan) return plan;
-  if (program.common.seed_given) plan->seed = program.common.seed;
-  if (!a.sensor.empty()) plan->simulation.sensor = a.sensor;
-  if (!a.observer.empty()) plan->observer = a.observer;
-  if (!a.accuracy.empty()) plan->simulation.accuracy = a.accuracy;
-  if (a.microscan > 0) plan->simulation.microscan = a.microscan;
-  if (a.tolerance_percent > 0) plan->simulation.tolerance_percent = a.tolerance_percent;
-  if (!a.delta_t_k.empty()) plan->target.delta_t_k = a.delta_t_k;
-  auto skip = effects_of(a.skip, "--skip");
-  if (!skip) return tl::unexpected(skip.error());
-  auto force = effects_of(a.run.force, "--force");
-  if (!force) return tl::unexpected(force.error());
-  plan->simulation.skip.insert(plan->simulation.skip.end(), skip->begin(), skip->end());
-  plan->simulation.force.insert(plan->simulation.force.end(), force->begin(), force->end());
-  if (!a.run.plan.empty()) return plan;
-  // Without a plan file there is no unit under test: no limits, and a distance at which the plates suit the sensor.
-  plan->name = "simulate";
-  plan->limits = {};
-  plan->camera = {};
-  plan->target.kind = TargetKind::scene;
-  return with_suitable_distance(std::move(*plan));
-}
-
 int run_simulate(Console& console, SimulateArguments arguments, const Program& program) {
-  auto plan = simulation_plan(arguments, program);
+  if (program.common.seed_given) arguments.overrides.seed = program.common.seed;
+  auto plan = simulation_plan(arguments.overrides, program.stop->token());
   if (!plan) return report_error(console, plan.error());
   auto outcome = simulate_plan(*plan, folder_of(arguments.run, *plan), listener_of(console), program.stop->token());
   console.end_progress();
@@ -178,11 +145,9 @@ int run_simulate(Console& console, SimulateArguments arguments, const Program& p
     console.object(curve_json(outcome->curve, outcome->effects, outcome->figures));
   } else {
     print_curve(console, outcome->curve);
-    for (const auto& d : outcome->effects.decisions) {
-      console.text("  " + std::string(to_string(d.effect)) + ": " +
-                   (d.decision == Decision::simulate ? "simulated" : "skipped") + ", " + d.reason);
-    }
-    print_verdict(console, outcome->verdict);
+    console.text("");
+    print_effects(console, outcome->effects);
+    print_verdict(console, *outcome);
   }
   return finish(console, *outcome);
 }
@@ -216,8 +181,7 @@ int run_demo(Console& console, const RunArguments& arguments, const Program& pro
                     {"session", outcome->folder.string()}});
   } else {
     if (outcome->comparison) print_comparison(console, *outcome);
-    console.text("");
-    print_verdict(console, outcome->verdict);
+    print_verdict(console, *outcome);
     console.text("report: " + (outcome->folder / "report.html").string());
   }
   return finish(console, *outcome);
@@ -228,6 +192,11 @@ int run_demo(Console& console, const RunArguments& arguments, const Program& pro
       console,
       {ErrorCode::not_found, "this build has no camera libraries: the demonstration needs the emulated GigE camera"});
 #endif
+}
+
+bool names_a_plan(const std::string& word) {
+  const auto names = resource_names(ResourceKind::plan);
+  return is_file_reference(word) || std::find(names.begin(), names.end(), word) != names.end();
 }
 
 void add_folder_options(CLI::App& command, RunArguments& arguments) {
@@ -241,33 +210,46 @@ void add_measure_command(CLI::App& app, Program& program) {
   auto a = std::make_shared<RunArguments>();
   command->add_option("PLAN.toml", a->plan, "name or file")->required();
   add_folder_options(*command, *a);
-  command->add_flag("--force", a->forced, "overwrite the session in an existing folder");
+  command->add_flag("--force", a->overwrite, "overwrite the session in an existing folder");
   finish_command(*command, program, [a, &program](Console& console) { return run_measure(console, *a, program); });
 }
 
 void add_simulate_command(CLI::App& app, Program& program) {
   auto* command = app.add_subcommand("simulate", "the same with the simulated sensor");
   auto a = std::make_shared<SimulateArguments>();
-  command->add_option("PLAN.toml", a->run.plan, "name or file; without it the options below say what to simulate");
+  SimulationOverrides& o = a->overrides;
+  command->add_option("PLAN.toml", o.plan,
+                      "name or file; without it the options say what to simulate, at a distance that suits the sensor");
   add_folder_options(*command, a->run);
-  command->add_option("--sensor", a->sensor, "name or file");
-  command->add_option("--observer", a->observer, "name or file");
-  command->add_option("--microscan", a->microscan, "samples per detector pitch and axis")->check(CLI::Range(1, 4));
-  command->add_option("--delta-t-k", a->delta_t_k, "contrasts in kelvin, separated by commas")->delimiter(',');
-  command->add_option("--tolerance-percent", a->tolerance_percent, "what may be wrong in the 75 % acuity")
-      ->check(CLI::Range(0.01, 50.0));
-  command->add_option("--accuracy", a->accuracy, "draft, normal or reference");
-  command->add_option("--skip", a->skip, "effect not to simulate; may be repeated")->delimiter(',');
+  command->add_option("--sensor", o.sensor, "name or file");
+  command->add_option("--observer", o.observer, "name or file");
+  command->add_option("--microscan", o.microscan, "samples per detector pitch and axis, 1 to 4")
+      ->check(whole_number(1, 4));
+  command->add_option("--delta-t-k", o.delta_t_k, "contrasts in kelvin, separated by commas")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(number_in(-500, 500));
+  command->add_option("--tolerance-percent", o.tolerance_percent, "what may be wrong in the 75 % acuity")
+      ->check(number_in(0.01, 50));
+  command->add_option("--accuracy", o.accuracy, "draft, normal or reference");
+  command->add_option("--skip", o.skip, "effects not to simulate, separated by commas")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   auto* force = command->add_option(
-      "--force", a->run.force,
-      "with the name of an effect: simulate it; alone: overwrite the session in an existing folder");
+      "--force", o.force,
+      "with effects: simulate them, neutral or not; alone: overwrite the session in an existing folder");
   force->expected(0, 1)->delimiter(',')->take_all()->trigger_on_parse(false);
   finish_command(*command, program, [a, force, &program](Console& console) {
-    std::erase(a->run.force, std::string());
-    a->run.forced = force->count() > 0 && a->run.force.size() < force->count();
-    if (force->count() > 0 && !a->run.force.empty() && !effect_from(a->run.force.back()) && a->run.plan.empty())
-      a->run.forced = true;
-    return run_simulate(console, *a, program);
+    SimulationOverrides& given = a->overrides;
+    // The bare flag takes the word behind it for an effect; one that names a plan is the plan.
+    std::erase(given.force, std::string());
+    a->run.overwrite = given.force.size() < force->count();
+    if (given.plan.empty() && !given.force.empty() && names_a_plan(given.force.back())) {
+      given.plan = given.force.back();
+      given.force.pop_back();
+      a->run.overwrite = true;
+    }
+    return run_simulate(console, std::move(*a), program);
   });
 }
 
@@ -276,7 +258,7 @@ void add_demo_command(CLI::App& app, Program& program) {
       app.add_subcommand("demo", "the whole job on the emulated laboratory: measure, simulate, compare, report");
   auto a = std::make_shared<RunArguments>();
   add_folder_options(*command, *a);
-  command->add_flag("--force", a->forced, "overwrite the session in an existing folder");
+  command->add_flag("--force", a->overwrite, "overwrite the session in an existing folder");
   finish_command(*command, program, [a, &program](Console& console) { return run_demo(console, *a, program); });
 }
 

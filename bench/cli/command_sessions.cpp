@@ -67,13 +67,13 @@ int run_report(Console& console, const std::string& folder) {
   auto session = read_session(folder);
   if (!session) return report_error(console, session.error());
   const auto path = std::filesystem::path(folder);
-  auto data = report_data(*session, std::filesystem::weakly_canonical(path).filename().string());
+  auto data = report_data(*session, session_name(path));
   if (!data) return report_error(console, data.error());
   const auto file = path / "report.html";
   if (auto written = write_file_atomically(file, render_report(*data)); !written)
     return report_error(console, written.error());
   // A run that was cut off has no manifest; there is nothing to bring up to date then.
-  if (std::filesystem::exists(path / "manifest.json")) {
+  if (std::error_code none; std::filesystem::exists(path / "manifest.json", none)) {
     if (auto refreshed = refresh_manifest(path, {"report.html"}); !refreshed)
       return report_error(console, refreshed.error());
   }
@@ -93,7 +93,7 @@ void add_compare_command(CLI::App& app, Program& program) {
   command->add_option("A", a->a, "session folder")->required();
   command->add_option("B", a->b, "session folder")->required();
   command->add_option("--margin-percent", a->margin_percent, "equivalence margin; default: that of A's plan, or 10")
-      ->check(CLI::Range(0.1, 100.0));
+      ->check(number_in(0.1, 100));
   finish_command(*command, program, [a](Console& console) { return run_compare(console, *a); });
 }
 

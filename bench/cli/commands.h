@@ -28,6 +28,10 @@ struct Program {
 /// Adds --json, --quiet and --seed, and makes `action` what runs when the subcommand is chosen.
 void finish_command(CLI::App& command, Program& program, std::function<int(Console&)> action);
 
+/// Checks of option values. Unlike those of the parser they refuse NaN and say what was found.
+[[nodiscard]] CLI::Validator number_in(double low, double high);
+[[nodiscard]] CLI::Validator whole_number(std::int64_t low, std::int64_t high);
+
 /// Says what went wrong and returns the exit code for it.
 [[nodiscard]] int report_error(Console& console, const Error& error);
 

@@ -82,8 +82,8 @@ void Console::note(std::string_view sentence) {
 
 void Console::error(std::string_view sentence) {
   end_progress();
-  const std::string text = "todbench: " + one_line(sentence) + "\n";
-  std::fputs((colour_ ? "\033[31m" + text + "\033[0m" : text).c_str(), stderr);
+  const std::string text = "todbench: " + one_line(sentence);
+  std::fputs(((colour_ ? "\033[31m" + text + "\033[0m" : text) + "\n").c_str(), stderr);
 }
 
 void Console::phase(std::string_view name) {
@@ -115,6 +115,11 @@ void Console::end_progress() {
   if (!bar_shown_) return;
   std::fputs("\r\033[K", stderr);
   bar_shown_ = false;
+}
+
+Result<void> finish_output() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return {};
+  return fail(ErrorCode::io, "standard output cannot be written: it is full or closed");
 }
 
 std::string fixed(const std::optional<double>& value, int decimals) {

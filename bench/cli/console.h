@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,6 +52,9 @@ class Console {
   std::chrono::steady_clock::time_point phase_start_;
   std::chrono::steady_clock::time_point last_draw_;
 };
+
+/// What was written to standard output reached it: `io` when it is full or closed.
+[[nodiscard]] Result<void> finish_output();
 
 /// "0.480", "–" for a missing number.
 [[nodiscard]] std::string fixed(const std::optional<double>& value, int decimals);

@@ -1,6 +1,12 @@
 // todbench: the command line.
+#include <signal.h>
+
+#include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <exception>
+#include <limits>
+#include <vector>
 
 #include "bench/cli/commands.h"
 #include "bench/session/build_info.h"
@@ -13,6 +19,7 @@ void finish_command(CLI::App& command, Program& program, std::function<int(Conso
   command.add_flag("--json", program.common.console.json, "one JSON object on standard output, nothing else there");
   command.add_flag("--quiet,-q", program.common.console.quiet, "no progress and no notes on standard error");
   command.add_option("--seed", program.common.seed, "fixes all randomness")
+      ->check(whole_number(0, std::numeric_limits<std::int64_t>::max()))
       ->capture_default_str()
       ->each([&program](const std::string&) { program.common.seed_given = true; });
   command.callback([&program, action = std::move(action)] {
@@ -28,7 +35,63 @@ int report_error(Console& console, const Error& error) {
   return exit_code(error.code);
 }
 
+CLI::Validator number_in(double low, double high) {
+  const std::string expected = "a number from " + number_text(low) + " to " + number_text(high);
+  return CLI::Validator(
+      [=](const std::string& text) {
+        const auto value = parse_number(text);
+        return value && *value >= low && *value <= high ? std::string()
+                                                        : "expected " + expected + ", found '" + one_line(text) + "'";
+      },
+      "");
+}
+
+CLI::Validator whole_number(std::int64_t low, std::int64_t high) {
+  const std::string expected = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+  return CLI::Validator(
+      [=](const std::string& text) {
+        std::int64_t value = 0;
+        const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool whole = problem == std::errc() && end == text.data() + text.size();
+        return whole && value >= low && value <= high ? std::string()
+                                                      : "expected " + expected + ", found '" + one_line(text) + "'";
+      },
+      "");
+}
+
 namespace {
+
+/// What is wrong with a command line, in one sentence that names the nearest thing that would have been right.
+std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& words) {
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+  const std::string asked = words.empty() || words.front().starts_with('-') ? "" : words.front();
+  const bool known = std::find(commands.begin(), commands.end(), asked) != commands.end();
+  if (words.empty()) return "no command was given (todbench --help lists them)";
+  if (asked.empty()) return one_line(error.what()) + " (todbench --help lists the commands)";
+  if (!known) {
+    return "unknown command '" + one_line(asked) + "'" + nearest_name_hint(asked, commands) +
+           " (todbench --help lists the commands)";
+  }
+  const CLI::App* command = app.get_subcommand(asked);
+  std::vector<std::string> options;
+  for (const CLI::Option* option : command->get_options()) {
+    for (const auto& name : option->get_lnames()) options.push_back("--" + name);
+  }
+  for (const auto& word : words) {
+    const std::string name = word.substr(0, word.find('='));
+    if (!name.starts_with("--") || std::find(options.begin(), options.end(), name) != options.end()) continue;
+    return asked + ": unknown option " + one_line(name) + nearest_name_hint(name, options);
+  }
+  if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr) return asked + ": " + one_line(error.what());
+  return asked + ": " + one_line(error.what()) + " (todbench " + asked + " --help lists the options)";
+}
+
+/// A disk limit or a reader that went away is an error of that write, not the end of a measurement.
+void write_errors_instead_of_signals() {
+  ::signal(SIGPIPE, SIG_IGN);
+  ::signal(SIGXFSZ, SIG_IGN);
+}
 
 int run(int argc, char** argv) {
   StopSignals stop;
@@ -53,10 +116,16 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& success) {
     return app.exit(success);
   } catch (const CLI::ParseError& error) {
-    std::fprintf(stderr, "todbench: %s (todbench --help lists what can be asked)\n", one_line(error.what()).c_str());
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    std::fprintf(stderr, "todbench: %s\n", usage_sentence(app, error, words).c_str());
     return exit_code(ErrorCode::invalid_input);
   }
-  return program.chosen();
+  const int code = program.chosen();
+  if (auto written = finish_output(); !written) {
+    std::fprintf(stderr, "todbench: %s\n", written.error().message.c_str());
+    return exit_code(written.error().code);
+  }
+  return code;
 }
 
 }  // namespace
@@ -64,6 +133,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   // Nothing of the project throws across its interfaces; what third-party code throws is a defect, not a crash.
+  todbench::write_errors_instead_of_signals();
   try {
     return todbench::run(argc, argv);
   } catch (const std::exception& exception) {

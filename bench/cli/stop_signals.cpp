@@ -2,6 +2,7 @@
 
 #include <pthread.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <condition_variable>
 #include <mutex>
@@ -9,11 +10,18 @@
 namespace todbench {
 namespace {
 
+/// Wakes the waiter at the end; nobody else sends it.
+constexpr int own_signal = SIGUSR1;
+
 sigset_t stopping_signals() {
   sigset_t set;
   sigemptyset(&set);
-  sigaddset(&set, SIGINT);
-  sigaddset(&set, SIGTERM);
+  sigaddset(&set, own_signal);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction action {};
+    const bool ignored = ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+    if (!ignored) sigaddset(&set, signal);
+  }
   return set;
 }
 
@@ -23,15 +31,21 @@ StopSignals::StopSignals() {
   const sigset_t set = stopping_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   waiter_ = std::jthread([this, set] {
-    int signal = 0;
-    sigwait(&set, &signal);
-    stop_.request_stop();
+    while (true) {
+      int signal = 0;
+      sigwait(&set, &signal);
+      if (leaving_) return;
+      if (signal == own_signal) continue;
+      // Whoever asks twice does not want to wait for the end of the session; what is on disk stays readable.
+      if (stop_.stop_requested()) ::_exit(130);
+      stop_.request_stop();
+    }
   });
 }
 
 StopSignals::~StopSignals() {
-  // The waiter is released by a signal of our own.
-  pthread_kill(waiter_.native_handle(), SIGTERM);
+  leaving_ = true;
+  pthread_kill(waiter_.native_handle(), own_signal);
 }
 
 void StopSignals::wait() {

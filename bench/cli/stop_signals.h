@@ -1,13 +1,15 @@
 // Ctrl-C as a stop request.
 #pragma once
 
+#include <atomic>
 #include <stop_token>
 #include <thread>
 
 namespace todbench {
 
-/// Turns SIGINT and SIGTERM into a stop request. To be created before any other thread, which inherit the blocked
-/// signals.
+/// Turns SIGINT, SIGTERM and SIGHUP into a stop request; those that whoever started the program wants ignored (nohup,
+/// background jobs) stay ignored. A second signal ends the process at once with exit code 130. To be created before any
+/// other thread, which inherit the blocked signals.
 class StopSignals {
  public:
   StopSignals();
@@ -20,6 +22,7 @@ class StopSignals {
 
  private:
   std::stop_source stop_;
+  std::atomic<bool> leaving_{false};
   std::jthread waiter_;
 };
 

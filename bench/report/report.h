@@ -55,6 +55,7 @@ struct ReportData {
       conditions;  ///< name with unit, value: customer, lens, room temperature, ...
 
   std::optional<SourceInfo> camera;  ///< unit under test, as read from the device; nothing: only a simulation
+  std::string temperature_scale;     ///< of the camera, in words; empty: as the scale in `camera` describes itself
   double distance_m = 0;             ///< entrance pupil to plate; 0: not stated
   double ifov_mrad = 0;              ///< 0: not stated
   std::string target;                ///< instruments with serial numbers

@@ -15,7 +15,7 @@ Markup number_or_missing(double value, int digits, const std::string& unit, std:
   return std::isfinite(value) && value > 0 ? escaped(significant(value, digits) + " " + unit) : missing(reason);
 }
 
-std::vector<NamedValue> camera_values(const SourceInfo& camera) {
+std::vector<NamedValue> camera_values(const SourceInfo& camera, const std::string& temperature_scale) {
   const std::string size = std::to_string(camera.width) + " × " + std::to_string(camera.height) + " pixels";
   return {{"Manufacturer", text_or_missing(camera.vendor, not_reported)},
           {"Model", text_or_missing(camera.model, not_reported)},
@@ -26,7 +26,8 @@ std::vector<NamedValue> camera_values(const SourceInfo& camera) {
           {"Frame", escaped(size + ", " + std::to_string(camera.significant_bits) + " bit") +
                         (camera.pixel_format.empty() ? Markup{} : escaped(", " + camera.pixel_format))},
           {"Frame rate", number_or_missing(camera.frame_rate_hz, 3, "Hz", not_reported)},
-          {"Temperature scale", text_or_missing(camera.scale.describe(), "uncalibrated")}};
+          {"Temperature scale",
+           text_or_missing(temperature_scale.empty() ? camera.scale.describe() : temperature_scale, "uncalibrated")}};
 }
 
 Markup set_up_table(const ReportData& data) {
@@ -94,7 +95,8 @@ Markup signature(std::string_view role, std::string_view name) {
 Markup identification_section(const ReportData& data) {
   Markup unit;
   if (data.camera) {
-    unit = table_of_values("Unit under test, as read from the camera", camera_values(*data.camera));
+    unit = table_of_values("Unit under test, as read from the camera",
+                           camera_values(*data.camera, data.temperature_scale));
   } else {
     unit = table_of_values("Unit under test", {{"Camera", missing("simulation only, no camera was measured")}});
   }

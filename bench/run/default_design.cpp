@@ -10,7 +10,7 @@
 
 namespace todbench {
 
-Result<Plan> with_suitable_distance(Plan plan) {
+Result<Plan> with_suitable_distance(Plan plan, std::stop_token stop) {
   auto sensor = sensor_of(plan);
   if (!sensor) return tl::unexpected(sensor.error());
   auto plates = plates_of(plan);
@@ -22,8 +22,10 @@ Result<Plan> with_suitable_distance(Plan plan) {
   double log_sum = 0;
   int found = 0;
   for (const double contrast : plan.target.delta_t_k) {
-    const auto point = direct_estimate(*sensor, effects, observer, {contrast},
-                                       {.samples_per_pitch = sensor->microscan, .accuracy = Accuracy::draft()});
+    const auto point =
+        direct_estimate(*sensor, effects, observer, {contrast},
+                        {.samples_per_pitch = sensor->microscan, .accuracy = Accuracy::draft(), .stop = stop});
+    if (!point && point.error().code == ErrorCode::interrupted) return tl::unexpected(point.error());
     if (!point) continue;
     log_sum += std::log(point->front().s75_pitch * sensor->ifov_mrad());
     ++found;

@@ -42,8 +42,8 @@ struct ExperimentOutcome {
   std::optional<Error> ended_by;  ///< why it stopped early; the folder is valid and marked interrupted
 };
 
-/// Measures with the devices of the plan, runs its simulated twin and compares. Fails when nothing could be measured; a
-/// folder that was begun is then left marked interrupted.
+/// Measures with the devices of the plan, runs its simulated twin and compares. Fails when nothing could be measured:
+/// without a folder when a device cannot be opened, with a folder marked interrupted after that.
 [[nodiscard]] Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions& options,
                                                      const ExperimentListener& listener, std::stop_token stop);
 

@@ -1,5 +1,8 @@
 #include "bench/run/report_data.h"
 
+#include <cctype>
+#include <system_error>
+
 #include "bench/session/descriptions.h"
 #include "bench/session/plan_options.h"
 #include "bench/session/verdict.h"
@@ -21,9 +24,13 @@ SourceInfo source_info(const CameraRecord& record) {
   info.significant_bits = record.significant_bits;
   info.frame_rate_hz = record.frame_rate_hz;
   info.settings = record.settings;
-  info.settings["temperature scale"] = record.calibration;
   info.warnings = record.warnings;
   return info;
+}
+
+std::string sentence_case(std::string text) {
+  if (!text.empty()) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text;
 }
 
 LimitVerdict limit_verdict(VerdictKind kind) {
@@ -42,8 +49,12 @@ std::vector<LimitLine> limit_lines(const Verdict& verdict) {
   std::vector<LimitLine> lines;
   for (const auto& item : verdict.items) {
     LimitLine line;
-    line.quantity = item.demand;
-    line.limit = item.limit.value_or(0);
+    line.quantity = sentence_case(item.demand);
+    line.limit = item.limit;
+    // A demand without a contrast is agreement with the twin: a margin that no deviation may leave.
+    const bool on_acuity = item.delta_t_k != 0;
+    line.unit = std::string(on_acuity ? "1/mrad" : "%");
+    line.side = on_acuity ? LimitLine::Side::at_least : LimitLine::Side::at_most;
     line.value = item.value;
     line.ci95 = item.interval;
     line.verdict = limit_verdict(item.kind);
@@ -55,11 +66,12 @@ std::vector<LimitLine> limit_lines(const Verdict& verdict) {
 }
 
 void add_provenance(ReportData& data, const Provenance& provenance) {
-  data.provenance = {{"program", "todbench " + provenance.program_version},
-                     {"source commit", provenance.git_commit},
-                     {"compiler", provenance.compiler},
-                     {"host", provenance.host}};
-  for (const auto& [name, seed] : provenance.seeds) data.provenance.emplace_back("seed " + name, std::to_string(seed));
+  data.provenance = {{"Program", "todbench " + provenance.program_version},
+                     {"Source commit", provenance.git_commit},
+                     {"Compiler", provenance.compiler},
+                     {"Host", provenance.host}};
+  for (const auto& [name, seed] : provenance.seeds)
+    data.provenance.emplace_back("Seed of the " + name, std::to_string(seed));
   for (const auto& instrument : provenance.instruments) {
     data.conditions.emplace_back(instrument.name,
                                  "serial " + instrument.serial + ", certificate " + instrument.certificate +
@@ -68,6 +80,13 @@ void add_provenance(ReportData& data, const Provenance& provenance) {
 }
 
 }  // namespace
+
+std::string session_name(const std::filesystem::path& folder) {
+  std::error_code problem;
+  std::filesystem::path path = std::filesystem::weakly_canonical(folder, problem);
+  if (problem) path = folder.lexically_normal();
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
 
 Result<ReportData> report_data(const Session& session, const std::string& name) {
   const Plan& plan = session.plan;
@@ -79,9 +98,12 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
   data.finished = provenance.ended_utc;
   data.operator_name = plan.operator_name;
   data.place = plan.place;
-  if (!plan.unit.empty()) data.conditions.emplace_back("unit under test", plan.unit);
+  if (!plan.unit.empty()) data.conditions.emplace_back("Unit under test", plan.unit);
   if (!plan.notes.empty()) data.notes.push_back(plan.notes);
-  if (provenance.camera) data.camera = source_info(*provenance.camera);
+  if (provenance.camera) {
+    data.camera = source_info(*provenance.camera);
+    data.temperature_scale = provenance.camera->calibration;
+  }
   data.distance_m = plan.target.distance_m;
   data.ifov_mrad = plan.camera.ifov_mrad;
   data.target = provenance.target;

@@ -1,7 +1,11 @@
 #include "bench/session/session_folder.h"
 
+#include <unistd.h>
+
+#include <cerrno>
 #include <cmath>
 #include <set>
+#include <system_error>
 
 #include "bench/session/files.h"
 #include "bench/session/fit_record.h"
@@ -13,6 +17,14 @@ namespace {
 
 std::filesystem::path trials_file(const std::filesystem::path& folder, SessionCurve which) {
   return folder / (which == SessionCurve::main ? "trials.csv" : "trials_simulated.csv");
+}
+
+/// A folder that cannot be had is a wrong choice; a disk that is full or broken is not.
+ErrorCode code_of(const std::error_code& problem) {
+  for (const std::errc of_the_disk : {std::errc::no_space_on_device, std::errc::io_error}) {
+    if (problem == of_the_disk) return ErrorCode::io;
+  }
+  return ErrorCode::invalid_input;
 }
 
 Result<void> remove_session_files(const std::filesystem::path& folder) {
@@ -115,20 +127,37 @@ Result<void> read_all_trials(const std::filesystem::path& folder, Session& sessi
 }  // namespace
 
 Result<SessionFolder> SessionFolder::create(const std::filesystem::path& folder, ExistingFolder existing) {
+  if (existing == ExistingFolder::number) return create_numbered(folder);
   std::error_code problem;
   if (std::filesystem::exists(folder, problem) && !std::filesystem::is_directory(folder, problem)) {
     return fail(ErrorCode::invalid_input, folder.string() + ": is a file, expected a folder");
   }
   std::filesystem::create_directories(folder, problem);
-  if (problem) return fail(ErrorCode::io, folder.string() + ": cannot be created: " + problem.message());
+  if (problem) return fail(code_of(problem), folder.string() + ": cannot be created: " + problem.message());
   const bool empty = std::filesystem::is_empty(folder, problem);
-  if (problem) return fail(ErrorCode::io, folder.string() + ": cannot be read: " + problem.message());
+  if (problem) return fail(code_of(problem), folder.string() + ": cannot be read: " + problem.message());
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+    return fail(ErrorCode::invalid_input,
+                folder.string() + ": cannot be written to: " + std::generic_category().message(errno));
+  }
   if (!empty && existing == ExistingFolder::refuse) {
     return fail(ErrorCode::invalid_input,
                 folder.string() + ": the folder is not empty; choose another or allow overwriting (--force)");
   }
   if (const Result<void> removed = remove_session_files(folder); !removed) return tl::unexpected(removed.error());
   return SessionFolder(folder);
+}
+
+Result<SessionFolder> SessionFolder::create_numbered(const std::filesystem::path& folder) {
+  std::filesystem::path name = folder;
+  for (int number = 2;; ++number) {
+    std::error_code problem;
+    // Only one of several programs creates a folder.
+    if (std::filesystem::create_directory(name, problem)) return SessionFolder(name);
+    if (problem && problem != std::errc::file_exists)
+      return fail(code_of(problem), name.string() + ": cannot be created: " + problem.message());
+    name = folder.string() + "-" + std::to_string(number);
+  }
 }
 
 Result<void> SessionFolder::write_plan(const Plan& plan) {

@@ -21,6 +21,7 @@ namespace todbench {
 enum class ExistingFolder {
   refuse,
   overwrite,  ///< removes the files of an earlier session, never anything else
+  number,     ///< takes a new folder beside it, with -2, -3, ... behind the name
 };
 
 /// Which of the two curves of a session: the one that the session is about, or its simulated twin.
@@ -30,8 +31,8 @@ enum class SessionCurve { main, twin };
 /// Every function fails with `io` and the path when the disk refuses.
 class SessionFolder {
  public:
-  /// Creates the folder with its parents. `invalid_input` when it exists, is not empty and may not be overwritten, or
-  /// is a file.
+  /// Creates the folder with its parents. `invalid_input` when it exists, is not empty and may not be overwritten, is a
+  /// file, or may not be created or written to.
   [[nodiscard]] static Result<SessionFolder> create(const std::filesystem::path& folder, ExistingFolder existing);
 
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
@@ -54,6 +55,7 @@ class SessionFolder {
   [[nodiscard]] Result<void> finish(Provenance provenance, SessionState state);
 
  private:
+  [[nodiscard]] static Result<SessionFolder> create_numbered(const std::filesystem::path& folder);
   explicit SessionFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
   std::filesystem::path folder_;
 };

@@ -3,12 +3,14 @@
 namespace todbench {
 
 Result<double> contrast_response(const SensorModel& model, const TargetPlate& plate, double distance_m,
-                                 double min_reference_px, const RegistrationOptions& registration) {
+                                 double min_reference_px, const RegistrationOptions& registration,
+                                 std::stop_token stop) {
   // Phases are those of the plate's own triangles, shifted by half a pixel the second time.
   double sum = 0;
   int count = 0;
   for (const Mounting mounting : all_mountings) {
     for (const double phase : {0.0, 0.5}) {
+      if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
       PlateScene scene;
       scene.plate = mounted(plate, mounting);
       scene.delta_t_k = 1;

@@ -1,6 +1,8 @@
 // What the measure of effective contrast makes of a known contrast, blur included.
 #pragma once
 
+#include <stop_token>
+
 #include "acquisition/core/result.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "tod/registration.h"
@@ -9,8 +11,9 @@ namespace todbench {
 
 /// Mean of effective_contrast() over the four mountings and several sampling phases of noise-free pictures at a
 /// contrast of 1 K: just below 1, because blur reaches the inside of small triangles. Errors as register_plate() and
-/// effective_contrast().
+/// effective_contrast(); `interrupted` within one picture of a stop request.
 [[nodiscard]] Result<double> contrast_response(const SensorModel& model, const TargetPlate& plate, double distance_m,
-                                               double min_reference_px, const RegistrationOptions& registration);
+                                               double min_reference_px, const RegistrationOptions& registration,
+                                               std::stop_token stop = {});
 
 }  // namespace todbench
