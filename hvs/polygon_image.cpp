@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <mutex>
 #include <numbers>
 #include <vector>
@@ -45,14 +44,13 @@ void add_product(const double* re, const double* im, Complex factor, std::size_t
   }
 }
 
-/// The same for values whose two parts lie side by side.
+/// values * factors, number by number.
 TODBENCH_MULTIVERSION
-void add_product(const Complex* values, Complex factor, std::size_t n, double* sum_re, double* sum_im) {
-  const double fr = factor.real();
-  const double fi = factor.imag();
+void product(const double* re, const double* im, const Complex* factors, std::size_t n, double* out_re,
+             double* out_im) {
   for (std::size_t k = 0; k < n; ++k) {
-    sum_re[k] += values[k].real() * fr - values[k].imag() * fi;
-    sum_im[k] += values[k].real() * fi + values[k].imag() * fr;
+    out_re[k] = re[k] * factors[k].real() - im[k] * factors[k].imag();
+    out_im[k] = re[k] * factors[k].imag() + im[k] * factors[k].real();
   }
 }
 
@@ -101,10 +99,6 @@ cv::Mat1d corner_of_inverse(const SplitMatrix& folded, cv::Size size) {
   return out;
 }
 
-struct FftwFree {
-  void operator()(void* memory) const { fftw_free(memory); }
-};
-
 /// In-place complex-to-real inverse transform of n x n points. FFTW_ESTIMATE, so that results repeat bit for bit.
 void inverse_in_place(fftw_complex* data, int n) {
   static std::mutex planner;  // FFTW's planner is not thread-safe; executing a plan is
@@ -132,15 +126,11 @@ FilterTable::FilterTable(FrequencyLattice lattice, const TransferFunction& trans
 }
 
 PolygonImage::PolygonImage(const Polygon& polygon, const FilterTable& filter)
-    : lattice_(filter.lattice()), spectrum_(polygon_spectrum(polygon, filter.lattice())) {
-  for (int row = 0; row < spectrum_.rows; ++row) {
-    Complex* values = spectrum_[row];
-    const Complex* gains = filter.values()[row];
-    for (int column = 0; column < spectrum_.cols; ++column) {
-      const Complex v = values[column];
-      const Complex g = gains[column];
-      values[column] = {v.real() * g.real() - v.imag() * g.imag(), v.real() * g.imag() + v.imag() * g.real()};
-    }
+    : lattice_(filter.lattice()), re_(filter.values().size()), im_(filter.values().size()) {
+  PolygonSpectrumRows spectrum(polygon, lattice_);
+  for (int row = 0; row < re_.rows; ++row) {
+    const auto [re, im] = spectrum.row(row);
+    product(re.data(), im.data(), filter.values()[row], re.size(), re_[row], im_[row]);
   }
 }
 
@@ -153,10 +143,10 @@ cv::Mat1d PolygonImage::sample(cv::Point2d first, double step, cv::Size size) co
 
   // Rows: shift to first.y, then fold frequencies that the sampling cannot tell apart.
   SplitMatrix rows(n, columns);
-  for (int row = 0; row < spectrum_.rows; ++row) {
+  for (int row = 0; row < re_.rows; ++row) {
     const Complex ramp = turn((row - band) * first.y / period);
     const std::size_t at = static_cast<std::size_t>(wrapped(row - band, n)) * columns;
-    add_product(spectrum_[row], ramp, columns, &rows.re[at], &rows.im[at]);
+    add_product(re_[row], im_[row], ramp, columns, &rows.re[at], &rows.im[at]);
   }
   // Columns likewise. Frequencies u > 0 count twice, for their mirror images; the real part is taken at the end.
   std::vector<Complex> ramps(columns);
@@ -180,23 +170,24 @@ cv::Mat1d PolygonImage::fine_image(int per_unit) const {
   const int n = per_unit * lattice_.period;
   const int band = lattice_.band;
   CV_Assert(n > 2 * band);
-  const std::size_t half = static_cast<std::size_t>(n) / 2 + 1;
-  const std::unique_ptr<fftw_complex[], FftwFree> data(fftw_alloc_complex(static_cast<std::size_t>(n) * half));
-  std::fill_n(&data[0][0], 2 * static_cast<std::size_t>(n) * half, 0.0);
-  for (int row = 0; row < spectrum_.rows; ++row) {
-    const auto target = static_cast<std::size_t>(wrapped(row - band, n)) * half;
+  // Transformed in place: rows of n / 2 + 1 complex numbers become rows of n real ones with padding behind.
+  const int half = n / 2 + 1;
+  cv::Mat1d data(n, 2 * half, 0.0);
+  for (int row = 0; row < re_.rows; ++row) {
+    const double* re = re_[row];
+    const double* im = im_[row];
+    double* target = data[wrapped(row - band, n)];
     for (int m = 0; m <= band; ++m) {
-      data[target + static_cast<std::size_t>(m)][0] = spectrum_(row, m).real();
-      data[target + static_cast<std::size_t>(m)][1] = spectrum_(row, m).imag();
+      target[2 * m] = re[m];
+      target[2 * m + 1] = im[m];
     }
   }
-  inverse_in_place(data.get(), n);
-  cv::Mat1d out(n, n);
+  inverse_in_place(reinterpret_cast<fftw_complex*>(data.ptr<double>()), n);
+  cv::Mat1d out = data.colRange(0, n);
   const double scale = 1.0 / (static_cast<double>(lattice_.period) * lattice_.period);
   for (int row = 0; row < n; ++row) {
-    const double* values = reinterpret_cast<const double*>(data.get() + static_cast<std::size_t>(row) * half);
-    double* target = out[row];
-    for (int column = 0; column < n; ++column) target[column] = values[column] * scale;
+    double* values = out[row];
+    for (int column = 0; column < n; ++column) values[column] *= scale;
   }
   return out;
 }
