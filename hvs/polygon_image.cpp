@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <mutex>
 #include <numbers>
+#include <vector>
+
+#include "acquisition/core/multiversion.h"
 
 namespace todbench {
 namespace {
@@ -24,40 +26,78 @@ int wrapped(int index, int n) {
   return ((index % n) + n) % n;
 }
 
+/// A complex matrix, real and imaginary parts apart: the form in which inner loops vectorise.
+struct SplitMatrix {
+  std::size_t columns;
+  std::vector<double> re, im;
+  SplitMatrix(int rows, std::size_t n) : columns(n), re(static_cast<std::size_t>(rows) * n), im(re.size()) {}
+};
+
+/// sum += values * factor, over `n` complex numbers.
+TODBENCH_MULTIVERSION
+void add_product(const double* re, const double* im, Complex factor, std::size_t n, double* sum_re, double* sum_im) {
+  const double fr = factor.real();
+  const double fi = factor.imag();
+  for (std::size_t k = 0; k < n; ++k) {
+    sum_re[k] += re[k] * fr - im[k] * fi;
+    sum_im[k] += re[k] * fi + im[k] * fr;
+  }
+}
+
+/// values * factors, number by number.
+TODBENCH_MULTIVERSION
+void product(const double* re, const double* im, const Complex* factors, std::size_t n, double* out_re,
+             double* out_im) {
+  for (std::size_t k = 0; k < n; ++k) {
+    out_re[k] = re[k] * factors[k].real() - im[k] * factors[k].imag();
+    out_im[k] = re[k] * factors[k].imag() + im[k] * factors[k].real();
+  }
+}
+
+/// sum += values * factors, number by number.
+TODBENCH_MULTIVERSION
+void add_products(const double* re, const double* im, const Complex* factors, std::size_t n, double* sum_re,
+                  double* sum_im) {
+  for (std::size_t k = 0; k < n; ++k) {
+    sum_re[k] += re[k] * factors[k].real() - im[k] * factors[k].imag();
+    sum_im[k] += re[k] * factors[k].imag() + im[k] * factors[k].real();
+  }
+}
+
+/// sum += Re(factor * roots), over `n` points.
+TODBENCH_MULTIVERSION
+void add_real_part(double fr, double fi, const double* roots_re, const double* roots_im, std::size_t n, double* sum) {
+  for (std::size_t i = 0; i < n; ++i) sum[i] += fr * roots_re[i] - fi * roots_im[i];
+}
+
 /// out[j][i] = Re sum_b sum_k folded[b][k] exp(2 pi i (b j + k i) / n): a small inverse transform of which only a
-/// corner is wanted.
-cv::Mat1d corner_of_inverse(const cv::Mat_<Complex>& folded, cv::Size size) {
-  const int n = folded.rows;
-  std::vector<Complex> roots(static_cast<std::size_t>(n));
-  for (int i = 0; i < n; ++i) roots[static_cast<std::size_t>(i)] = turn(static_cast<double>(i) / n);
-  cv::Mat1d out(size);
-  std::vector<double> re(static_cast<std::size_t>(n)), im(re.size());
+/// corner is wanted. Every sum runs over b and k in increasing order, whatever the instruction set.
+cv::Mat1d corner_of_inverse(const SplitMatrix& folded, cv::Size size) {
+  const std::size_t n = folded.columns;
+  const auto width = static_cast<std::size_t>(size.width);
+  std::vector<Complex> roots(n);
+  for (std::size_t i = 0; i < n; ++i) roots[i] = turn(static_cast<double>(i) / static_cast<double>(n));
+  SplitMatrix along(static_cast<int>(n), width);  // row k: exp(2 pi i k i / n)
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t i = 0, bin = 0; i < width; ++i, bin = (bin + k) % n) {
+      along.re[k * width + i] = roots[bin].real();
+      along.im[k * width + i] = roots[bin].imag();
+    }
+  }
+  cv::Mat1d out(size, 0.0);
+  std::vector<double> re(n), im(n);
   for (int j = 0; j < size.height; ++j) {
     std::fill(re.begin(), re.end(), 0.0);
     std::fill(im.begin(), im.end(), 0.0);
-    for (int b = 0; b < n; ++b) {
-      const Complex root = roots[static_cast<std::size_t>(static_cast<long>(b) * j % n)];
-      const Complex* row = folded[b];
-      for (int k = 0; k < n; ++k) {
-        re[static_cast<std::size_t>(k)] += row[k].real() * root.real() - row[k].imag() * root.imag();
-        im[static_cast<std::size_t>(k)] += row[k].real() * root.imag() + row[k].imag() * root.real();
-      }
+    for (std::size_t b = 0; b < n; ++b) {
+      const Complex root = roots[b * static_cast<std::size_t>(j) % n];
+      add_product(&folded.re[b * n], &folded.im[b * n], root, n, re.data(), im.data());
     }
-    for (int i = 0; i < size.width; ++i) {
-      double sum = 0;
-      for (int k = 0; k < n; ++k) {
-        const Complex root = roots[static_cast<std::size_t>(static_cast<long>(k) * i % n)];
-        sum += re[static_cast<std::size_t>(k)] * root.real() - im[static_cast<std::size_t>(k)] * root.imag();
-      }
-      out(j, i) = sum;
-    }
+    for (std::size_t k = 0; k < n; ++k)
+      add_real_part(re[k], im[k], &along.re[k * width], &along.im[k * width], width, out[j]);
   }
   return out;
 }
-
-struct FftwFree {
-  void operator()(void* memory) const { fftw_free(memory); }
-};
 
 /// In-place complex-to-real inverse transform of n x n points. FFTW_ESTIMATE, so that results repeat bit for bit.
 void inverse_in_place(fftw_complex* data, int n) {
@@ -86,15 +126,11 @@ FilterTable::FilterTable(FrequencyLattice lattice, const TransferFunction& trans
 }
 
 PolygonImage::PolygonImage(const Polygon& polygon, const FilterTable& filter)
-    : lattice_(filter.lattice()), spectrum_(polygon_spectrum(polygon, filter.lattice())) {
-  for (int row = 0; row < spectrum_.rows; ++row) {
-    Complex* values = spectrum_[row];
-    const Complex* gains = filter.values()[row];
-    for (int column = 0; column < spectrum_.cols; ++column) {
-      const Complex v = values[column];
-      const Complex g = gains[column];
-      values[column] = {v.real() * g.real() - v.imag() * g.imag(), v.real() * g.imag() + v.imag() * g.real()};
-    }
+    : lattice_(filter.lattice()), re_(filter.values().size()), im_(filter.values().size()) {
+  PolygonSpectrumRows spectrum(polygon, lattice_);
+  for (int row = 0; row < re_.rows; ++row) {
+    const auto [re, im] = spectrum.row(row);
+    product(re.data(), im.data(), filter.values()[row], re.size(), re_[row], im_[row]);
   }
 }
 
@@ -106,29 +142,24 @@ cv::Mat1d PolygonImage::sample(cv::Point2d first, double step, cv::Size size) co
   const auto columns = static_cast<std::size_t>(band) + 1;
 
   // Rows: shift to first.y, then fold frequencies that the sampling cannot tell apart.
-  std::vector<std::vector<double>> re(static_cast<std::size_t>(n), std::vector<double>(columns, 0.0));
-  auto im = re;
-  for (int row = 0; row < spectrum_.rows; ++row) {
+  SplitMatrix rows(n, columns);
+  for (int row = 0; row < re_.rows; ++row) {
     const Complex ramp = turn((row - band) * first.y / period);
-    const Complex* values = spectrum_[row];
-    const auto bin = static_cast<std::size_t>(wrapped(row - band, n));
-    double* fold_re = re[bin].data();
-    double* fold_im = im[bin].data();
-    for (std::size_t m = 0; m < columns; ++m) {
-      fold_re[m] += values[m].real() * ramp.real() - values[m].imag() * ramp.imag();
-      fold_im[m] += values[m].real() * ramp.imag() + values[m].imag() * ramp.real();
-    }
+    const std::size_t at = static_cast<std::size_t>(wrapped(row - band, n)) * columns;
+    add_product(re_[row], im_[row], ramp, columns, &rows.re[at], &rows.im[at]);
   }
   // Columns likewise. Frequencies u > 0 count twice, for their mirror images; the real part is taken at the end.
-  cv::Mat_<Complex> folded(n, n, Complex(0, 0));
-  for (std::size_t m = 0; m < columns; ++m) {
-    const Complex ramp = turn(static_cast<double>(m) * first.x / period) * (m == 0 ? 1.0 : 2.0);
-    const int bin = static_cast<int>(m) % n;
-    for (int row = 0; row < n; ++row) {
-      const auto r = static_cast<std::size_t>(row);
-      folded(row, bin) +=
-          Complex(re[r][m] * ramp.real() - im[r][m] * ramp.imag(), re[r][m] * ramp.imag() + im[r][m] * ramp.real());
-    }
+  std::vector<Complex> ramps(columns);
+  for (std::size_t m = 0; m < columns; ++m)
+    ramps[m] = turn(static_cast<double>(m) * first.x / period) * (m == 0 ? 1.0 : 2.0);
+  const auto bins = static_cast<std::size_t>(n);
+  SplitMatrix folded(n, bins);
+  for (std::size_t row = 0; row < bins; ++row) {
+    const double* re = &rows.re[row * columns];
+    const double* im = &rows.im[row * columns];
+    for (std::size_t begin = 0; begin < columns; begin += bins)
+      add_products(re + begin, im + begin, &ramps[begin], std::min(bins, columns - begin), &folded.re[row * bins],
+                   &folded.im[row * bins]);
   }
   cv::Mat1d out = corner_of_inverse(folded, size);
   out /= period * period;
@@ -139,23 +170,24 @@ cv::Mat1d PolygonImage::fine_image(int per_unit) const {
   const int n = per_unit * lattice_.period;
   const int band = lattice_.band;
   CV_Assert(n > 2 * band);
-  const std::size_t half = static_cast<std::size_t>(n) / 2 + 1;
-  const std::unique_ptr<fftw_complex[], FftwFree> data(fftw_alloc_complex(static_cast<std::size_t>(n) * half));
-  std::fill_n(&data[0][0], 2 * static_cast<std::size_t>(n) * half, 0.0);
-  for (int row = 0; row < spectrum_.rows; ++row) {
-    const auto target = static_cast<std::size_t>(wrapped(row - band, n)) * half;
+  // Transformed in place: rows of n / 2 + 1 complex numbers become rows of n real ones with padding behind.
+  const int half = n / 2 + 1;
+  cv::Mat1d data(n, 2 * half, 0.0);
+  for (int row = 0; row < re_.rows; ++row) {
+    const double* re = re_[row];
+    const double* im = im_[row];
+    double* target = data[wrapped(row - band, n)];
     for (int m = 0; m <= band; ++m) {
-      data[target + static_cast<std::size_t>(m)][0] = spectrum_(row, m).real();
-      data[target + static_cast<std::size_t>(m)][1] = spectrum_(row, m).imag();
+      target[2 * m] = re[m];
+      target[2 * m + 1] = im[m];
     }
   }
-  inverse_in_place(data.get(), n);
-  cv::Mat1d out(n, n);
+  inverse_in_place(reinterpret_cast<fftw_complex*>(data.ptr<double>()), n);
+  cv::Mat1d out = data.colRange(0, n);
   const double scale = 1.0 / (static_cast<double>(lattice_.period) * lattice_.period);
   for (int row = 0; row < n; ++row) {
-    const double* values = reinterpret_cast<const double*>(data.get() + static_cast<std::size_t>(row) * half);
-    double* target = out[row];
-    for (int column = 0; column < n; ++column) target[column] = values[column] * scale;
+    double* values = out[row];
+    for (int column = 0; column < n; ++column) values[column] *= scale;
   }
   return out;
 }

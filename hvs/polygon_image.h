@@ -45,14 +45,15 @@ class PolygonImage {
   [[nodiscard]] cv::Mat1d sample(cv::Point2d first, double step, cv::Size size) const;
 
   /// The whole period at `per_unit` points per unit length: all per_unit^2 sampling phases at once, by one inverse FFT.
-  /// Point (j, i) is at (i, j) / per_unit, periodic (negative positions wrap). Requires per_unit * period > 2 band.
+  /// Point (j, i) is at (i, j) / per_unit, periodic (negative positions wrap). Rows are padded: not continuous.
+  /// Requires per_unit * period > 2 band.
   [[nodiscard]] cv::Mat1d fine_image(int per_unit) const;
 
   [[nodiscard]] const FrequencyLattice& lattice() const { return lattice_; }
 
  private:
   FrequencyLattice lattice_;
-  cv::Mat_<std::complex<double>> spectrum_;
+  cv::Mat1d re_, im_;  ///< parts of the spectrum, apart so that sums over it vectorise
 };
 
 }  // namespace todbench

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "acquisition/core/multiversion.h"
+
 namespace todbench {
 namespace {
 
@@ -65,47 +67,39 @@ std::complex<double> spectrum_at(const Polygon& polygon, double kx, double ky) {
   return std::complex<double>(0, 1) / k_squared * sum;
 }
 
-/// exp(-2 pi i m x / period) for m = first..first + count - 1, real and imaginary parts apart.
-struct PhaseTable {
-  std::vector<double> re, im;
-  PhaseTable(int first, int count, double x, double period) : re(static_cast<std::size_t>(count)), im(re.size()) {
-    for (int i = 0; i < count; ++i) {
-      // The fraction of a turn is reduced before the trigonometric functions see it: exact for whole and half turns.
-      const double turns = static_cast<double>(first + i) * x / period;
-      const double angle = -two_pi * (turns - std::nearbyint(turns));
-      re[static_cast<std::size_t>(i)] = std::cos(angle);
-      im[static_cast<std::size_t>(i)] = std::sin(angle);
-    }
+/// factor * values, over `n` complex numbers.
+TODBENCH_MULTIVERSION
+void multiply(const double* re, const double* im, double fr, double fi, std::size_t n, double* out_re, double* out_im) {
+  for (std::size_t m = 0; m < n; ++m) {
+    out_re[m] = re[m] * fr - im[m] * fi;
+    out_im[m] = re[m] * fi + im[m] * fr;
   }
-};
+}
 
-/// One row of the lattice: wave numbers, and the sums over edges in split form.
-struct Row {
-  std::vector<double> kx, re, im, ratio;
-  std::vector<std::vector<double>> e_re, e_im;
-};
-
-/// Adds edge v -> w to the row. `kn / kd` is zero where the quotient is unsafe; those points are computed singly
-/// afterwards.
-void add_edge(Row& row, std::size_t v, std::size_t w, cv::Point2d d, double ky) {
-  const std::size_t n = row.kx.size();
-  const double* kx = row.kx.data();
-  double* ratio = row.ratio.data();
+/// Adds T_e = (kn / kd) (E_v - E_w) of the edge v -> w = v + d. The quotient is taken as zero where it is unsafe; those
+/// points are computed singly afterwards.
+TODBENCH_MULTIVERSION
+void add_edge(const double* kx, double ky, cv::Point2d d, const double* vr, const double* vi, const double* wr,
+              const double* wi, std::size_t n, double* re, double* im) {
   for (std::size_t m = 0; m < n; ++m) {
     const double kd = kx[m] * d.x + ky * d.y;
     const double kn = kx[m] * d.y - ky * d.x;
-    const double safe = std::abs(kd) < series_limit ? 1.0 : kd;
-    ratio[m] = std::abs(kd) < series_limit ? 0.0 : kn / safe;
+    const bool unsafe = std::abs(kd) < series_limit;
+    const double quotient = kn / (unsafe ? 1.0 : kd);
+    const double ratio = unsafe ? 0.0 : quotient;
+    re[m] += ratio * (vr[m] - wr[m]);
+    im[m] += ratio * (vi[m] - wi[m]);
   }
-  const double* vr = row.e_re[v].data();
-  const double* vi = row.e_im[v].data();
-  const double* wr = row.e_re[w].data();
-  const double* wi = row.e_im[w].data();
-  double* re = row.re.data();
-  double* im = row.im.data();
+}
+
+/// Divides by k^2.
+TODBENCH_MULTIVERSION
+void divide_by_square(const double* kx, double ky, std::size_t n, double* re, double* im) {
   for (std::size_t m = 0; m < n; ++m) {
-    re[m] += ratio[m] * (vr[m] - wr[m]);
-    im[m] += ratio[m] * (vi[m] - wi[m]);
+    const double k_squared = kx[m] * kx[m] + ky * ky;
+    const double safe = k_squared > 1e-300 ? k_squared : 1e-300;
+    re[m] /= safe;
+    im[m] /= safe;
   }
 }
 
@@ -115,67 +109,90 @@ std::complex<double> polygon_spectrum(const Polygon& polygon, double u, double w
   return spectrum_at(positively_ordered(polygon), two_pi * u, two_pi * w);
 }
 
-cv::Mat_<std::complex<double>> polygon_spectrum(const Polygon& any_order, const FrequencyLattice& lattice) {
-  const Polygon polygon = positively_ordered(any_order);
-  const std::size_t vertices = polygon.size();
-  const int columns = lattice.band + 1;
-  const int rows = 2 * lattice.band + 1;
-  const double period = lattice.period;
-  const double reach = radius(polygon);
-  std::vector<PhaseTable> ex, ey;
-  for (const auto& vertex : polygon) {
-    ex.emplace_back(0, columns, vertex.x, period);
-    ey.emplace_back(-lattice.band, rows, vertex.y, period);
+PolygonSpectrumRows::PhaseTable::PhaseTable(int first, int count, double x, double period)
+    : re(static_cast<std::size_t>(count)), im(re.size()) {
+  for (int i = 0; i < count; ++i) {
+    // The fraction of a turn is reduced before the trigonometric functions see it: exact for whole and half turns.
+    const double turns = static_cast<double>(first + i) * x / period;
+    const double angle = -two_pi * (turns - std::nearbyint(turns));
+    re[static_cast<std::size_t>(i)] = std::cos(angle);
+    im[static_cast<std::size_t>(i)] = std::sin(angle);
   }
-  const auto n = static_cast<std::size_t>(columns);
-  Row row{std::vector<double>(n),
-          std::vector<double>(n),
-          std::vector<double>(n),
-          std::vector<double>(n),
-          std::vector(vertices, std::vector<double>(n)),
-          std::vector(vertices, std::vector<double>(n))};
-  for (std::size_t m = 0; m < n; ++m) row.kx[m] = two_pi * static_cast<double>(m) / period;
+}
 
-  cv::Mat_<std::complex<double>> spectrum(rows, columns);
-  for (int r = 0; r < rows; ++r) {
-    const double ky = two_pi * (r - lattice.band) / period;
-    for (std::size_t v = 0; v < vertices; ++v) {
-      const double yr = ey[v].re[static_cast<std::size_t>(r)];
-      const double yi = ey[v].im[static_cast<std::size_t>(r)];
-      for (std::size_t m = 0; m < n; ++m) {
-        row.e_re[v][m] = ex[v].re[m] * yr - ex[v].im[m] * yi;
-        row.e_im[v][m] = ex[v].re[m] * yi + ex[v].im[m] * yr;
-      }
+PolygonSpectrumRows::PolygonSpectrumRows(const Polygon& polygon, FrequencyLattice lattice)
+    : polygon_(positively_ordered(polygon)), lattice_(lattice), reach_(radius(polygon_)) {
+  const double period = lattice.period;
+  for (const auto& vertex : polygon_) {
+    ex_.emplace_back(0, lattice.band + 1, vertex.x, period);
+    ey_.emplace_back(-lattice.band, 2 * lattice.band + 1, vertex.y, period);
+  }
+  const auto n = static_cast<std::size_t>(lattice.band) + 1;
+  for (std::size_t m = 0; m < n; ++m) kx_.push_back(two_pi * static_cast<double>(m) / period);
+  re_.resize(n);
+  im_.resize(n);
+  e_re_.assign(polygon_.size(), std::vector<double>(n));
+  e_im_ = e_re_;
+}
+
+PolygonSpectrumRows::Row PolygonSpectrumRows::row(int r) {
+  const double ky = two_pi * (r - lattice_.band) / lattice_.period;
+  sum_edges(r, ky);
+  replace_unsafe(ky);
+  return {re_, im_};
+}
+
+void PolygonSpectrumRows::sum_edges(int r, double ky) {
+  const std::size_t n = kx_.size();
+  const std::size_t vertices = polygon_.size();
+  for (std::size_t v = 0; v < vertices; ++v) {
+    const auto at = static_cast<std::size_t>(r);
+    multiply(ex_[v].re.data(), ex_[v].im.data(), ey_[v].re[at], ey_[v].im[at], n, e_re_[v].data(), e_im_[v].data());
+  }
+  std::fill(re_.begin(), re_.end(), 0.0);
+  std::fill(im_.begin(), im_.end(), 0.0);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    const std::size_t w = (v + 1) % vertices;
+    add_edge(kx_.data(), ky, polygon_[w] - polygon_[v], e_re_[v].data(), e_im_[v].data(), e_re_[w].data(),
+             e_im_[w].data(), n, re_.data(), im_.data());
+  }
+  divide_by_square(kx_.data(), ky, n, re_.data(), im_.data());
+}
+
+/// Points at which the sum over edges loses digits.
+void PolygonSpectrumRows::replace_unsafe(double ky) {
+  const std::size_t n = kx_.size();
+  const auto replace = [&](std::size_t m) {
+    const std::complex<double> value = spectrum_at(polygon_, kx_[m], ky);
+    re_[m] = value.real();
+    im_[m] = value.imag();
+  };
+  for (std::size_t v = 0; v < polygon_.size(); ++v) {
+    const auto d = polygon_[(v + 1) % polygon_.size()] - polygon_[v];
+    // Columns on which |kx dx + ky dy| is below the limit: all, none, or a short run round -ky dy / dx.
+    std::size_t first = 0;
+    std::size_t last = n;
+    if (std::abs(d.x) * kx_[n - 1] > series_limit) {
+      const double step = two_pi / lattice_.period;
+      const double middle = -ky * d.y / d.x / step;
+      const double half = series_limit / std::abs(d.x) / step + 1;
+      first = static_cast<std::size_t>(std::clamp(std::floor(middle - half), 0.0, static_cast<double>(n)));
+      last = static_cast<std::size_t>(std::clamp(std::ceil(middle + half) + 1, 0.0, static_cast<double>(n)));
     }
-    std::fill(row.re.begin(), row.re.end(), 0.0);
-    std::fill(row.im.begin(), row.im.end(), 0.0);
-    for (std::size_t v = 0; v < vertices; ++v) {
-      add_edge(row, v, (v + 1) % vertices, polygon[(v + 1) % vertices] - polygon[v], ky);
+    for (std::size_t m = first; m < last; ++m) {
+      if (std::abs(kx_[m] * d.x + ky * d.y) < series_limit) replace(m);
     }
+  }
+  for (std::size_t m = 0; m < n && std::hypot(kx_[m], ky) * reach_ < small_wave_limit; ++m) replace(m);
+}
+
+cv::Mat_<std::complex<double>> polygon_spectrum(const Polygon& polygon, const FrequencyLattice& lattice) {
+  PolygonSpectrumRows rows(polygon, lattice);
+  cv::Mat_<std::complex<double>> spectrum(2 * lattice.band + 1, lattice.band + 1);
+  for (int r = 0; r < spectrum.rows; ++r) {
+    const auto [re, im] = rows.row(r);
     std::complex<double>* out = spectrum[r];
-    for (std::size_t m = 0; m < n; ++m) {
-      const double k_squared = row.kx[m] * row.kx[m] + ky * ky;
-      out[m] = {row.re[m] / std::max(k_squared, 1e-300), row.im[m] / std::max(k_squared, 1e-300)};
-    }
-    for (std::size_t v = 0; v < vertices; ++v) {
-      const auto d = polygon[(v + 1) % vertices] - polygon[v];
-      // Columns on which |kx dx + ky dy| is below the limit: all, none, or a short run round -ky dy / dx.
-      std::size_t first = 0;
-      std::size_t last = n;
-      if (std::abs(d.x) * row.kx[n - 1] > series_limit) {
-        const double step = two_pi / period;
-        const double middle = -ky * d.y / d.x / step;
-        const double half = series_limit / std::abs(d.x) / step + 1;
-        first = static_cast<std::size_t>(std::clamp(std::floor(middle - half), 0.0, static_cast<double>(n)));
-        last = static_cast<std::size_t>(std::clamp(std::ceil(middle + half) + 1, 0.0, static_cast<double>(n)));
-      }
-      for (std::size_t m = first; m < last; ++m) {
-        if (std::abs(row.kx[m] * d.x + ky * d.y) < series_limit) out[m] = spectrum_at(polygon, row.kx[m], ky);
-      }
-    }
-    for (std::size_t m = 0; m < n && std::hypot(row.kx[m], ky) * reach < small_wave_limit; ++m) {
-      out[m] = spectrum_at(polygon, row.kx[m], ky);
-    }
+    for (std::size_t m = 0; m < re.size(); ++m) out[m] = {re[m], im[m]};
   }
   return spectrum;
 }

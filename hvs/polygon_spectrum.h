@@ -3,6 +3,7 @@
 
 #include <complex>
 #include <opencv2/core.hpp>
+#include <span>
 #include <vector>
 
 #include "hvs/polygon.h"
@@ -25,5 +26,33 @@ struct FrequencyLattice {
 /// Phase factors are separable and tabulated per row and column; agrees with the single-frequency form to 1e-13 of the
 /// area.
 [[nodiscard]] cv::Mat_<std::complex<double>> polygon_spectrum(const Polygon& polygon, const FrequencyLattice& lattice);
+
+/// The same, row by row, real and imaginary parts apart: for callers that filter a row while it is in the cache.
+/// One thread at a time.
+class PolygonSpectrumRows {
+ public:
+  PolygonSpectrumRows(const Polygon& polygon, FrequencyLattice lattice);
+  struct Row {
+    std::span<const double> re, im;  ///< columns u = 0..band; valid until the next call
+  };
+  /// Row `r` is w = r - band, r = 0 .. 2 band.
+  [[nodiscard]] Row row(int r);
+
+ private:
+  /// exp(-2 pi i m x / period), real and imaginary parts apart.
+  struct PhaseTable {
+    std::vector<double> re, im;
+    PhaseTable(int first, int count, double x, double period);
+  };
+  void sum_edges(int r, double ky);
+  void replace_unsafe(double ky);
+
+  Polygon polygon_;
+  FrequencyLattice lattice_;
+  double reach_;
+  std::vector<PhaseTable> ex_, ey_;               ///< per vertex
+  std::vector<double> kx_, re_, im_;              ///< of the row
+  std::vector<std::vector<double>> e_re_, e_im_;  ///< per vertex: exp(-i k.v) of the row
+};
 
 }  // namespace todbench

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "hvs/multiversion.h"
+#include "acquisition/core/multiversion.h"
 
 namespace todbench {
 namespace {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <string>
 
-#include "hvs/multiversion.h"
+#include "acquisition/core/multiversion.h"
 #include "hvs/polygon_image.h"
 #include "hvs/template_observer.h"
 

@@ -1,0 +1,65 @@
+// The template observer: building a bank, deciding, and the random numbers both rest on.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <vector>
+
+#include "hvs/template_observer.h"
+#include "tod/test_pattern.h"
+
+namespace todbench {
+namespace {
+
+/// A noisy blurred spot: the time of a decision does not depend on what is in the patch.
+Patch noisy_patch(int side) {
+  const RandomStream stream(1, "benchmark.patch");
+  Patch patch{.kelvin = cv::Mat1d(side, side), .phase = {0, 0}, .noise_k = 0.07};
+  for (int row = 0; row < side; ++row) {
+    for (int column = 0; column < side; ++column) {
+      const double x = column - (side - 1) / 2.0;
+      const double y = row - (side - 1) / 2.0;
+      const auto index = static_cast<std::uint64_t>(row * side + column);
+      patch.kelvin(row, column) =
+          300 + std::exp(-(x * x + y * y) / 4) + 0.07 * static_cast<double>(stream.normal(index));
+    }
+  }
+  return patch;
+}
+
+void observer_decision(benchmark::State& state, double size_samples) {
+  TemplateObserver observer({}, triangle_alternatives());
+  const auto prepared = observer.prepare(size_samples, 1).value();
+  const Patch patch = noisy_patch(prepared->window_samples());
+  const RandomStream noise(1, "benchmark.observer");
+  std::uint64_t trial = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(prepared->choose(patch, 1.0, noise.sub(trial++)));
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK_CAPTURE(observer_decision, size_1_6, 1.6)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(observer_decision, size_2_6, 2.6)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(observer_decision, size_5, 5.0)->Unit(benchmark::kMicrosecond);
+
+void template_bank(benchmark::State& state, double size_samples) {
+  const TemplateObserverSpec spec;
+  const Alternatives alternatives = triangle_alternatives();
+  for (auto _ : state) benchmark::DoNotOptimize(TemplateBank::build(spec, alternatives, size_samples, 1).value());
+}
+BENCHMARK_CAPTURE(template_bank, size_1_6, 1.6)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(template_bank, size_2_6, 2.6)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(template_bank, size_5, 5.0)->Unit(benchmark::kMillisecond);
+
+/// As many as a frame of 320 x 240 needs.
+void normal_numbers(benchmark::State& state) {
+  const RandomStream stream(1, "benchmark.normal");
+  std::vector<float> numbers(std::size_t{320} * 240);
+  std::uint64_t index = 0;
+  for (auto _ : state) {
+    stream.sub(index++).fill_normal(numbers);
+    benchmark::DoNotOptimize(numbers.data());
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(numbers.size()));
+}
+BENCHMARK(normal_numbers)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace todbench

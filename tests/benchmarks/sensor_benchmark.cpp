@@ -1,0 +1,112 @@
+// The simulated sensor: pictures of single triangles, whole frames, and the 75 % size without trials.
+#include <benchmark/benchmark.h>
+
+#include <memory>
+
+#include "sim_devices/prediction/direct_estimate.h"
+#include "sim_devices/sensor/image_chain.h"
+#include "sim_devices/sensor/sensor_model.h"
+#include "tests/sim_devices/reference.h"
+#include "tests/sim_devices/test_plates.h"
+#include "tod/test_pattern.h"
+
+namespace todbench {
+namespace {
+
+ImageChain chain_of(Accuracy accuracy) {
+  const SensorSpec spec = test::sc2000();
+  return {spec, full_plan(spec, {}, {}), accuracy};
+}
+
+/// Optics and detector on the lattice: once per sensor, accuracy and period.
+void transfer_table(benchmark::State& state, Accuracy accuracy) {
+  const Polygon shape = triangle(1.6, Apex::up);
+  for (auto _ : state) benchmark::DoNotOptimize(chain_of(accuracy).image(shape));
+}
+BENCHMARK_CAPTURE(transfer_table, draft, Accuracy::draft())->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(transfer_table, normal, Accuracy::normal())->Unit(benchmark::kMillisecond);
+
+void degraded_triangle_256_phases(benchmark::State& state, Accuracy accuracy, double size_pitch) {
+  const ImageChain chain = chain_of(accuracy);
+  const Polygon shape = triangle(size_pitch, Apex::up);
+  benchmark::DoNotOptimize(chain.image(shape));  // the table of optics and detector is there from now on
+  for (auto _ : state) benchmark::DoNotOptimize(chain.image(shape).fine_image(chain.points_per_pitch()));
+}
+BENCHMARK_CAPTURE(degraded_triangle_256_phases, draft_size_2_6, Accuracy::draft(), 2.6)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(degraded_triangle_256_phases, normal_size_1_6, Accuracy::normal(), 1.6)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(degraded_triangle_256_phases, normal_size_2_6, Accuracy::normal(), 2.6)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(degraded_triangle_256_phases, normal_size_5, Accuracy::normal(), 5.0)->Unit(benchmark::kMillisecond);
+
+void degraded_triangle_spectrum(benchmark::State& state) {
+  const ImageChain chain = chain_of(Accuracy::normal());
+  const Polygon shape = triangle(2.6, Apex::up);
+  benchmark::DoNotOptimize(chain.image(shape));
+  for (auto _ : state) benchmark::DoNotOptimize(chain.image(shape));
+}
+BENCHMARK(degraded_triangle_spectrum)->Unit(benchmark::kMillisecond);
+
+void degraded_triangle_fine_image(benchmark::State& state) {
+  const ImageChain chain = chain_of(Accuracy::normal());
+  const PolygonImage image = chain.image(triangle(2.6, Apex::up));
+  for (auto _ : state) benchmark::DoNotOptimize(image.fine_image(chain.points_per_pitch()));
+}
+BENCHMARK(degraded_triangle_fine_image)->Unit(benchmark::kMillisecond);
+
+/// One triangle of a frame, at any place between the pixels.
+void degraded_triangle_one_phase(benchmark::State& state) {
+  const PolygonImage image = chain_of(Accuracy::normal()).image(triangle(2.6, Apex::up));
+  const int n = image.lattice().period;
+  for (auto _ : state) benchmark::DoNotOptimize(image.sample({-n / 2 + 0.3, -n / 2 - 0.2}, 1, {n, n}));
+}
+BENCHMARK(degraded_triangle_one_phase)->Unit(benchmark::kMillisecond);
+
+std::unique_ptr<const SensorModel> model_of_sc2000() {
+  const SensorSpec spec = test::sc2000();
+  return std::make_unique<const SensorModel>(spec, full_plan(spec, {}, {}), Accuracy::normal(), 1);
+}
+
+PlateScene scene_of_twenty_triangles() {
+  PlateScene scene;
+  scene.plate = test::two_plates().front();
+  scene.delta_t_k = 1.93;
+  return scene;
+}
+
+void exposure_static_scene(benchmark::State& state) {
+  const auto model = model_of_sc2000();
+  const PlateScene scene = scene_of_twenty_triangles();
+  std::uint64_t index = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(model->expose(scene, index++));
+}
+BENCHMARK(exposure_static_scene)->Unit(benchmark::kMillisecond);
+
+/// The plate has moved before every frame: twenty triangles are drawn anew at places between the pixels.
+void exposure_new_scene(benchmark::State& state) {
+  const auto model = model_of_sc2000();
+  PlateScene scene = scene_of_twenty_triangles();
+  std::uint64_t index = 0;
+  for (auto _ : state) {
+    scene.shift_mm.x = 1e-4 * static_cast<double>(index);
+    benchmark::DoNotOptimize(model->expose(scene, index++));
+  }
+}
+BENCHMARK(exposure_new_scene)->Unit(benchmark::kMillisecond);
+
+/// Three contrasts, template banks and transfer tables included.
+void direct_estimate_three_contrasts(benchmark::State& state, Accuracy accuracy) {
+  const SensorSpec spec = test::sc2000();
+  const SensorPlan plan = full_plan(spec, {}, {});
+  DirectEstimateOptions options;
+  options.accuracy = accuracy;
+  for (auto _ : state) {
+    TemplateObserver observer({}, triangle_alternatives());
+    benchmark::DoNotOptimize(direct_estimate(spec, plan, observer, {16.9, 1.93, 0.23}, options).value());
+  }
+}
+BENCHMARK_CAPTURE(direct_estimate_three_contrasts, draft, Accuracy::draft())->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(direct_estimate_three_contrasts, normal, Accuracy::normal())->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace todbench
