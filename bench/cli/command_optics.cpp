@@ -1,10 +1,12 @@
 // todbench render, todbench mtf
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
 
 #include "bench/cli/commands.h"
 #include "bench/session/descriptions.h"
+#include "bench/session/files.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "sim_devices/sensor/transfer_functions.h"
 #include "tod/test_pattern.h"
@@ -66,6 +68,16 @@ void add_noise(cv::Mat1d& values, const SensorSpec& spec, std::uint64_t seed) {
   }
 }
 
+/// Encoded in memory, so that a file is whole or not there.
+Result<void> write_tiff(const std::string& file, const cv::Mat1f& kelvin) {
+  const auto folder = std::filesystem::path(file).parent_path();
+  if (std::error_code problem; !folder.empty() && !std::filesystem::is_directory(folder, problem))
+    return fail(ErrorCode::invalid_input, "--tiff " + file + ": " + folder.string() + " is no folder");
+  std::vector<unsigned char> encoded;
+  if (!cv::imencode(".tiff", kelvin, encoded)) return fail(ErrorCode::internal, file + ": cannot be encoded");
+  return write_file_atomically(file, {reinterpret_cast<const char*>(encoded.data()), encoded.size()});
+}
+
 int run_render(Console& console, RenderArguments a, std::uint64_t seed) {
   auto spec = load_sensor(a.sensor);
   if (!spec) return report_error(console, spec.error());
@@ -80,7 +92,7 @@ int run_render(Console& console, RenderArguments a, std::uint64_t seed) {
   if (!a.tiff.empty()) {
     cv::Mat1f single;
     image.values.convertTo(single, CV_32F);
-    if (!cv::imwrite(a.tiff, single)) return report_error(console, {ErrorCode::io, "cannot write " + a.tiff});
+    if (auto written = write_tiff(a.tiff, single); !written) return report_error(console, written.error());
   }
   const double pitch_mrad = spec->ifov_mrad() / spec->microscan;
   if (console.json()) {

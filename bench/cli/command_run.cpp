@@ -117,6 +117,11 @@ int finish(Console& console, const ExperimentOutcome& outcome) {
 int run_measure(Console& console, const RunArguments& arguments, const Program& program) {
   auto plan = load_plan(arguments.plan);
   if (!plan) return report_error(console, plan.error());
+  if (plan->camera.id.empty()) {
+    return report_error(console, {ErrorCode::invalid_input,
+                                  arguments.plan + ": names no camera, expected key 'id' in [camera] (todbench devices "
+                                                   "lists them)"});
+  }
   if (program.common.seed_given) plan->seed = program.common.seed;
   auto outcome = measure_plan(*plan, folder_of(arguments, *plan), listener_of(console), program.stop->token());
   console.end_progress();

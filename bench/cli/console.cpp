@@ -23,6 +23,11 @@ std::string padded(std::string_view text, std::size_t columns, bool left) {
   return left ? std::string(text) + blanks : blanks + std::string(text);
 }
 
+/// A number, an interval, or the dash of a missing one.
+bool is_numeric(const std::string& cell) {
+  return cell.empty() || cell.starts_with("–") || cell.find_first_of("0123456789") <= (cell.starts_with('-') ? 1U : 0U);
+}
+
 std::string duration(double seconds) {
   const int whole = static_cast<int>(std::lround(std::max(0.0, seconds)));
   char text[32];
@@ -59,10 +64,13 @@ void Console::table(const TableRow& header, const std::vector<TableRow>& rows) c
   for (const auto& row : rows) {
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width(row[i]));
   }
+  std::vector<bool> left(header.size(), true);
+  for (std::size_t i = 1; i < header.size(); ++i) {
+    left[i] = std::any_of(rows.begin(), rows.end(), [&](const TableRow& row) { return !is_numeric(row[i]); });
+  }
   const auto line = [&](const TableRow& row) {
     std::string out;
-    for (std::size_t i = 0; i < row.size(); ++i)
-      out += (i == 0 ? "" : "   ") + padded(row[i], widths[i], i == 0 || i + 1 == row.size());
+    for (std::size_t i = 0; i < row.size(); ++i) out += (i == 0 ? "" : "   ") + padded(row[i], widths[i], left[i]);
     while (!out.empty() && out.back() == ' ') out.pop_back();
     return out;
   };

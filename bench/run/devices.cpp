@@ -120,7 +120,7 @@ OpenedBench simulated_bench(std::shared_ptr<const SensorModel> model, const std:
   auto target = scene_target(holder, plates);
   if (!shown_delta_t_k.empty())
     target = std::make_unique<RemappedTarget>(std::move(target), std::move(shown_delta_t_k));
-  return {.camera = simulated_source(std::move(model), holder, "1"), .target = std::move(target)};
+  return {.camera = simulated_source(std::move(model), holder, "1"), .target = std::move(target), .simulated = true};
 }
 
 Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>& plates, std::stop_token stop) {

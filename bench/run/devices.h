@@ -19,6 +19,7 @@ namespace todbench {
 struct OpenedBench {
   std::unique_ptr<FrameSource> camera;
   std::unique_ptr<Target> target;
+  bool simulated = false;  ///< the camera is a sensor model, its clock that of the model
 };
 
 /// Opens what the plan names and writes its settings into the camera. Errors: `not_found`, `invalid_input` (a target

@@ -1,11 +1,12 @@
 #include "bench/run/experiment.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "bench/report/report.h"
+#include "bench/run/experiment_inputs.h"
 #include "bench/run/report_data.h"
-#include "bench/session/descriptions.h"
 #include "sim_devices/prediction/contrast_response.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "tod/measurement.h"
@@ -17,33 +18,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// Everything that a plan names, read once.
-struct Inputs {
-  std::vector<TargetPlate> plates;
-  TemplateObserverSpec observer;
-  SensorSpec sensor;
-  SensorPlan effects;
-  Accuracy accuracy;
-};
-
-Result<Inputs> read_inputs(const Plan& plan) {
-  Inputs inputs;
-  auto plates = plates_of(plan);
-  if (!plates) return tl::unexpected(plates.error());
-  inputs.plates = std::move(*plates);
-  auto observer = load_observer(plan.observer);
-  if (!observer) return tl::unexpected(observer.error());
-  inputs.observer = *observer;
-  auto sensor = sensor_of(plan);
-  if (!sensor) return tl::unexpected(sensor.error());
-  inputs.sensor = *sensor;
-  inputs.effects = full_plan(inputs.sensor, plan.simulation.skip, plan.simulation.force);
-  auto accuracy = accuracy_of(plan);
-  if (!accuracy) return tl::unexpected(accuracy.error());
-  inputs.accuracy = *accuracy;
-  return inputs;
 }
 
 void phase(SessionFolder& folder, const ExperimentListener& listener, const std::string& text) {
@@ -69,8 +43,10 @@ class Recorder {
     if (!writer) return tl::unexpected(writer.error());
     std::optional<Error> write_error;
     MeasurementListener events;
-    events.on_trial = [&](const Trial& trial) {
+    events.on_trial = [&](Trial trial) {
       if (write_error) return;
+      // A simulated exposure happens at no time of the host: its file is the same whenever it is made.
+      if (bench.simulated) trial.host_time_ns = trial.device_time_ns;
       if (auto written = writer->append(trial); !written) {
         write_error = written.error();
         halt_.request_stop();
@@ -118,18 +94,45 @@ struct TwinRun {
   double wall_s = 0;
 };
 
-Result<TwinRun> run_simulated(const Plan& plan, const Inputs& inputs, SessionFolder& folder, SessionCurve which,
-                              std::map<double, double> shown_delta_t_k, const ExperimentListener& listener,
-                              std::stop_token stop) {
+/// The contrasts of a curve that have one, as their size at 75 % without trials; what has none is a note.
+struct DirectResults {
+  std::map<double, DirectPoint> points;  ///< by contrast
+  std::vector<std::string> notes;
+  std::optional<Error> ended_by;
+};
+
+DirectResults direct_results(const TodCurve& curve, const ExperimentInputs& inputs, std::uint64_t seed,
+                             std::stop_token stop) {
+  TemplateObserver observer(inputs.observer, triangle_alternatives());
+  const DirectEstimateOptions options{
+      .samples_per_pitch = inputs.sensor.microscan, .accuracy = inputs.accuracy, .seed = seed, .stop = std::move(stop)};
+  std::vector<double> contrasts;
+  for (const auto& point : curve.points) contrasts.push_back(point.delta_t_k);
+  DirectResults results;
+  // Together they share their images. Where one has no threshold the others are estimated alone.
+  std::vector<std::vector<double>> attempts{contrasts};
+  for (std::size_t i = 0; i < attempts.size() && !results.ended_by; ++i) {
+    auto found = direct_estimate(inputs.sensor, inputs.effects, observer, attempts[i], options);
+    if (found) {
+      for (std::size_t k = 0; k < found->size(); ++k) results.points[attempts[i][k]] = (*found)[k];
+    } else if (found.error().code == ErrorCode::interrupted) {
+      results.ended_by = found.error();
+    } else if (attempts[i].size() > 1) {
+      for (const double contrast : contrasts) attempts.push_back({contrast});
+    } else {
+      results.notes.push_back("no direct estimate: " + found.error().message);
+    }
+  }
+  return results;
+}
+
+Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, SessionFolder& folder,
+                              SessionCurve which, std::map<double, double> shown_delta_t_k,
+                              const ExperimentListener& listener, std::stop_token stop) {
   const auto begin = Clock::now();
   const auto model = std::make_shared<const SensorModel>(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
   TemplateObserver observer(inputs.observer, triangle_alternatives());
-  MeasurementOptions options =
-      measurement_options(plan, inputs.plates, inputs.sensor.ifov_mrad() / inputs.sensor.microscan);
-  options.samples_per_pitch = inputs.sensor.microscan;
-  options.frames_after_change = 0;
-  options.nuc_interval_s = 0;
-  options.integrity.reject_frozen = inputs.effects.simulates(Effect::temporal_noise) && inputs.sensor.netd_k > 0;
+  MeasurementOptions options = simulated_options(plan, inputs);
   auto response = responses(*model, plan, inputs.plates, options, stop);
   if (!response) return tl::unexpected(response.error());
   options.contrast_response = std::move(*response);
@@ -146,21 +149,18 @@ Result<TwinRun> run_simulated(const Plan& plan, const Inputs& inputs, SessionFol
   run.curve.sensor = inputs.sensor.name;
   run.curve.observer = inputs.observer.name;
 
-  std::vector<double> contrasts;
-  for (const auto& point : run.curve.points) contrasts.push_back(point.delta_t_k);
   if (!run.result.ended_by) {
-    auto direct = direct_estimate(
-        inputs.sensor, inputs.effects, observer, contrasts,
-        {.samples_per_pitch = inputs.sensor.microscan, .accuracy = inputs.accuracy, .seed = plan.seed, .stop = stop});
-    if (!direct && direct.error().code == ErrorCode::interrupted) {
-      run.result.ended_by = direct.error();
-    } else if (!direct) {
-      run.result.notes.push_back("no direct estimate: " + direct.error().message);
-    } else {
-      for (std::size_t i = 0; i < direct->size(); ++i) {
-        run.curve.points[i].direct_s75_mrad = (*direct)[i].s75_pitch * inputs.sensor.ifov_mrad();
-        run.curve.points[i].direct_s75_se_mrad = (*direct)[i].standard_error_pitch * inputs.sensor.ifov_mrad();
-      }
+    DirectResults direct = direct_results(run.curve, inputs, plan.seed, std::move(stop));
+    run.result.ended_by = std::move(direct.ended_by);
+    for (auto& sentence : direct.notes) {
+      note(folder, listener, sentence);
+      run.result.notes.push_back(std::move(sentence));
+    }
+    for (auto& point : run.curve.points) {
+      const auto found = direct.points.find(point.delta_t_k);
+      if (found == direct.points.end()) continue;
+      point.direct_s75_mrad = found->second.s75_pitch * inputs.sensor.ifov_mrad();
+      point.direct_s75_se_mrad = found->second.standard_error_pitch * inputs.sensor.ifov_mrad();
     }
   }
   run.wall_s = seconds_since(begin);
@@ -240,7 +240,7 @@ struct TwinResults {
 };
 
 /// The simulated twin at the contrasts that the camera saw, and the comparison.
-TwinResults run_twin(const Plan& plan, const Inputs& inputs, const TodCurve& measured, SessionFolder& folder,
+TwinResults run_twin(const Plan& plan, const ExperimentInputs& inputs, const TodCurve& measured, SessionFolder& folder,
                      const ExperimentListener& listener, std::stop_token stop) {
   phase(folder, listener, "simulating its twin " + inputs.sensor.name);
   std::map<double, double> shown;
@@ -264,7 +264,7 @@ TwinResults run_twin(const Plan& plan, const Inputs& inputs, const TodCurve& mea
 }
 
 /// The measurement with the camera of the plan, into the session.
-Result<MeasurementResult> run_measured(const Plan& plan, const Inputs& inputs, OpenedBench& bench,
+Result<MeasurementResult> run_measured(const Plan& plan, const ExperimentInputs& inputs, OpenedBench& bench,
                                        SessionFolder& folder, const ExperimentListener& listener,
                                        std::stop_token stop) {
   TemplateObserver observer(inputs.observer, triangle_alternatives());
@@ -287,6 +287,7 @@ Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOption
   Provenance provenance = begin_provenance(plan, Side::simulated);
   provenance.effects = inputs->effects;
   provenance.target = "simulated scene";
+  if (auto fits = check_simulated_geometry(plan, *inputs); !fits) return tl::unexpected(fits.error());
   auto folder = begin_session(plan, options, provenance);
   if (!folder) return tl::unexpected(folder.error());
 
@@ -315,6 +316,13 @@ Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions
   auto bench = open_bench(plan, inputs->plates, stop);
   if (!bench) return tl::unexpected(bench.error());
   const SourceInfo info = bench->camera->info();
+  if (!info.scale.calibrated()) {
+    return fail(ErrorCode::calibration,
+                "camera " + info.id + " has no temperature scale: contrasts in kelvin cannot be measured");
+  }
+  if (auto fits = check_measured_geometry(plan, *inputs, {info.width, info.height}); !fits)
+    return tl::unexpected(fits.error());
+  if (auto fits = check_simulated_geometry(plan, *inputs); !fits) return fail("the simulated twin", fits.error());
   Provenance provenance = begin_provenance(plan, Side::measured);
   provenance.effects = inputs->effects;
   provenance.camera = camera_record(info);

@@ -1,0 +1,71 @@
+#include "bench/run/experiment_inputs.h"
+
+#include <algorithm>
+#include <string>
+
+#include "bench/session/descriptions.h"
+#include "bench/session/plan_options.h"
+#include "bench/session/text.h"
+#include "tod/test_pattern.h"
+
+namespace todbench {
+namespace {
+
+/// Sizes that do not fit are named before anything is computed or moved, a few of them.
+Result<void> check_geometry(const MeasurementOptions& options, const ExperimentInputs& inputs, cv::Size picture) {
+  TemplateObserver observer(inputs.observer, triangle_alternatives());
+  auto misfits = sizes_that_do_not_fit(options, observer, picture.width, picture.height);
+  if (!misfits) return tl::unexpected(misfits.error());
+  if (misfits->empty()) return {};
+  // A plate larger than the picture explains the rest.
+  std::stable_partition(misfits->begin(), misfits->end(),
+                        [](const std::string& misfit) { return misfit.find("the picture has") != std::string::npos; });
+  constexpr std::size_t named = 3;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(named, misfits->size()); ++i) text += (i == 0 ? "" : "; ") + (*misfits)[i];
+  if (misfits->size() > named) text += "; and " + std::to_string(misfits->size() - named) + " more";
+  return fail(ErrorCode::invalid_input,
+              "not measurable at " + number_text(options.distance_m) + " m ([target] distance_m): " + text);
+}
+
+}  // namespace
+
+Result<ExperimentInputs> read_inputs(const Plan& plan) {
+  ExperimentInputs inputs;
+  auto plates = plates_of(plan);
+  if (!plates) return tl::unexpected(plates.error());
+  inputs.plates = std::move(*plates);
+  auto observer = load_observer(plan.observer);
+  if (!observer) return tl::unexpected(observer.error());
+  inputs.observer = *observer;
+  auto sensor = sensor_of(plan);
+  if (!sensor) return tl::unexpected(sensor.error());
+  inputs.sensor = *sensor;
+  inputs.effects = full_plan(inputs.sensor, plan.simulation.skip, plan.simulation.force);
+  auto accuracy = accuracy_of(plan);
+  if (!accuracy) return tl::unexpected(accuracy.error());
+  inputs.accuracy = *accuracy;
+  return inputs;
+}
+
+MeasurementOptions simulated_options(const Plan& plan, const ExperimentInputs& inputs) {
+  MeasurementOptions options =
+      measurement_options(plan, inputs.plates, inputs.sensor.ifov_mrad() / inputs.sensor.microscan);
+  options.samples_per_pitch = inputs.sensor.microscan;
+  options.frames_after_change = 0;
+  options.nuc_interval_s = 0;
+  options.integrity.reject_frozen = inputs.effects.simulates(Effect::temporal_noise) && inputs.sensor.netd_k > 0;
+  return options;
+}
+
+Result<void> check_measured_geometry(const Plan& plan, const ExperimentInputs& inputs, cv::Size picture) {
+  return check_geometry(measurement_options(plan, inputs.plates, plan.camera.ifov_mrad), inputs, picture);
+}
+
+Result<void> check_simulated_geometry(const Plan& plan, const ExperimentInputs& inputs) {
+  const int samples = inputs.sensor.microscan;
+  return check_geometry(simulated_options(plan, inputs), inputs,
+                        {inputs.sensor.width * samples, inputs.sensor.height * samples});
+}
+
+}  // namespace todbench

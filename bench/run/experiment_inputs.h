@@ -1,0 +1,35 @@
+// Everything that a plan names, and whether it fits together.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "bench/session/plan.h"
+#include "hvs/template_observer.h"
+#include "sim_devices/sensor/sensor_plan.h"
+#include "sim_devices/sensor/sensor_spec.h"
+#include "tod/measurement.h"
+
+namespace todbench {
+
+/// What a plan names, read once.
+struct ExperimentInputs {
+  std::vector<TargetPlate> plates;
+  TemplateObserverSpec observer;
+  SensorSpec sensor;
+  SensorPlan effects;
+  Accuracy accuracy;
+};
+
+/// Errors as the loaders of the parts.
+[[nodiscard]] Result<ExperimentInputs> read_inputs(const Plan& plan);
+
+/// How the simulated sensor is measured: as the camera, but nothing has to settle and nothing is corrected.
+[[nodiscard]] MeasurementOptions simulated_options(const Plan& plan, const ExperimentInputs& inputs);
+
+/// `invalid_input` naming up to three sizes that do not fit into the picture or too near their neighbours. To be asked
+/// before anything is computed or moved.
+[[nodiscard]] Result<void> check_measured_geometry(const Plan& plan, const ExperimentInputs& inputs, cv::Size picture);
+[[nodiscard]] Result<void> check_simulated_geometry(const Plan& plan, const ExperimentInputs& inputs);
+
+}  // namespace todbench

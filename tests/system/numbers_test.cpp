@@ -1,0 +1,138 @@
+// JSON of fit, mtf and render: exactly the keys that others rely on, and values with closed forms.
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgcodecs.hpp>
+
+#include "tests/system/system_test_support.h"
+
+namespace todbench::testing {
+namespace {
+
+using ::testing::UnorderedElementsAre;
+
+Json fit(const std::string& rows, int code, const std::vector<std::string>& more = {}) {
+  const TemporaryFolder folder;
+  folder.write("trials.csv", "size,correct,total\n" + rows);
+  std::vector<std::string> arguments{"fit", "trials.csv", "--json"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const Ended ended = todbench(arguments, {.folder = folder.path()});
+  EXPECT_EQ(ended.code, code) << ended.out << ended.err;
+  EXPECT_EQ(ended.err, "");
+  return one_object(ended);
+}
+
+TEST(FitJson, HasTheKeysOfTheContractAndAThresholdBetweenTheLevels) {
+  const Json json = fit("1,26,100\n2,50,100\n3,80,100\n4,96,100\n6,100,100\n", 0);
+
+  EXPECT_THAT(keys_of(json), UnorderedElementsAre("verdict", "threshold", "ci95", "slope", "lapse", "log_likelihood",
+                                                  "deviance", "degrees_of_freedom", "posterior"));
+  EXPECT_THAT(keys_of(json["posterior"]), UnorderedElementsAre("median", "ci95", "prior_bound"));
+  EXPECT_EQ(json["verdict"], "ok");
+  EXPECT_GT(json["threshold"], 2);
+  EXPECT_LT(json["threshold"], 3);
+  EXPECT_LT(json["ci95"][0], json["threshold"]);
+  EXPECT_GT(json["ci95"][1], json["threshold"]);
+  EXPECT_EQ(json["degrees_of_freedom"], 3);  // five levels, threshold and slope
+}
+
+TEST(FitJson, ExactProportionsOfAWeibullFunctionGiveItsThresholdBack) {
+  // 75 % at size 2 with slope 3: p(S) = 1/4 + 3/4 (1 - exp(-ln 3 (S/2)^3)); in 10^9 trials a level the counts are
+  // rounded by at most half a trial, 1e-9 in p, which moves the threshold by less than 1e-7.
+  std::string rows;
+  for (const double size : {1.0, 1.5, 2.0, 2.5, 3.0}) {
+    const double p = 0.25 + 0.75 * (1 - std::exp(-std::log(3.0) * std::pow(size / 2, 3)));
+    rows += std::to_string(size) + "," + std::to_string(std::llround(p * 1e9)) + ",1000000000\n";
+  }
+
+  const Json json = fit(rows, 0);
+
+  EXPECT_NEAR(json["threshold"].get<double>(), 2, 2e-6);
+  EXPECT_NEAR(json["slope"].get<double>(), 3, 3e-5);
+}
+
+TEST(FitJson, WhatCannotBeIdentifiedIsNullAndInconclusive) {
+  EXPECT_EQ(fit("1,0,0\n2,0,0\n", 3)["threshold"], nullptr);
+  EXPECT_EQ(fit("1,25,100\n2,26,100\n3,24,100\n4,25,100\n", 3)["ci95"][1], nullptr);
+  const Json all_right = fit("1,100,100\n2,100,100\n3,100,100\n", 3);
+  EXPECT_EQ(all_right["ci95"][0], nullptr);
+  EXPECT_TRUE(all_right["ci95"][1].is_number());
+}
+
+TEST(FitJson, RowsMayBeUnsortedAndRepeatedAndTheFormMatters) {
+  const Json sorted = fit("1,26,100\n2,50,100\n3,80,100\n4,96,100\n", 0);
+  const Json shuffled = fit("4,96,100\n3,40,50\n1,26,100\n3,40,50\n9,0,0\n2,50,100\n", 0);
+  const Json acuity = fit("1,26,100\n2,50,100\n3,80,100\n4,96,100\n", 0, {"--form", "acuity", "--lapse", "free"});
+
+  EXPECT_NEAR(shuffled["threshold"].get<double>(), sorted["threshold"].get<double>(), 1e-9);
+  EXPECT_NE(acuity["threshold"], sorted["threshold"]);
+}
+
+TEST(MtfJson, DetectorAndOpticsFollowTheirClosedForms) {
+  const Ended ended = todbench({"mtf", "--sensor", "sc2000", "--frequency-per-pitch", "0,0.25,0.5,1", "--json"});
+
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Json json = one_object(ended);
+  EXPECT_THAT(keys_of(json),
+              UnorderedElementsAre("frequency_per_pitch", "frequency_per_mrad", "optics", "detector", "system"));
+  const double ifov_mrad = 47.5 / 36.3;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double f = json["frequency_per_pitch"][i];
+    const double x = std::numbers::pi * f * 42.5 / 47.5;
+    EXPECT_NEAR(json["detector"][i].get<double>(), x == 0 ? 1 : std::sin(x) / x, 1e-12);
+    EXPECT_NEAR(json["frequency_per_mrad"][i].get<double>(), f / ifov_mrad, 1e-12);
+    EXPECT_NEAR(json["system"][i].get<double>(), json["optics"][i].get<double>() * json["detector"][i].get<double>(),
+                1e-12);
+    // Diffraction at f/1 between the ends of the band of 7.5 to 13 um.
+    const auto diffraction = [&](double wavelength_um) {
+      const double nu = f * wavelength_um / 47.5;
+      return 2 / std::numbers::pi * (std::acos(nu) - nu * std::sqrt(1 - nu * nu));
+    };
+    EXPECT_LE(json["optics"][i].get<double>(), diffraction(7.5) + 1e-12);
+    EXPECT_GE(json["optics"][i].get<double>(), diffraction(13) - 1e-12);
+  }
+}
+
+TEST(RenderJson, IsAWindowOfKelvinThatScalesWithTheContrastAndTurnsWithTheApex) {
+  const auto render = [](const std::string& apex, const std::string& contrast) {
+    const Ended ended = todbench(
+        {"render", "--sensor", "sc2000", "--size-pitch", "3", "--apex", apex, "--delta-t-k", contrast, "--json"});
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    return one_object(ended);
+  };
+  const Json up = render("up", "1");
+  const Json hot = render("up", "-4");
+  const Json down = render("down", "1");
+
+  EXPECT_THAT(keys_of(up), UnorderedElementsAre("values", "pitch_mrad", "max_error_estimate"));
+  EXPECT_NEAR(up["pitch_mrad"].get<double>(), 47.5 / 36.3, 1e-12);
+  ASSERT_EQ(up["values"].size(), 9u);
+  ASSERT_EQ(up["values"][0].size(), 9u);
+  const double error = up["max_error_estimate"];
+  EXPECT_LT(error, 1e-3);
+  for (std::size_t j = 0; j < 9; ++j) {
+    for (std::size_t i = 0; i < 9; ++i) {
+      const double value = up["values"][j][i];
+      EXPECT_NEAR(hot["values"][j][i].get<double>(), -4 * value, 1e-12);
+      EXPECT_NEAR(down["values"][8 - j][i].get<double>(), value, 2 * error + 1e-12);
+      EXPECT_NEAR(up["values"][j][8 - i].get<double>(), value, 2 * error + 1e-12);
+    }
+  }
+}
+
+TEST(RenderJson, TheTiffHoldsTheSameNumbers) {
+  const TemporaryFolder folder;
+
+  const Ended ended = todbench({"render", "--sensor", "sc2000", "--size-pitch", "5", "--tiff", "t.tiff", "--json"},
+                               {.folder = folder.path()});
+
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Json json = one_object(ended);
+  const cv::Mat image = cv::imread((folder.path() / "t.tiff").string(), cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(image.type(), CV_32F);
+  ASSERT_EQ(image.size(), cv::Size(9, 9));
+  EXPECT_FLOAT_EQ(image.at<float>(4, 4), json["values"][4][4].get<float>());
+  EXPECT_FLOAT_EQ(image.at<float>(2, 7), json["values"][2][7].get<float>());
+}
+
+}  // namespace
+}  // namespace todbench::testing

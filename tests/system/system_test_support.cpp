@@ -1,0 +1,94 @@
+#include "tests/system/system_test_support.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/session/manifest.h"
+
+namespace todbench::testing {
+namespace {
+
+void expect_numbers(const Json& json) {
+  EXPECT_TRUE(!json.is_number_float() || std::isfinite(json.get<double>()));
+  if (!json.is_structured()) return;
+  for (const auto& item : json) expect_numbers(item);
+}
+
+}  // namespace
+
+std::string small_plan(int phases, const std::string& more) {
+  return "name = \"small\"\n[target]\ndistance_m = 2\nplates = [\"tcat-a\"]\nmountings = [\"identity\"]\n"
+         "delta_t_k = [16.9]\nphases = " +
+         std::to_string(phases) + "\n[simulation]\naccuracy = \"draft\"\n" + more;
+}
+
+std::string small_measurement(int phases, const std::string& more) {
+  return small_plan(phases, "phases = " + std::to_string(std::min(phases, 16)) +
+                                "\n[camera]\nid = \"sim:sc2000\"\nifov_mrad = 1.3085399449\n" + more);
+}
+
+Json one_object(const Ended& ended) {
+  const Json json = Json::parse(ended.out, nullptr, false);
+  EXPECT_TRUE(json.is_object()) << ended.out << ended.err;
+  EXPECT_EQ(std::count(ended.out.begin(), ended.out.end(), '\n'), 1) << ended.out;
+  expect_numbers(json);
+  return json;
+}
+
+std::set<std::string> keys_of(const Json& object) {
+  std::set<std::string> keys;
+  for (const auto& [key, value] : object.items()) keys.insert(key);
+  return keys;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+void expect_refused(const Ended& ended, int code, const std::string& sentence) {
+  EXPECT_EQ(ended.code, code) << ended.err;
+  EXPECT_EQ(ended.out, "");
+  const auto lines = lines_of(ended.err);
+  ASSERT_FALSE(lines.empty());
+  EXPECT_THAT(lines.back(), ::testing::StartsWith("todbench: "));
+  EXPECT_THAT(lines.back(), ::testing::HasSubstr(sentence));
+  EXPECT_EQ(std::count_if(lines.begin(), lines.end(), [](const auto& l) { return l.starts_with("todbench: "); }), 1)
+      << ended.err;
+}
+
+::testing::AssertionResult completed(const Ended& ended) {
+  if (ended.code == 0 || ended.code == 1 || ended.code == 3) return ::testing::AssertionSuccess();
+  return ::testing::AssertionFailure() << "ended with " << ended.code << ": " << ended.err;
+}
+
+::testing::AssertionResult same_content(const std::filesystem::path& a, const std::filesystem::path& b) {
+  const auto first = lines_of(content_of(a)), second = lines_of(content_of(b));
+  if (first.empty()) return ::testing::AssertionFailure() << a << " is empty";
+  const auto [x, y] = std::mismatch(first.begin(), first.end(), second.begin(), second.end());
+  if (x == first.end() && y == second.end()) return ::testing::AssertionSuccess();
+  return ::testing::AssertionFailure() << "line " << x - first.begin() + 1 << ": " << (x == first.end() ? "" : *x)
+                                       << " | " << (y == second.end() ? "" : *y);
+}
+
+std::size_t rows_in(const std::filesystem::path& csv) {
+  const auto lines = lines_of(content_of(csv));
+  return lines.empty() ? 0 : lines.size() - 1;
+}
+
+void expect_whole_session(const std::filesystem::path& folder, const std::string& state) {
+  for (const char* name : {"session.toml", "provenance.json", "trials.csv", "fits.json", "curve.csv", "report.html",
+                           "log.txt", "manifest.json"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
+  }
+  const auto problems = verify_manifest(folder);
+  ASSERT_TRUE(problems) << problems.error().message;
+  EXPECT_THAT(*problems, ::testing::IsEmpty());
+  const Json provenance = Json::parse(content_of(folder / "provenance.json"), nullptr, false);
+  ASSERT_TRUE(provenance.is_object());
+  EXPECT_EQ(provenance.value("state", ""), state);
+}
+
+}  // namespace todbench::testing

@@ -1,0 +1,174 @@
+// What goes wrong in the middle of a run on one machine: Ctrl-C, a full disk, a reader that went away.
+#include <signal.h>
+#include <sys/mount.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "bench/session/trials_csv.h"
+#include "tests/system/system_test_support.h"
+
+namespace todbench::testing {
+namespace {
+
+using ::testing::AnyOf;
+using ::testing::Eq;
+using ::testing::HasSubstr;
+
+/// Far more presentations than any test waits for: such a run ends only by what is done to it.
+constexpr int endless = 10000;
+/// One frame of the plate.
+constexpr std::size_t trials_per_frame = 20;
+
+/// Waits until the run has `rows` trials on disk.
+bool has_trials(ChildProcess& child, const std::filesystem::path& csv, std::size_t rows) {
+  return child.wait_until([&] { return rows_in(csv) >= rows; });
+}
+
+/// The trials on disk are whole rows, and as many as the run says it used.
+void expect_readable_trials(const std::filesystem::path& csv, std::size_t at_least) {
+  const auto trials = read_trials(csv);
+  ASSERT_TRUE(trials) << trials.error().message;
+  EXPECT_GE(trials->size(), at_least);
+}
+
+class Interruption : public ::testing::TestWithParam<std::tuple<const char*, int>> {};
+
+TEST_P(Interruption, LeavesAValidPartialSession) {
+  const auto [command, signal] = GetParam();
+  const TemporaryFolder folder;
+  folder.write("plan.toml", small_measurement(endless, "[measurement]\nregistration_frames = 4\n"));
+  const auto session = folder.path() / "s";
+  // A simulation shows the phases of its own section, sixteen; the camera those of the target.
+  const std::string plan = std::string(command) == "measure" ? "./plan.toml" : "./simulated.toml";
+  folder.write("simulated.toml", small_plan(endless));
+  ChildProcess child(todbench_command({command, plan, "--out", "s", "--json"}), {.folder = folder.path()});
+  ASSERT_TRUE(has_trials(child, session / "trials.csv", 2 * trials_per_frame));
+
+  child.signal(signal);
+  const Ended ended = child.wait();
+
+  EXPECT_EQ(ended.code, 130) << ended.err;
+  EXPECT_THAT(lines_of(ended.err).back(), Eq("todbench: ended early: stopped on request; the trials so far are in s"));
+  const Json json = one_object(ended);
+  EXPECT_EQ(json["points"].size(), 1u);
+  EXPECT_TRUE(json["points"][0]["s75_direct_mrad"].is_null());
+  expect_whole_session(session, "interrupted");
+  expect_readable_trials(session / "trials.csv", 2 * trials_per_frame);
+  EXPECT_EQ(json["points"][0]["trials"], rows_in(session / "trials.csv"));
+  EXPECT_LT(rows_in(session / "trials.csv"), endless * trials_per_frame);
+  EXPECT_THAT(content_of(session / "report.html"), HasSubstr("INTERRUPTED"));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Interruption,
+                         ::testing::Combine(::testing::Values("simulate", "measure"),
+                                            ::testing::Values(SIGINT, SIGTERM, SIGHUP)));
+
+TEST(InterruptionBeforeTheFirstTrial, LeavesAValidFolderOrNone) {
+  const TemporaryFolder folder;
+  folder.write("plan.toml", small_plan(endless));
+  // Registration at 10000 frames does not end while anybody waits.
+  folder.write("plan.toml", small_plan(endless, "[measurement]\nregistration_frames = 10000\n"));
+  ChildProcess child(todbench_command({"simulate", "./plan.toml", "--out", "s"}), {.folder = folder.path()});
+  ASSERT_TRUE(child.wait_until([&] { return std::filesystem::exists(folder.path() / "s" / "trials.csv"); }));
+
+  child.signal(SIGINT);
+  const Ended ended = child.wait();
+
+  expect_refused(ended, 130, "stopped on request");
+  const Json provenance = Json::parse(content_of(folder.path() / "s" / "provenance.json"));
+  EXPECT_EQ(provenance["state"], "interrupted");
+}
+
+TEST(IgnoredSignals, StayIgnoredAsNohupWantsThem) {
+  const TemporaryFolder folder;
+  folder.write("plan.toml", small_plan(16));
+  std::vector<std::string> command{"/usr/bin/nohup"};
+  for (const auto& word : todbench_command({"simulate", "./plan.toml", "--out", "s"})) command.push_back(word);
+  ChildProcess child(command, {.folder = folder.path()});
+  ASSERT_TRUE(has_trials(child, folder.path() / "s" / "trials.csv", trials_per_frame));
+
+  child.signal(SIGHUP);
+  const Ended ended = child.wait();
+
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_EQ(rows_in(folder.path() / "s" / "trials.csv"), 16 * trials_per_frame);
+}
+
+TEST(FullDisk, ALimitOfTheFileSizeKeepsEveryWholeTrial) {
+  const TemporaryFolder folder;
+  folder.write("plan.toml", small_plan(endless));
+
+  // A row has some 330 bytes: about a hundred trials fit. The input copies are smaller.
+  const Ended ended = todbench({"simulate", "./plan.toml", "--out", "s", "--json"},
+                               {.folder = folder.path(), .largest_file_bytes = 32768});
+
+  EXPECT_EQ(ended.code, 7) << ended.err;
+  EXPECT_THAT(lines_of(ended.err).back(), HasSubstr("s/trials.csv: cannot be written: File too large"));
+  expect_readable_trials(folder.path() / "s" / "trials.csv", trials_per_frame);
+  EXPECT_EQ(one_object(ended)["points"].size(), 1u);
+}
+
+/// A disk of the test's own, in memory.
+class SmallDisk {
+ public:
+  SmallDisk(const std::filesystem::path& folder, const char* size) : folder_(folder) {
+    std::filesystem::create_directories(folder_);
+    const std::string options = std::string("size=") + size;
+    mounted_ = ::mount("tmpfs", folder_.c_str(), "tmpfs", 0, options.c_str()) == 0;
+    if (!mounted_) reason_ = std::strerror(errno);
+  }
+  ~SmallDisk() {
+    if (mounted_) ::umount2(folder_.c_str(), MNT_DETACH);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  [[nodiscard]] bool mounted() const { return mounted_; }
+  [[nodiscard]] const std::string& reason() const { return reason_; }
+
+ private:
+  std::filesystem::path folder_;
+  std::string reason_;
+  bool mounted_ = false;
+};
+
+TEST(FullDisk, KeepsEveryWholeTrialAndTellsTheResult) {
+  const TemporaryFolder folder;
+  const SmallDisk disk(folder.path() / "disk", "128k");
+  if (!disk.mounted()) GTEST_SKIP() << "no mount of its own is permitted here: " << disk.reason();
+  folder.write("plan.toml", small_plan(endless));
+
+  const Ended ended = todbench({"simulate", "./plan.toml", "--out", "disk/s", "--json"}, {.folder = folder.path()});
+
+  EXPECT_EQ(ended.code, 7) << ended.err;
+  EXPECT_THAT(lines_of(ended.err).back(), HasSubstr("cannot be written: No space left on device"));
+  expect_readable_trials(folder.path() / "disk" / "s" / "trials.csv", trials_per_frame);
+  EXPECT_EQ(one_object(ended)["points"].size(), 1u);
+}
+
+TEST(FullDisk, FromTheBeginningIsOneSentence) {
+  const TemporaryFolder folder;
+  const SmallDisk disk(folder.path() / "disk", "4k");
+  if (!disk.mounted()) GTEST_SKIP() << "no mount of its own is permitted here: " << disk.reason();
+  folder.write("plan.toml", small_plan(2));
+
+  const Ended ended = todbench({"simulate", "./plan.toml", "--out", "disk/s"}, {.folder = folder.path()});
+
+  expect_refused(ended, 7, "No space left on device");
+}
+
+TEST(ClosedPipe, OnStandardErrorDoesNotEndARun) {
+  const TemporaryFolder folder;
+  folder.write("plan.toml", small_plan(2));
+
+  const Ended ended =
+      ChildProcess({"/bin/sh", "-c", "exec \"$0\" simulate ./plan.toml --out s 2>&1 1>result | true", TODBENCH_PROGRAM},
+                   {.folder = folder.path()})
+          .wait();
+  (void)ended;
+
+  expect_whole_session(folder.path() / "s", "complete");
+}
+
+}  // namespace
+}  // namespace todbench::testing
