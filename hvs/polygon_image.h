@@ -53,7 +53,7 @@ class PolygonImage {
 
  private:
   FrequencyLattice lattice_;
-  cv::Mat1d re_, im_;  ///< parts of the spectrum, apart so that sums over it vectorise
+  cv::Mat1d re_, im_;  ///< parts of the spectrum, rows padded with zeros, so that sums over it vectorise
 };
 
 }  // namespace todbench

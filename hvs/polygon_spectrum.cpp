@@ -69,7 +69,8 @@ std::complex<double> spectrum_at(const Polygon& polygon, double kx, double ky) {
 
 /// factor * values, over `n` complex numbers.
 TODBENCH_MULTIVERSION
-void multiply(const double* re, const double* im, double fr, double fi, std::size_t n, double* out_re, double* out_im) {
+void multiply(const double* re, const double* im, double fr, double fi, std::size_t n, double* __restrict out_re,
+              double* __restrict out_im) {
   for (std::size_t m = 0; m < n; ++m) {
     out_re[m] = re[m] * fr - im[m] * fi;
     out_im[m] = re[m] * fi + im[m] * fr;
@@ -80,7 +81,7 @@ void multiply(const double* re, const double* im, double fr, double fi, std::siz
 /// points are computed singly afterwards.
 TODBENCH_MULTIVERSION
 void add_edge(const double* kx, double ky, cv::Point2d d, const double* vr, const double* vi, const double* wr,
-              const double* wi, std::size_t n, double* re, double* im) {
+              const double* wi, std::size_t n, double* __restrict re, double* __restrict im) {
   for (std::size_t m = 0; m < n; ++m) {
     const double kd = kx[m] * d.x + ky * d.y;
     const double kn = kx[m] * d.y - ky * d.x;
@@ -94,7 +95,7 @@ void add_edge(const double* kx, double ky, cv::Point2d d, const double* vr, cons
 
 /// Divides by k^2.
 TODBENCH_MULTIVERSION
-void divide_by_square(const double* kx, double ky, std::size_t n, double* re, double* im) {
+void divide_by_square(const double* kx, double ky, std::size_t n, double* __restrict re, double* __restrict im) {
   for (std::size_t m = 0; m < n; ++m) {
     const double k_squared = kx[m] * kx[m] + ky * ky;
     const double safe = k_squared > 1e-300 ? k_squared : 1e-300;

@@ -6,6 +6,8 @@
 #include <bit>
 #include <cmath>
 
+#include "acquisition/core/multiversion.h"
+
 namespace todbench {
 namespace {
 
@@ -23,7 +25,12 @@ std::uint64_t fnv1a(std::string_view text) {
   return hash;
 }
 
-constexpr int batch_pairs = 128;  // 64 Philox blocks at a time: fits the first-level cache, long enough to vectorise
+constexpr std::size_t batch = 64;  // Philox blocks at a time: fits the first-level cache, long enough to vectorise
+
+/// Philox4x32-10 at `batch` successive positions at once; the same words as RandomStream::words().
+struct PhiloxBatch {
+  std::uint32_t w0[batch], w1[batch], w2[batch], w3[batch];
+};
 
 /// Natural logarithm in single precision for 2^-25 <= x < 1, relative error below 3e-7 (polynomial of Moshier's Cephes,
 /// logf). Plain arithmetic only, so that every compiler gives the same bits.
@@ -64,6 +71,47 @@ inline void box_muller(std::uint32_t u, std::uint32_t v, float& first, float& se
   const float sign = (quadrant & 2) != 0 ? -radius : radius;
   first = sign * (odd ? -sine : cosine);
   second = sign * (odd ? cosine : sine);
+}
+
+/// Ten rounds on every block of the batch (Salmon et al. 2011, section 4.3, with their constants).
+inline void philox_rounds(PhiloxBatch& x, std::uint32_t key0, std::uint32_t key1) {
+  for (int round = 0; round < 10; ++round) {
+    for (std::size_t i = 0; i < batch; ++i) {
+      const std::uint64_t p0 = std::uint64_t{0xD2511F53} * x.w0[i];
+      const std::uint64_t p1 = std::uint64_t{0xCD9E8D57} * x.w2[i];
+      const std::uint32_t a = static_cast<std::uint32_t>(p1 >> 32) ^ x.w1[i] ^ key0;
+      const std::uint32_t b = static_cast<std::uint32_t>(p0 >> 32) ^ x.w3[i] ^ key1;
+      x.w0[i] = a;
+      x.w1[i] = static_cast<std::uint32_t>(p1);
+      x.w2[i] = b;
+      x.w3[i] = static_cast<std::uint32_t>(p0);
+    }
+    key0 += 0x9E3779B9;
+    key1 += 0xBB67AE85;
+  }
+}
+
+/// Normals of the blocks `block`, block + 1, ...: 4 * batch numbers.
+TODBENCH_MULTIVERSION
+void fill_batch(std::uint64_t seed, std::uint64_t stream, std::uint64_t block, float* out) {
+  PhiloxBatch x;
+  for (std::size_t i = 0; i < batch; ++i) {
+    const std::uint64_t position = block + i;
+    x.w0[i] = static_cast<std::uint32_t>(position);
+    x.w1[i] = static_cast<std::uint32_t>(position >> 32);
+    x.w2[i] = static_cast<std::uint32_t>(stream);
+    x.w3[i] = static_cast<std::uint32_t>(stream >> 32);
+  }
+  philox_rounds(x, static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32));
+  float z0[batch], z1[batch], z2[batch], z3[batch];
+  for (std::size_t i = 0; i < batch; ++i) box_muller(x.w0[i], x.w1[i], z0[i], z1[i]);
+  for (std::size_t i = 0; i < batch; ++i) box_muller(x.w2[i], x.w3[i], z2[i], z3[i]);
+  for (std::size_t i = 0; i < batch; ++i) {
+    out[4 * i] = z0[i];
+    out[4 * i + 1] = z1[i];
+    out[4 * i + 2] = z2[i];
+    out[4 * i + 3] = z3[i];
+  }
 }
 
 }  // namespace
@@ -108,22 +156,15 @@ void RandomStream::fill_normal(std::span<float> out, std::uint64_t first) const 
     out[done] = normal(first + done);
     ++done;
   }
-  std::uint32_t u[batch_pairs];
-  std::uint32_t v[batch_pairs];
-  float a[batch_pairs];
-  float b[batch_pairs];
   while (done < out.size()) {
-    const std::uint64_t block = (first + done) / 4;
-    for (int i = 0; i < batch_pairs / 2; ++i) {
-      const auto w = words(block + static_cast<std::uint64_t>(i));
-      u[2 * i] = w[0];
-      v[2 * i] = w[1];
-      u[2 * i + 1] = w[2];
-      v[2 * i + 1] = w[3];
+    const std::size_t count = std::min(4 * batch, out.size() - done);
+    if (count == 4 * batch) {
+      fill_batch(seed_, stream_, (first + done) / 4, out.data() + done);
+    } else {
+      float last[4 * batch];
+      fill_batch(seed_, stream_, (first + done) / 4, last);
+      std::copy_n(last, count, out.data() + done);
     }
-    for (int i = 0; i < batch_pairs; ++i) box_muller(u[i], v[i], a[i], b[i]);
-    const std::size_t count = std::min<std::size_t>(2 * batch_pairs, out.size() - done);
-    for (std::size_t i = 0; i < count; ++i) out[done + i] = i % 2 == 0 ? a[i / 2] : b[i / 2];
     done += count;
   }
 }
