@@ -70,7 +70,9 @@ void add_emulate_command(CLI::App& app, Program& program) {
       app.add_subcommand("emulate", "runs the emulated laboratory until Ctrl-C: GigE camera, black body, plate stage");
   auto a = std::make_shared<EmulationArguments>();
   command->add_option("--sensor", a->sensor, "name or file of the sensor inside the camera")->capture_default_str();
-  command->add_option("--interface", a->interface_address, "IPv4 address to serve on")->capture_default_str();
+  command->add_option("--interface", a->interface_address, "IPv4 address to serve on")
+      ->check(CLI::ValidIPV4)
+      ->capture_default_str();
   command->add_option("--serial", a->serial, "serial number of the camera")->capture_default_str();
   command->add_option("--plates", a->plates, "names or files, separated by commas")
       ->delimiter(',')

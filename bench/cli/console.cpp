@@ -133,7 +133,9 @@ Result<void> finish_output() {
 std::string fixed(const std::optional<double>& value, int decimals) {
   if (!value || !std::isfinite(*value)) return "–";
   char text[64];
-  std::snprintf(text, sizeof text, "%.*f", decimals, *value);
+  // Sides of intervals may be orders of magnitude away: zeros and long figures would say less.
+  const bool shows = *value == 0 || (std::abs(*value) < 1e5 && std::abs(*value) * std::pow(10, decimals) >= 0.5);
+  std::snprintf(text, sizeof text, shows ? "%.*f" : "%.*g", shows ? decimals : 3, *value);
   return text;
 }
 

@@ -56,7 +56,7 @@ class Console {
 /// What was written to standard output reached it: `io` when it is full or closed.
 [[nodiscard]] Result<void> finish_output();
 
-/// "0.480", "–" for a missing number.
+/// "0.480", "–" for a missing number, "1.2e-08" where the decimals would show nothing of it.
 [[nodiscard]] std::string fixed(const std::optional<double>& value, int decimals);
 /// "0.468 … 0.493", with an open side as –.
 [[nodiscard]] std::string range(const Interval& interval, int decimals);

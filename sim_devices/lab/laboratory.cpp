@@ -41,13 +41,13 @@ Result<std::unique_ptr<Laboratory>> Laboratory::start(LaboratoryOptions options)
   state->model = std::make_unique<SensorModel>(o.sensor, o.plan, o.accuracy, o.seed);
 
   auto black_body = BlackBody::start(o.black_body);
-  if (!black_body) return fail("starting the emulated black body", black_body.error());
+  if (!black_body) return tl::unexpected(black_body.error());
   state->black_body = std::move(*black_body);
 
   o.stage.plates.clear();
   for (const auto& plate : o.plates) o.stage.plates.push_back(plate.name);
   auto stage = PlateStage::start(o.stage);
-  if (!stage) return fail("starting the emulated plate stage", stage.error());
+  if (!stage) return tl::unexpected(stage.error());
   state->stage = std::move(*stage);
 
   o.camera.width = state->model->size().width;

@@ -80,6 +80,9 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"fit_form", {"fit", "x.csv", "--form", "log"}, "fit: --form: log not in {size,acuity}"},
         Misuse{
             "mtf_negative", {"mtf", "--sensor", "sc2000", "--frequency-per-pitch", "-1"}, "expected a number from 0"},
+        Misuse{"emulate_address", {"emulate", "--interface", "nonsense"}, "emulate: --interface: Invalid IPV4 address"},
+        Misuse{"emulate_distance", {"emulate", "--distance-m", "nan"}, "--distance-m: expected a number from 0.1 to"},
+        Misuse{"emulate_port", {"emulate", "--stage-port", "70000"}, "--stage-port: expected a whole number from 0 to"},
         Misuse{"mtf_nan", {"mtf", "--sensor", "sc2000", "--frequency-per-pitch", "nan"}, "expected a number from 0"},
         Misuse{"render_nan", {"render", "--sensor", "sc2000", "--size-pitch", "nan"}, "expected a number from 0.01"},
         Misuse{"render_zero", {"render", "--sensor", "sc2000", "--size-pitch", "0"}, "expected a number from 0.01"},

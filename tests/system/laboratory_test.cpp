@@ -1,0 +1,255 @@
+// Measurements with the emulated laboratory in a process of its own: what ends well, and every way a device fails.
+#include <signal.h>
+
+#include <cmath>
+
+#include "bench/session/trials_csv.h"
+#include "tests/system/system_test_support.h"
+
+namespace todbench::testing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::AnyOf;
+using ::testing::HasSubstr;
+using ::testing::UnorderedElementsAre;
+
+constexpr int endless = 10000;
+constexpr std::size_t trials_per_frame = 20;
+
+/// `todbench emulate` on ports that the system chose.
+class EmulatedLaboratory {
+ public:
+  explicit EmulatedLaboratory(const std::vector<std::string>& more = {}) : child_(command(more)) {
+    if (!child_.wait_until([this] { return child_.out().find('\n') != std::string::npos; })) {
+      ADD_FAILURE() << "the laboratory does not start: " << child_.wait().err;
+      return;
+    }
+    addresses_ = Json::parse(child_.out(), nullptr, false);
+  }
+  [[nodiscard]] const Json& addresses() const { return addresses_; }
+  [[nodiscard]] ChildProcess& process() { return child_; }
+
+  /// A plan for this laboratory: one plate, one mounting, 16.9 K.
+  [[nodiscard]] std::string plan(int phases, const std::string& target = "", const std::string& camera = "") const {
+    return "name = \"laboratory\"\n[camera]\nid = \"gige:127.0.0.1\"\nifov_mrad = 1.3085399449\n" + camera +
+           "[simulation]\naccuracy = \"draft\"\nphases = 4\n[measurement]\nregistration_frames = 4\n"
+           "contrast_frames = 4\n[target]\nkind = \"scpi\"\nblack_body = \"" +
+           addresses_.at("black_body").get<std::string>() + "\"\nstage = \"" +
+           addresses_.at("stage").get<std::string>() +
+           "\"\ndistance_m = 2\nplates = [\"tcat-a\"]\nmountings = [\"identity\"]\ndelta_t_k = [16.9]\nphases = " +
+           std::to_string(phases) + "\n" + target;
+  }
+
+ private:
+  static std::vector<std::string> command(const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"emulate", "--json", "--black-body-port", "0", "--stage-port", "0"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return todbench_command(arguments);
+  }
+  ChildProcess child_;
+  Json addresses_;
+};
+
+class Laboratories : public ::testing::Test {
+ protected:
+  void write_plan(const std::string& plan) { folder_.write("plan.toml", plan); }
+  Ended measure(const std::string& out = "m") {
+    return todbench({"measure", "./plan.toml", "--out", out, "--json"}, {.folder = folder_.path()});
+  }
+  std::unique_ptr<ChildProcess> start_measuring() {
+    return std::make_unique<ChildProcess>(todbench_command({"measure", "./plan.toml", "--out", "m", "--json"}),
+                                          ChildOptions{.folder = folder_.path()});
+  }
+  std::filesystem::path session() const { return folder_.path() / "m"; }
+  /// Waits until the run has trials of two frames on disk.
+  bool has_trials(ChildProcess& child) const {
+    return child.wait_until([this] { return rows_in(session() / "trials.csv") >= 2 * trials_per_frame; });
+  }
+  /// A run that ended in the middle: its code, its sentence, and a session that keeps what was measured.
+  void expect_partial_session(const Ended& ended, int code, const std::string& sentence) const {
+    EXPECT_EQ(ended.code, code) << ended.err;
+    EXPECT_THAT(lines_of(ended.err).back(),
+                AllOf(::testing::StartsWith("todbench: ended early: "), HasSubstr(sentence), HasSubstr("are in m")));
+    EXPECT_EQ(one_object(ended)["points"].size(), 1u);
+    expect_whole_session(session(), "interrupted");
+    const auto trials = read_trials(session() / "trials.csv");
+    ASSERT_TRUE(trials) << trials.error().message;
+    EXPECT_GE(trials->size(), 2 * trials_per_frame);
+    EXPECT_EQ(trials->size() % trials_per_frame, 0u);
+    EXPECT_THAT(content_of(session() / "report.html"), HasSubstr("INTERRUPTED"));
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(Laboratories, AMeasurementOverTheNetworkIsAWholeSession) {
+  EmulatedLaboratory laboratory({"--serial", "T0042"});
+  write_plan(laboratory.plan(8));
+
+  const Ended ended = measure();
+
+  ASSERT_TRUE(completed(ended));
+  EXPECT_EQ(one_object(ended)["points"][0]["trials"], 8 * trials_per_frame);
+  expect_whole_session(session(), "complete");
+  const Json provenance = Json::parse(content_of(session() / "provenance.json"));
+  EXPECT_EQ(provenance["camera"]["serial"], "T0042");
+  EXPECT_EQ(provenance["camera"]["transport"], "GigE Vision");
+}
+
+TEST_F(Laboratories, EmulateAndDevicesTellTheAddressesAsJson) {
+  EmulatedLaboratory laboratory;
+
+  const Ended devices = todbench({"devices", "--json"});
+
+  EXPECT_THAT(keys_of(laboratory.addresses()), UnorderedElementsAre("camera", "black_body", "stage"));
+  ASSERT_EQ(devices.code, 0) << devices.err;
+  const Json json = one_object(devices);
+  EXPECT_THAT(keys_of(json), UnorderedElementsAre("cameras", "warnings"));
+  bool seen = false;
+  for (const auto& camera : json["cameras"]) {
+    EXPECT_THAT(keys_of(camera), UnorderedElementsAre("id", "vendor", "model", "serial", "transport", "address"));
+    seen = seen || camera["id"] == laboratory.addresses()["camera"]["id"];
+  }
+  EXPECT_TRUE(seen) << devices.out;
+}
+
+TEST_F(Laboratories, TheCameraIsFoundByTheIdentityThatIsListed) {
+  EmulatedLaboratory laboratory;
+  std::string plan = laboratory.plan(1);
+  plan.replace(plan.find("gige:127.0.0.1"), 14, laboratory.addresses()["camera"]["id"].get<std::string>());
+  write_plan(plan);
+
+  EXPECT_TRUE(completed(measure()));
+}
+
+TEST_F(Laboratories, EmulateEndsOnCtrlC) {
+  EmulatedLaboratory laboratory;
+
+  laboratory.process().signal(SIGINT);
+
+  EXPECT_EQ(laboratory.process().wait().code, 130);
+}
+
+TEST_F(Laboratories, ASecondLaboratoryOnTheSameAddressIsOneSentence) {
+  EmulatedLaboratory laboratory;
+
+  const Ended ended = todbench({"emulate", "--json", "--black-body-port", "0", "--stage-port", "0"});
+
+  expect_refused(ended, 4, "3956");
+}
+
+TEST_F(Laboratories, APlateThatNobodyKnowsIsRefusedByName) {
+  expect_refused(todbench({"emulate", "--plates", "tcat-x"}), 2, "unknown plate 'tcat-x', did you mean 'tcat-a'?");
+}
+
+TEST_F(Laboratories, AnAbsentCameraLeavesNoFolder) {
+  std::string plan;
+  {
+    EmulatedLaboratory laboratory;
+    plan = laboratory.plan(1);
+  }
+  write_plan(plan);
+  const Ended by_address = measure();
+  plan.replace(plan.find("gige:127.0.0.1"), 14, "gige:Nobody-7");
+  write_plan(plan);
+  const Ended by_identity = measure();
+
+  expect_refused(by_address, 4, "no GigE Vision device answers at 127.0.0.1");
+  expect_refused(by_identity, 4, "no such camera; seen: ");
+  EXPECT_FALSE(std::filesystem::exists(session()));
+}
+
+TEST_F(Laboratories, ABusyCameraIsSaidToBeBusy) {
+  EmulatedLaboratory laboratory;
+  write_plan(laboratory.plan(endless));
+  const auto first = start_measuring();
+  ASSERT_TRUE(has_trials(*first));
+
+  const Ended second = measure("second");
+
+  expect_refused(second, 4, "busy: another program controls");
+  EXPECT_TRUE(first->wait_until([&, rows = rows_in(session() / "trials.csv")] {
+    return rows_in(session() / "trials.csv") > rows;  // the first goes on
+  }));
+}
+
+TEST_F(Laboratories, AnAbsentBlackBodyIsNamed) {
+  EmulatedLaboratory laboratory;
+  std::string plan = laboratory.plan(1);
+  // Port 1 is nobody's.
+  const std::string black_body = laboratory.addresses()["black_body"];
+  plan.replace(plan.find(black_body), black_body.size(), "127.0.0.1:1");
+  write_plan(plan);
+
+  expect_refused(measure(), 4, "127.0.0.1:1");
+}
+
+TEST_F(Laboratories, AFormatThatTheCameraDoesNotHaveIsRefused) {
+  EmulatedLaboratory laboratory;
+  write_plan(laboratory.plan(1, "", "[camera.settings]\nPixelFormat = \"Mono8\"\n"));
+
+  expect_refused(measure(), 2, "setting PixelFormat = Mono8");
+}
+
+TEST_F(Laboratories, ASettingThatTheCameraDoesNotKnowIsRefused) {
+  EmulatedLaboratory laboratory;
+  write_plan(laboratory.plan(1, "", "[camera.settings]\nGaimn = 3\n"));
+
+  expect_refused(measure(), 2, "setting Gaimn = 3");
+}
+
+TEST_F(Laboratories, ATargetThatDoesNotSettleIsATimeout) {
+  EmulatedLaboratory laboratory;
+  write_plan(laboratory.plan(1, "settle_timeout_s = 0.001\n"));
+
+  expect_refused(measure(), 5, "presenting the target: ");
+}
+
+TEST_F(Laboratories, AScaleThatContradictsTheDistanceIsACalibrationError) {
+  EmulatedLaboratory laboratory({"--distance-m", "2.2"});
+  write_plan(laboratory.plan(1));
+
+  expect_refused(measure(), 6, "registering plate tcat-a");
+}
+
+TEST_F(Laboratories, ACameraThatIsKilledInMidRunLeavesItsTrials) {
+  EmulatedLaboratory laboratory;
+  write_plan(laboratory.plan(endless));
+  const auto measuring = start_measuring();
+  ASSERT_TRUE(has_trials(*measuring));
+
+  laboratory.process().signal(SIGKILL);
+
+  expect_partial_session(measuring->wait(), 5, "");
+}
+
+TEST_F(Laboratories, ACameraThatFallsSilentInMidRunLeavesItsTrials) {
+  EmulatedLaboratory laboratory;
+  write_plan(laboratory.plan(endless));
+  const auto measuring = start_measuring();
+  ASSERT_TRUE(has_trials(*measuring));
+
+  laboratory.process().signal(SIGSTOP);
+
+  expect_partial_session(measuring->wait(), 5, "");
+}
+
+TEST_F(Laboratories, CtrlCLeavesItsTrialsAndTheCameraFree) {
+  EmulatedLaboratory laboratory;
+  write_plan(laboratory.plan(endless));
+  const auto measuring = start_measuring();
+  ASSERT_TRUE(has_trials(*measuring));
+
+  measuring->signal(SIGINT);
+  const Ended ended = measuring->wait();
+  write_plan(laboratory.plan(1));
+  const Ended next = measure("next");
+
+  expect_partial_session(ended, 130, "stopped");
+  EXPECT_TRUE(completed(next));
+}
+
+}  // namespace
+}  // namespace todbench::testing
