@@ -13,9 +13,9 @@ namespace todbench {
 
 /// One contrast of a TOD curve.
 struct TodPoint {
-  double set_delta_t_k = 0;                       ///< what the target was told: the name by which points are paired
-  double delta_t_k = 0;                           ///< effective contrast measured by the camera (mean over trials)
-  double delta_t_se_k = 0;                        ///< standard error of that mean, over the measurements of it (one per set-up and set-point)
+  double set_delta_t_k = 0;  ///< what the target was told: the name by which points are paired
+  double delta_t_k = 0;      ///< effective contrast measured by the camera (mean over trials)
+  double delta_t_se_k = 0;  ///< standard error of that mean, over the measurements of it (one per set-up and set-point)
   std::vector<Level> levels;                      ///< counts per size, one row per size and cluster: what the fit saw
   PsychometricFit fit;                            ///< in mrad
   std::optional<PsychometricFit> free_lapse_fit;  ///< the same with a free lapse, as a check
