@@ -61,7 +61,7 @@ int run_emulate(Console& console, const EmulationArguments& arguments, StopSigna
 }  // namespace
 
 void add_devices_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand("devices", "the cameras that every back end sees");
+  auto* command = app.add_subcommand("devices", "lists the cameras that every back end sees");
   finish_command(*command, program, [](Console& console) { return run_devices(console); });
 }
 

@@ -62,7 +62,8 @@ int run_fit(Console& console, const FitArguments& arguments) {
 }  // namespace
 
 void add_fit_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand("fit", "one psychometric fit of counts in a CSV file: size,correct,total");
+  auto* command =
+      app.add_subcommand("fit", "fits one psychometric function to counts in a CSV file: size,correct,total");
   auto arguments = std::make_shared<FitArguments>();
   command->add_option("TRIALS.csv", arguments->file, "file with the columns size, correct, total")->required();
   command->add_option("--lapse", arguments->lapse, "0 to 0.1, or free")->capture_default_str();

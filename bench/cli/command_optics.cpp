@@ -150,7 +150,7 @@ int run_mtf(Console& console, const MtfArguments& a) {
 }  // namespace
 
 void add_render_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand("render", "the degraded image of one triangle");
+  auto* command = app.add_subcommand("render", "renders the degraded image of one triangle, as numbers or TIFF");
   auto a = std::make_shared<RenderArguments>();
   command->add_option("--sensor", a->sensor, "name or file")->required();
   command->add_option("--size-pitch", a->size_pitch, "square root of area, in detector pitches")
@@ -177,7 +177,7 @@ void add_render_command(CLI::App& app, Program& program) {
 }
 
 void add_mtf_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand("mtf", "transfer functions of a sensor along x");
+  auto* command = app.add_subcommand("mtf", "tabulates the transfer functions of a sensor along x");
   auto a = std::make_shared<MtfArguments>();
   command->add_option("--sensor", a->sensor, "name or file")->required();
   command->add_option("--frequency-per-pitch", a->frequency_per_pitch, "cycles per detector pitch, separated by commas")

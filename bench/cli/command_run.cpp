@@ -127,7 +127,7 @@ int run_measure(Console& console, const RunArguments& arguments, const Program& 
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
   if (console.json()) {
-    console.object(curve_json(outcome->curve, {}, outcome->figures));
+    console.object(curve_json(outcome->curve, outcome->effects, outcome->figures));
   } else {
     print_curve(console, outcome->curve);
     if (outcome->comparison) {
@@ -220,7 +220,8 @@ void add_measure_command(CLI::App& app, Program& program) {
 }
 
 void add_simulate_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand("simulate", "the same with the simulated sensor");
+  auto* command =
+      app.add_subcommand("simulate", "simulates a TOD curve: the same with a simulated sensor in place of the camera");
   auto a = std::make_shared<SimulateArguments>();
   SimulationOverrides& o = a->overrides;
   command->add_option("PLAN.toml", o.plan,
@@ -260,7 +261,7 @@ void add_simulate_command(CLI::App& app, Program& program) {
 
 void add_demo_command(CLI::App& app, Program& program) {
   auto* command =
-      app.add_subcommand("demo", "the whole job on the emulated laboratory: measure, simulate, compare, report");
+      app.add_subcommand("demo", "does the whole job on the emulated laboratory: measure, simulate, compare, report");
   auto a = std::make_shared<RunArguments>();
   add_folder_options(*command, *a);
   command->add_flag("--force", a->overwrite, "overwrite the session in an existing folder");

@@ -88,7 +88,8 @@ int run_report(Console& console, const std::string& folder) {
 }  // namespace
 
 void add_compare_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand("compare", "two session folders: ratio, difference, equivalence per contrast");
+  auto* command =
+      app.add_subcommand("compare", "compares two session folders: ratio, difference, equivalence per contrast");
   auto a = std::make_shared<CompareArguments>();
   command->add_option("A", a->a, "session folder")->required();
   command->add_option("B", a->b, "session folder")->required();

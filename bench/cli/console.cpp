@@ -99,7 +99,15 @@ void Console::phase(std::string_view name) {
   phase_ = name;
   phase_start_ = std::chrono::steady_clock::now();
   last_draw_ = {};
-  if (!options_.quiet && !terminal_) std::fputs((phase_ + "\n").c_str(), stderr);
+  if (options_.quiet) return;
+  if (!terminal_) {
+    std::fputs((phase_ + "\n").c_str(), stderr);
+    return;
+  }
+  // The first step may take seconds; the name alone says that the program is at work.
+  std::fputs((phase_ + " ...").c_str(), stderr);
+  std::fflush(stderr);
+  bar_shown_ = true;
 }
 
 void Console::progress(std::size_t done, std::size_t planned) {

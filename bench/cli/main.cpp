@@ -99,6 +99,9 @@ int run(int argc, char** argv) {
   program.stop = &stop;
   CLI::App app("Measures the TOD of thermal cameras with a model observer, and of their simulated twins.", "todbench");
   app.require_subcommand(1);
+  app.footer(
+      "Exit codes: 0 done, every limit met; 1 a limit is missed; 2 usage or input; 3 inconclusive; 4 device absent or\n"
+      "busy; 5 device lost or frames unusable; 6 calibration; 7 internal error or full disk; 130 interrupted.");
   const BuildInfo info = build_info();
   app.set_version_flag("--version", "todbench " + std::string(info.version) + " (" + std::string(info.commit) + ")");
   add_demo_command(app, program);

@@ -150,6 +150,7 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
   run.curve.observer = inputs.observer.name;
 
   if (!run.result.ended_by) {
+    phase(folder, listener, "estimating " + inputs.sensor.name + " directly");
     DirectResults direct = direct_results(run.curve, inputs, plan.seed, std::move(stop));
     run.result.ended_by = std::move(direct.ended_by);
     for (auto& sentence : direct.notes) {

@@ -60,6 +60,7 @@ TEST_F(Sessions, MeasureWithASimulatedCameraComparesWithItsTwin) {
   EXPECT_EQ(keys_of(json), curve_keys);
   EXPECT_EQ(keys_of(json["points"][0]), point_keys);
   EXPECT_TRUE(json["points"][0]["s75_direct_mrad"].is_null());  // exists only for a simulated curve
+  EXPECT_EQ(json["plan"].size(), 6u);                           // of the twin
   expect_whole_session(at("m"), "complete");
   EXPECT_TRUE(std::filesystem::exists(at("m") / "comparison.json"));
   EXPECT_EQ(rows_in(at("m") / "trials_simulated.csv"), 160u);
@@ -249,7 +250,7 @@ TEST_F(Sessions, QuietMeansNothingOnStandardErrorAndNoTerminalNoControlCharacter
   const Ended plain = run({"simulate", "./plan.toml", "--out", "s"});
   const Ended quiet = run({"simulate", "./plan.toml", "--out", "t", "--quiet"}, {.setenv = {{"NO_COLOR", "1"}}});
 
-  EXPECT_THAT(lines_of(plain.err), ElementsAre("simulating sc2000", "session: s"));
+  EXPECT_THAT(lines_of(plain.err), ElementsAre("simulating sc2000", "estimating sc2000 directly", "session: s"));
   EXPECT_EQ(quiet.err, "");
   for (const char c : plain.err + plain.out) EXPECT_TRUE(c == '\n' || c < 0 || c >= 0x20) << static_cast<int>(c);
 }
