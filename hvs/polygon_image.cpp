@@ -70,6 +70,44 @@ void sum_rows(const double* re, const double* im, std::size_t stride, const Comp
   out_im[1] = i1;
 }
 
+/// Rows read together: as many streams as the memory system follows.
+constexpr std::size_t rows_at_once = 4;
+
+/// Adds factor_b row_b, b = 0..rows_at_once-1 in this order, to `columns` (whole lanes) sums.
+TODBENCH_MULTIVERSION
+void add_four_rows(const double* re, const double* im, std::size_t stride, const Complex* factors, std::size_t columns,
+                   double* sum_re, double* sum_im) {
+  for (std::size_t k = 0; k < columns; k += 8) {
+    auto* out_re = reinterpret_cast<EightInMemory*>(sum_re + k);
+    auto* out_im = reinterpret_cast<EightInMemory*>(sum_im + k);
+    Eight r = *out_re, i = *out_im;
+    for (std::size_t b = 0; b < rows_at_once; ++b) {
+      const double fr = factors[b].real();
+      const double fi = factors[b].imag();
+      const auto row_re = *reinterpret_cast<const EightInMemory*>(re + b * stride + k);
+      const auto row_im = *reinterpret_cast<const EightInMemory*>(im + b * stride + k);
+      r += row_re * fr - row_im * fi;
+      i += row_re * fi + row_im * fr;
+    }
+    *out_re = r;
+    *out_im = i;
+  }
+}
+
+TODBENCH_MULTIVERSION
+void add_row(const double* re, const double* im, Complex factor, std::size_t columns, double* sum_re, double* sum_im) {
+  const double fr = factor.real();
+  const double fi = factor.imag();
+  for (std::size_t k = 0; k < columns; k += 8) {
+    auto* out_re = reinterpret_cast<EightInMemory*>(sum_re + k);
+    auto* out_im = reinterpret_cast<EightInMemory*>(sum_im + k);
+    const auto row_re = *reinterpret_cast<const EightInMemory*>(re + k);
+    const auto row_im = *reinterpret_cast<const EightInMemory*>(im + k);
+    *out_re += row_re * fr - row_im * fi;
+    *out_im += row_re * fi + row_im * fr;
+  }
+}
+
 /// The same, real part only.
 TODBENCH_MULTIVERSION
 void sum_rows_real(const double* re, const double* im, std::size_t stride, const double* factors_re,
@@ -187,8 +225,11 @@ cv::Mat1d PolygonImage::sample(cv::Point2d first, double step, cv::Size size) co
     for (int row = top; row < re_.rows; row += n) ramps.push_back(turn((row - band) * first.y / period));
     const std::size_t at = static_cast<std::size_t>(wrapped(top - band, n)) * rows.stride;
     const std::size_t stride = bins * re_.step1();
-    for (std::size_t m = 0; m < rows.stride; m += lanes)
-      sum_rows(re_[top] + m, im_[top] + m, stride, ramps.data(), ramps.size(), &rows.re[at + m], &rows.im[at + m]);
+    std::size_t b = 0;
+    for (; b + rows_at_once <= ramps.size(); b += rows_at_once)
+      add_four_rows(re_[top] + b * stride, im_[top] + b * stride, stride, &ramps[b], rows.stride, &rows.re[at], &rows.im[at]);
+    for (; b < ramps.size(); ++b)
+      add_row(re_[top] + b * stride, im_[top] + b * stride, ramps[b], rows.stride, &rows.re[at], &rows.im[at]);
   }
   // Columns likewise. Frequencies u > 0 count twice, for their mirror images; the real part is taken at the end.
   ramps.clear();
