@@ -195,6 +195,9 @@ FilterTable::FilterTable(FrequencyLattice lattice, const TransferFunction& trans
     for (int column = 0; column < values_.cols; ++column) {
       values_(row, column) = transfer(column / period, (row - lattice.band) / period);
     }
+    int extent = values_.cols;
+    while (extent > 0 && values_(row, extent - 1) == Complex(0, 0)) --extent;
+    extents_.push_back(static_cast<std::size_t>(extent));
   }
 }
 
@@ -204,7 +207,8 @@ PolygonImage::PolygonImage(const Polygon& polygon, const FilterTable& filter) : 
   im_ = cv::Mat1d(size, 0.0);
   PolygonSpectrumRows spectrum(polygon, lattice_);
   for (int row = 0; row < re_.rows; ++row) {
-    const auto [re, im] = spectrum.row(row);
+    const auto [re, im] = spectrum.row(row, filter.extent(row));
+    extents_.push_back(padded(re.size()));
     product(re.data(), im.data(), filter.values()[row], re.size(), re_[row], im_[row]);
   }
 }
@@ -225,11 +229,16 @@ cv::Mat1d PolygonImage::sample(cv::Point2d first, double step, cv::Size size) co
     for (int row = top; row < re_.rows; row += n) ramps.push_back(turn((row - band) * first.y / period));
     const std::size_t at = static_cast<std::size_t>(wrapped(top - band, n)) * rows.stride;
     const std::size_t stride = bins * re_.step1();
+    const auto extent = [&](std::size_t b) { return extents_[static_cast<std::size_t>(top) + b * bins]; };
     std::size_t b = 0;
-    for (; b + rows_at_once <= ramps.size(); b += rows_at_once)
-      add_four_rows(re_[top] + b * stride, im_[top] + b * stride, stride, &ramps[b], rows.stride, &rows.re[at], &rows.im[at]);
+    for (; b + rows_at_once <= ramps.size(); b += rows_at_once) {
+      std::size_t widest = 0;
+      for (std::size_t k = b; k < b + rows_at_once; ++k) widest = std::max(widest, extent(k));
+      add_four_rows(re_[top] + b * stride, im_[top] + b * stride, stride, &ramps[b], widest, &rows.re[at],
+                    &rows.im[at]);
+    }
     for (; b < ramps.size(); ++b)
-      add_row(re_[top] + b * stride, im_[top] + b * stride, ramps[b], rows.stride, &rows.re[at], &rows.im[at]);
+      add_row(re_[top] + b * stride, im_[top] + b * stride, ramps[b], extent(b), &rows.re[at], &rows.im[at]);
   }
   // Columns likewise. Frequencies u > 0 count twice, for their mirror images; the real part is taken at the end.
   ramps.clear();
