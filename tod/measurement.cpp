@@ -70,7 +70,16 @@ class Run {
     if (auto corrected = correct_when_due(); !corrected) return tl::unexpected(corrected.error());
     std::optional<Error> ended_by;
     while (const auto state = schedule_.next()) {
-      if (auto shown = show(*state); !shown) {
+      auto shown = show(*state);
+      while (!shown && shown.error().code == ErrorCode::disconnected && listener_.on_lost) {
+        const std::int64_t lost_ns = options_.now_ns();
+        const Error why = shown.error();
+        note("the camera was lost in presentation " + std::to_string(presentation_) + ": " + why.message);
+        shown = listener_.on_lost(why, stop_);
+        if (!shown) break;
+        shown = resume(*state, why, lost_ns);
+      }
+      if (!shown) {
         ended_by = shown.error();
         break;
       }
@@ -113,6 +122,30 @@ class Run {
     if (last_nuc_ns_ && static_cast<double>(now_ns - *last_nuc_ns_) * 1e-9 < options_.nuc_interval_s) return {};
     last_nuc_ns_ = now_ns;
     return taker_.correct_nonuniformity();
+  }
+
+  /// The camera that was lost in this presentation is back: it is made again.
+  Result<void> resume(const TargetState& state, const Error& why, std::int64_t lost_ns) {
+    const std::optional<cv::Point2d> before =
+        current_set_up_ ? std::optional(base_.pixel({0, 0})) : std::optional<cv::Point2d>();
+    // Everything that was measured with the old connection is measured again; what is registered is looked for where it
+    // was.
+    current_set_up_.reset();
+    current_contrast_.reset();
+    last_nuc_ns_.reset();
+    const std::int64_t presentation = presentation_;
+    if (auto shown = show(state); !shown) return shown;
+    Interruption interruption{.presentation = presentation,
+                              .away_s = static_cast<double>(options_.now_ns() - lost_ns) * 1e-9,
+                              .moved_px = before ? cv::norm(base_.pixel({0, 0}) - *before) : 0,
+                              .reason = why.message};
+    char text[120];
+    std::snprintf(text, sizeof text, "the camera is back after %.1f s; the plate is %.2f pixels from where it was",
+                  interruption.away_s, interruption.moved_px);
+    note(text);
+    result_.interruptions.push_back(std::move(interruption));
+    if (listener_.on_resumed) listener_.on_resumed();
+    return {};
   }
 
   /// One presentation: target, frame, answers.

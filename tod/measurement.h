@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -51,6 +52,20 @@ struct MeasurementListener {
   std::function<void(std::size_t done, std::size_t planned)> on_progress;
   std::function<void(const std::string& sentence)> on_note;
   std::function<void(const RejectedFrame&)> on_rejected{};  ///< every frame that was not used, with the reason
+  /// The camera was lost. Brings the same source back to deliver frames, started and set as before, and returns
+  /// success; then the plate is looked for again and the presentation is repeated. Empty, or an error: the run ends.
+  std::function<Result<void>(const Error& why, std::stop_token stop)> on_lost{};
+  /// The plate was found again after a loss, and the presentation was made.
+  std::function<void()> on_resumed{};
+};
+
+/// A loss of the camera that the run survived. Begins a new segment.
+struct Interruption {
+  std::int64_t presentation = 0;  ///< the first one of the new segment
+  double away_s = 0;              ///< from the error to the answers of that presentation
+  double moved_px = 0;            ///< where the plate was found again, from where it had been
+  std::string reason;
+  bool operator==(const Interruption&) const = default;
 };
 
 /// Registration and contrast of one set-up (plate and mounting), for the report.
@@ -69,6 +84,7 @@ struct MeasurementResult {
   double temporal_noise_k =
       0;  ///< per pixel, from differences of successive frames of the same presentation; 0: not measured
   std::vector<std::string> notes;
+  std::vector<Interruption> interruptions;
   std::optional<Error> ended_by;  ///< why it stopped early; the trials so far are valid
 };
 

@@ -91,6 +91,20 @@ Result<std::unique_ptr<Target>> open_target(const Plan& plan, std::stop_token st
   return open_scpi_target(options, stop);
 }
 
+/// A recording that has ended is not a camera that was lost.
+bool may_come_back(const Plan& plan) {
+  return plan.camera.reconnect_s > 0 && !plan.camera.id.starts_with("file:") &&
+         !plan.camera.id.starts_with(simulated_scheme);
+}
+
+/// The same source, able to open the camera of the plan again.
+std::unique_ptr<ReconnectingSource> reconnecting(std::unique_ptr<FrameSource> camera, const Plan& plan) {
+  return std::make_unique<ReconnectingSource>(
+      std::move(camera), [id = plan.camera.id] { return camera_registry().open(id); },
+      ReconnectionOptions{.patience = std::chrono::milliseconds(static_cast<long>(plan.camera.reconnect_s * 1000)),
+                          .settings = plan.camera.settings});
+}
+
 Result<void> write_settings(FrameSource& camera, const std::map<std::string, std::string>& settings) {
   for (const auto& [feature, value] : settings) {
     auto done = camera.set(feature, value);
@@ -143,6 +157,11 @@ Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>&
   bench.camera = std::move(*camera);
   if (auto written = write_settings(*bench.camera, plan.camera.settings); !written) {
     return fail("camera " + plan.camera.id, written.error());
+  }
+  if (may_come_back(plan)) {
+    auto camera_that_comes_back = reconnecting(std::move(bench.camera), plan);
+    bench.reconnecting = camera_that_comes_back.get();
+    bench.camera = std::move(camera_that_comes_back);
   }
   auto target = open_target(plan, stop);
   if (!target) return fail("opening the target", target.error());

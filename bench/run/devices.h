@@ -6,6 +6,7 @@
 #include <stop_token>
 
 #include "acquisition/core/camera_registry.h"
+#include "bench/run/reconnecting_source.h"
 #include "bench/session/plan.h"
 #include "sim_devices/sensor/simulated_camera.h"
 #include "tod/target.h"
@@ -19,7 +20,8 @@ namespace todbench {
 struct OpenedBench {
   std::unique_ptr<FrameSource> camera;
   std::unique_ptr<Target> target;
-  bool simulated = false;  ///< the camera is a sensor model, its clock that of the model
+  ReconnectingSource* reconnecting = nullptr;  ///< `camera`, or inside it, when it can be opened again after a loss
+  bool simulated = false;                      ///< the camera is a sensor model, its clock that of the model
 };
 
 /// Opens what the plan names and writes its settings into the camera. Errors: `not_found`, `invalid_input` (a target

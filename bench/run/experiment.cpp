@@ -59,6 +59,12 @@ class Recorder {
                         " not used: " + std::string(to_string(frame.reason)) +
                         (frame.seen ? " (" + std::string(to_string(*frame.seen)) + ")" : ""));
     };
+    if (bench.reconnecting != nullptr) {
+      events.on_lost = [&](const Error&, std::stop_token abort) {
+        return bench.reconnecting->recover(std::move(abort));
+      };
+      events.on_resumed = [&] { bench.reconnecting->confirm_registration(); };
+    }
     auto result = measure(*bench.camera, *bench.target, observer, schedule, options, events, halt_.get_token());
     if (auto synced = writer->sync(); !synced && !write_error) write_error = synced.error();
     if (write_error) {

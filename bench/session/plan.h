@@ -27,6 +27,7 @@ struct CameraPlan {
   double nuc_interval_s = 0;                    ///< correct the non-uniformity this often; 0: never commanded
   double nuc_wait_s = 1;                        ///< frames within this time after a correction are not measured
   std::map<std::string, std::string> settings;  ///< feature -> value, set before the run and read back
+  double reconnect_s = 60;                      ///< how long a lost camera is waited for; 0: not at all
   bool operator==(const CameraPlan&) const = default;
 };
 

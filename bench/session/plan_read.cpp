@@ -78,6 +78,7 @@ CameraPlan read_camera(TomlReader reader) {
   camera.ifov_mrad = reader.number(
       "ifov_mrad", camera.id.empty() ? NumberRange::not_negative() : NumberRange::positive(), ifov_fallback);
   camera.nuc_interval_s = reader.number("nuc_interval_s", NumberRange::not_negative(), camera.nuc_interval_s);
+  camera.reconnect_s = reader.number("reconnect_s", NumberRange::not_negative(), camera.reconnect_s);
   camera.nuc_wait_s = reader.number("nuc_wait_s", NumberRange::not_negative(), camera.nuc_wait_s);
   camera.settings = reader.free_table("settings");
   return camera;

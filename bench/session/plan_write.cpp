@@ -78,6 +78,7 @@ void write_camera(Lines& out, const CameraPlan& camera) {
   out.key("id", camera.id);
   out.key("ifov_mrad", camera.ifov_mrad);
   out.key("nuc_interval_s", camera.nuc_interval_s);
+  out.key("reconnect_s", camera.reconnect_s);
   out.key("nuc_wait_s", camera.nuc_wait_s);
   if (camera.settings.empty()) return;
   out.table("[camera.settings]");

@@ -114,6 +114,15 @@ Json run_json(const RunRecord& run) {
   json["set_ups"] = Json::array();
   for (const SetUpRecord& set_up : run.set_ups) json["set_ups"].push_back(set_up_json(set_up));
   json["notes"] = run.notes;
+  json["interrupted"] = !run.interruptions.empty();
+  json["interruptions"] = Json::array();
+  for (const Interruption& interruption : run.interruptions) {
+    json["interruptions"].push_back({{"segment", json["interruptions"].size() + 2},
+                                     {"first_presentation", interruption.presentation},
+                                     {"away_s", json_number(interruption.away_s)},
+                                     {"moved_px", json_number(interruption.moved_px)},
+                                     {"reason", interruption.reason}});
+  }
   json["ended_by"] = run.ended_by;
   return json;
 }
@@ -127,6 +136,15 @@ RunRecord read_run(const JsonReader& reader) {
   run.temporal_noise_k = reader.at("temporal_noise_k").optional_number().value_or(0);
   for (const JsonReader& set_up : reader.at("set_ups").elements()) run.set_ups.push_back(read_set_up(set_up));
   run.notes = reader.at("notes").texts();
+  for (const auto& [key, value] : reader.items()) {
+    if (key != "interruptions") continue;  // folders of earlier versions have none
+    for (const JsonReader& interruption : value.elements()) {
+      run.interruptions.push_back({.presentation = interruption.at("first_presentation").whole(),
+                                   .away_s = interruption.at("away_s").number(),
+                                   .moved_px = interruption.at("moved_px").number(),
+                                   .reason = interruption.at("reason").text()});
+    }
+  }
   run.ended_by = reader.at("ended_by").text();
   return run;
 }
@@ -173,6 +191,7 @@ RunRecord run_record(const MeasurementResult& result, double wall_s) {
           result.temporal_noise_k,
           result.set_ups,
           result.notes,
+          result.interruptions,
           result.ended_by ? result.ended_by->message : std::string()};
 }
 

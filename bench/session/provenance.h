@@ -42,7 +42,8 @@ struct RunRecord {
   double temporal_noise_k = 0;  ///< 0: not measured
   std::vector<SetUpRecord> set_ups;
   std::vector<std::string> notes;
-  std::string ended_by;  ///< why it stopped early; empty: it did not
+  std::vector<Interruption> interruptions;  ///< losses of the camera that the run survived
+  std::string ended_by;                     ///< why it stopped early; empty: it did not
 };
 [[nodiscard]] RunRecord run_record(const MeasurementResult& result, double wall_s);
 [[nodiscard]] RunFigures figures_of(const RunRecord& run);
