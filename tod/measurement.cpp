@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <span>
 #include <tuple>
 
 #include "tod/frame_taker.h"
@@ -70,10 +71,12 @@ class Run {
     if (auto corrected = correct_when_due(); !corrected) return tl::unexpected(corrected.error());
     std::optional<Error> ended_by;
     while (const auto state = schedule_.next()) {
+      const std::size_t before = result_.trials.size();
       if (auto shown = show(*state); !shown) {
         ended_by = shown.error();
         break;
       }
+      schedule_.observe(std::span(result_.trials).subspan(before));
       if (listener_.on_progress) listener_.on_progress(static_cast<std::size_t>(presentation_), schedule_.planned());
     }
     source_.stop();
