@@ -1,4 +1,4 @@
-// todbench measure, todbench simulate, todbench demo
+// todbench measure, todbench simulate, todbench replay, todbench demo
 #include <algorithm>
 #include <cctype>
 #include <memory>
@@ -7,6 +7,7 @@
 #include "bench/cli/demonstration.h"
 #include "bench/cli/simulation_plan.h"
 #include "bench/run/experiment.h"
+#include "bench/run/replay.h"
 #include "bench/session/provenance.h"
 #include "bench/session/resources.h"
 
@@ -17,6 +18,7 @@ struct RunArguments {
   std::string plan;
   std::string out;
   bool overwrite = false;
+  bool record_frames = false;
 };
 
 struct SimulateArguments {
@@ -123,6 +125,7 @@ int run_measure(Console& console, const RunArguments& arguments, const Program& 
                                                    "lists them)"});
   }
   if (program.common.seed_given) plan->seed = program.common.seed;
+  if (arguments.record_frames) plan->measurement.record_frames = true;
   auto outcome = measure_plan(*plan, folder_of(arguments, *plan), listener_of(console), program.stop->token());
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
@@ -175,6 +178,7 @@ int run_demo(Console& console, const RunArguments& arguments, const Program& pro
   plan->camera.id = "gige:" + (*laboratory)->camera_address();
   plan->target.black_body = (*laboratory)->black_body_endpoint();
   plan->target.stage = (*laboratory)->stage_endpoint();
+  if (arguments.record_frames) plan->measurement.record_frames = true;
   auto outcome = measure_plan(*plan, folder_of(arguments, *plan), listener_of(console), program.stop->token());
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
@@ -208,7 +212,53 @@ void add_folder_options(CLI::App& command, RunArguments& arguments) {
   command.add_option("--out", arguments.out, "session folder; default: session-TIME-NAME in the current folder");
 }
 
+void add_record_flag(CLI::App& command, RunArguments& arguments) {
+  command.add_flag("--record-frames", arguments.record_frames,
+                   "keep every frame in the session, for todbench replay (like [measurement] record_frames)");
+}
+
+int run_replay(Console& console, const std::string& session, const RunArguments& arguments, const Program& program) {
+  auto name = std::filesystem::path(session).lexically_normal();
+  if (name.filename().empty()) name = name.parent_path();
+  ExperimentOptions options{.folder = arguments.out, .existing = ExistingFolder::refuse};
+  if (arguments.overwrite) options.existing = ExistingFolder::overwrite;
+  if (arguments.out.empty())
+    options = {.folder = default_folder(name.filename().string() + "-replay"), .existing = ExistingFolder::number};
+  auto outcome = replay_session(session, options, listener_of(console), program.stop->token());
+  console.end_progress();
+  if (!outcome) return report_error(console, outcome.error());
+  const auto said = [](const std::optional<bool>& same) { return same ? (*same ? "the same" : "DIFFERENT") : "none"; };
+  if (console.json()) {
+    Json json = curve_json(outcome->run.curve, outcome->run.effects, outcome->run.figures);
+    json["same_trials"] = outcome->same_trials;
+    json["same_fits"] = outcome->same_fits ? Json(*outcome->same_fits) : Json();
+    json["session"] = outcome->run.folder.string();
+    console.object(json);
+  } else {
+    print_curve(console, outcome->run.curve);
+    console.text("");
+    console.text("trials: " + std::string(said(outcome->same_trials)) + "; fits: " + said(outcome->same_fits));
+  }
+  if (!outcome->same_trials || !outcome->same_fits.value_or(true)) {
+    console.error("the replay answers differently from the session: another version of the program, or a defect");
+    return exit_code(VerdictKind::fail);
+  }
+  return finish(console, outcome->run);
+}
+
 }  // namespace
+
+void add_replay_command(CLI::App& app, Program& program) {
+  auto* command = app.add_subcommand(
+      "replay", "measures a session again from its recorded frames, into a new session: same answers bit for bit");
+  auto a = std::make_shared<RunArguments>();
+  auto session = std::make_shared<std::string>();
+  command->add_option("DIR", *session, "session folder with recorded frames")->required();
+  add_folder_options(*command, *a);
+  command->add_flag("--force", a->overwrite, "overwrite the session in an existing folder");
+  finish_command(*command, program,
+                 [a, session, &program](Console& console) { return run_replay(console, *session, *a, program); });
+}
 
 void add_measure_command(CLI::App& app, Program& program) {
   auto* command = app.add_subcommand("measure", "measures a TOD curve with the camera and target that the plan names");
@@ -216,6 +266,7 @@ void add_measure_command(CLI::App& app, Program& program) {
   command->add_option("PLAN.toml", a->plan, "name or file")->required();
   add_folder_options(*command, *a);
   command->add_flag("--force", a->overwrite, "overwrite the session in an existing folder");
+  add_record_flag(*command, *a);
   finish_command(*command, program, [a, &program](Console& console) { return run_measure(console, *a, program); });
 }
 
@@ -265,6 +316,7 @@ void add_demo_command(CLI::App& app, Program& program) {
   auto a = std::make_shared<RunArguments>();
   add_folder_options(*command, *a);
   command->add_flag("--force", a->overwrite, "overwrite the session in an existing folder");
+  add_record_flag(*command, *a);
   finish_command(*command, program, [a, &program](Console& console) { return run_demo(console, *a, program); });
 }
 
