@@ -70,6 +70,44 @@ void sum_rows(const double* re, const double* im, std::size_t stride, const Comp
   out_im[1] = i1;
 }
 
+/// Rows read together: as many streams as the memory system follows.
+constexpr std::size_t rows_at_once = 4;
+
+/// Adds factor_b row_b, b = 0..rows_at_once-1 in this order, to `columns` (whole lanes) sums.
+TODBENCH_MULTIVERSION
+void add_four_rows(const double* re, const double* im, std::size_t stride, const Complex* factors, std::size_t columns,
+                   double* sum_re, double* sum_im) {
+  for (std::size_t k = 0; k < columns; k += 8) {
+    auto* out_re = reinterpret_cast<EightInMemory*>(sum_re + k);
+    auto* out_im = reinterpret_cast<EightInMemory*>(sum_im + k);
+    Eight r = *out_re, i = *out_im;
+    for (std::size_t b = 0; b < rows_at_once; ++b) {
+      const double fr = factors[b].real();
+      const double fi = factors[b].imag();
+      const auto row_re = *reinterpret_cast<const EightInMemory*>(re + b * stride + k);
+      const auto row_im = *reinterpret_cast<const EightInMemory*>(im + b * stride + k);
+      r += row_re * fr - row_im * fi;
+      i += row_re * fi + row_im * fr;
+    }
+    *out_re = r;
+    *out_im = i;
+  }
+}
+
+TODBENCH_MULTIVERSION
+void add_row(const double* re, const double* im, Complex factor, std::size_t columns, double* sum_re, double* sum_im) {
+  const double fr = factor.real();
+  const double fi = factor.imag();
+  for (std::size_t k = 0; k < columns; k += 8) {
+    auto* out_re = reinterpret_cast<EightInMemory*>(sum_re + k);
+    auto* out_im = reinterpret_cast<EightInMemory*>(sum_im + k);
+    const auto row_re = *reinterpret_cast<const EightInMemory*>(re + k);
+    const auto row_im = *reinterpret_cast<const EightInMemory*>(im + k);
+    *out_re += row_re * fr - row_im * fi;
+    *out_im += row_re * fi + row_im * fr;
+  }
+}
+
 /// The same, real part only.
 TODBENCH_MULTIVERSION
 void sum_rows_real(const double* re, const double* im, std::size_t stride, const double* factors_re,
@@ -157,6 +195,9 @@ FilterTable::FilterTable(FrequencyLattice lattice, const TransferFunction& trans
     for (int column = 0; column < values_.cols; ++column) {
       values_(row, column) = transfer(column / period, (row - lattice.band) / period);
     }
+    int extent = values_.cols;
+    while (extent > 0 && values_(row, extent - 1) == Complex(0, 0)) --extent;
+    extents_.push_back(static_cast<std::size_t>(extent));
   }
 }
 
@@ -166,7 +207,8 @@ PolygonImage::PolygonImage(const Polygon& polygon, const FilterTable& filter) : 
   im_ = cv::Mat1d(size, 0.0);
   PolygonSpectrumRows spectrum(polygon, lattice_);
   for (int row = 0; row < re_.rows; ++row) {
-    const auto [re, im] = spectrum.row(row);
+    const auto [re, im] = spectrum.row(row, filter.extent(row));
+    extents_.push_back(padded(re.size()));
     product(re.data(), im.data(), filter.values()[row], re.size(), re_[row], im_[row]);
   }
 }
@@ -187,8 +229,16 @@ cv::Mat1d PolygonImage::sample(cv::Point2d first, double step, cv::Size size) co
     for (int row = top; row < re_.rows; row += n) ramps.push_back(turn((row - band) * first.y / period));
     const std::size_t at = static_cast<std::size_t>(wrapped(top - band, n)) * rows.stride;
     const std::size_t stride = bins * re_.step1();
-    for (std::size_t m = 0; m < rows.stride; m += lanes)
-      sum_rows(re_[top] + m, im_[top] + m, stride, ramps.data(), ramps.size(), &rows.re[at + m], &rows.im[at + m]);
+    const auto extent = [&](std::size_t b) { return extents_[static_cast<std::size_t>(top) + b * bins]; };
+    std::size_t b = 0;
+    for (; b + rows_at_once <= ramps.size(); b += rows_at_once) {
+      std::size_t widest = 0;
+      for (std::size_t k = b; k < b + rows_at_once; ++k) widest = std::max(widest, extent(k));
+      add_four_rows(re_[top] + b * stride, im_[top] + b * stride, stride, &ramps[b], widest, &rows.re[at],
+                    &rows.im[at]);
+    }
+    for (; b < ramps.size(); ++b)
+      add_row(re_[top] + b * stride, im_[top] + b * stride, ramps[b], extent(b), &rows.re[at], &rows.im[at]);
   }
   // Columns likewise. Frequencies u > 0 count twice, for their mirror images; the real part is taken at the end.
   ramps.clear();

@@ -27,10 +27,13 @@ class FilterTable {
   [[nodiscard]] const FrequencyLattice& lattice() const { return lattice_; }
   /// Rows w = -band..band, columns u = 0..band.
   [[nodiscard]] const cv::Mat_<std::complex<double>>& values() const { return values_; }
+  /// How many columns of a row there are up to the last that is not zero: optics cut off on a circle.
+  [[nodiscard]] std::size_t extent(int row) const { return extents_[static_cast<std::size_t>(row)]; }
 
  private:
   FrequencyLattice lattice_;
   cv::Mat_<std::complex<double>> values_;
+  std::vector<std::size_t> extents_;  ///< per row
 };
 
 /// The spectrum of one filtered polygon of contrast 1, ready to be sampled anywhere. Immutable, thread-safe.
@@ -53,7 +56,8 @@ class PolygonImage {
 
  private:
   FrequencyLattice lattice_;
-  cv::Mat1d re_, im_;  ///< parts of the spectrum, rows padded with zeros, so that sums over it vectorise
+  cv::Mat1d re_, im_;                 ///< parts of the spectrum, rows padded with zeros, so that sums over it vectorise
+  std::vector<std::size_t> extents_;  ///< per row: columns up to the last that is not zero, padding included
 };
 
 }  // namespace todbench

@@ -136,15 +136,14 @@ PolygonSpectrumRows::PolygonSpectrumRows(const Polygon& polygon, FrequencyLattic
   e_im_ = e_re_;
 }
 
-PolygonSpectrumRows::Row PolygonSpectrumRows::row(int r) {
+PolygonSpectrumRows::Row PolygonSpectrumRows::row(int r, std::size_t columns) {
   const double ky = two_pi * (r - lattice_.band) / lattice_.period;
-  sum_edges(r, ky);
-  replace_unsafe(ky);
-  return {re_, im_};
+  sum_edges(r, ky, columns);
+  replace_unsafe(ky, columns);
+  return {std::span(re_).first(columns), std::span(im_).first(columns)};
 }
 
-void PolygonSpectrumRows::sum_edges(int r, double ky) {
-  const std::size_t n = kx_.size();
+void PolygonSpectrumRows::sum_edges(int r, double ky, std::size_t n) {
   const std::size_t vertices = polygon_.size();
   for (std::size_t v = 0; v < vertices; ++v) {
     const auto at = static_cast<std::size_t>(r);
@@ -161,8 +160,7 @@ void PolygonSpectrumRows::sum_edges(int r, double ky) {
 }
 
 /// Points at which the sum over edges loses digits.
-void PolygonSpectrumRows::replace_unsafe(double ky) {
-  const std::size_t n = kx_.size();
+void PolygonSpectrumRows::replace_unsafe(double ky, std::size_t n) {
   const auto replace = [&](std::size_t m) {
     const std::complex<double> value = spectrum_at(polygon_, kx_[m], ky);
     re_[m] = value.real();
@@ -173,7 +171,7 @@ void PolygonSpectrumRows::replace_unsafe(double ky) {
     // Columns on which |kx dx + ky dy| is below the limit: all, none, or a short run round -ky dy / dx.
     std::size_t first = 0;
     std::size_t last = n;
-    if (std::abs(d.x) * kx_[n - 1] > series_limit) {
+    if (std::abs(d.x) * kx_.back() > series_limit) {
       const double step = two_pi / lattice_.period;
       const double middle = -ky * d.y / d.x / step;
       const double half = series_limit / std::abs(d.x) / step + 1;
@@ -191,7 +189,7 @@ cv::Mat_<std::complex<double>> polygon_spectrum(const Polygon& polygon, const Fr
   PolygonSpectrumRows rows(polygon, lattice);
   cv::Mat_<std::complex<double>> spectrum(2 * lattice.band + 1, lattice.band + 1);
   for (int r = 0; r < spectrum.rows; ++r) {
-    const auto [re, im] = rows.row(r);
+    const auto [re, im] = rows.row(r, static_cast<std::size_t>(spectrum.cols));
     std::complex<double>* out = spectrum[r];
     for (std::size_t m = 0; m < re.size(); ++m) out[m] = {re[m], im[m]};
   }

@@ -33,10 +33,10 @@ class PolygonSpectrumRows {
  public:
   PolygonSpectrumRows(const Polygon& polygon, FrequencyLattice lattice);
   struct Row {
-    std::span<const double> re, im;  ///< columns u = 0..band; valid until the next call
+    std::span<const double> re, im;  ///< columns u = 0, 1, ...; valid until the next call
   };
-  /// Row `r` is w = r - band, r = 0 .. 2 band.
-  [[nodiscard]] Row row(int r);
+  /// The first `columns` of row `r`: w = r - band, r = 0 .. 2 band.
+  [[nodiscard]] Row row(int r, std::size_t columns);
 
  private:
   /// exp(-2 pi i m x / period), real and imaginary parts apart.
@@ -44,8 +44,8 @@ class PolygonSpectrumRows {
     std::vector<double> re, im;
     PhaseTable(int first, int count, double x, double period);
   };
-  void sum_edges(int r, double ky);
-  void replace_unsafe(double ky);
+  void sum_edges(int r, double ky, std::size_t n);
+  void replace_unsafe(double ky, std::size_t n);
 
   Polygon polygon_;
   FrequencyLattice lattice_;

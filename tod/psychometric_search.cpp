@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+
+#include "acquisition/core/multiversion.h"
 
 namespace todbench {
 namespace {
@@ -23,8 +26,27 @@ std::array<double, 6> hermite(const LogTerm& a, const LogTerm& b) {
           6 * rise - 3 * (d0 + d1) - c0 + c1};
 }
 
-double quintic(const std::array<double, 6>& c, double s) {
+double quintic(const double* c, double s) {
   return c[0] + s * (c[1] + s * (c[2] + s * (c[3] + s * (c[4] + s * c[5]))));
+}
+
+constexpr std::size_t powers = 6;
+
+// Adds to each sum the quintic of the cell in which factor (ln_size - t) + shift lies.
+TODBENCH_MULTIVERSION
+void add_quintics(const double* c, double factor, double ln_size, double shift, const double* ts, std::size_t count,
+                  double* __restrict sums) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double position = factor * (ln_size - ts[i]) + shift;
+    const auto cell = static_cast<std::int32_t>(position);
+    sums[i] += quintic(c + static_cast<std::int32_t>(powers) * cell, position - cell);
+  }
+}
+
+// right * a + wrong * b, element by element.
+TODBENCH_MULTIVERSION
+void mix(double right, const double* a, double wrong, const double* b, std::size_t count, double* __restrict out) {
+  for (std::size_t i = 0; i < count; ++i) out[i] = right * a[i] + wrong * b[i];
 }
 
 // Thresholds to try at one slope: around every level at fixed heights of the function, in the middle of every gap.
@@ -58,13 +80,16 @@ std::vector<std::size_t> local_maxima(const std::vector<ScanNode>& nodes) {
 
 LinkTable::LinkTable(const Link& link)
     : link_(link), low_(log_probabilities(link, first_u)), high_(log_probabilities(link, last_u)) {
-  const int count = static_cast<int>((last_u - first_u) / step_u);
-  cells_.reserve(static_cast<std::size_t>(count));
+  cells_ = static_cast<std::size_t>((last_u - first_u) / step_u);
+  right_.reserve(powers * cells_);
+  wrong_.reserve(powers * cells_);
   AnswerTerms here = answer_terms(link, first_u);
-  for (int i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < cells_; ++i) {
     // ln z = ln kappa + u: derivatives in w are derivatives in u.
-    const AnswerTerms next = answer_terms(link, first_u + (i + 1) * step_u);
-    cells_.push_back({hermite(here.right, next.right), hermite(here.wrong, next.wrong)});
+    const AnswerTerms next = answer_terms(link, first_u + static_cast<double>(i + 1) * step_u);
+    const auto right = hermite(here.right, next.right), wrong = hermite(here.wrong, next.wrong);
+    right_.insert(right_.end(), right.begin(), right.end());
+    wrong_.insert(wrong_.end(), wrong.begin(), wrong.end());
     here = next;
   }
 }
@@ -72,18 +97,48 @@ LinkTable::LinkTable(const Link& link)
 double LinkTable::log_likelihood(const PooledCounts& counts, double t, double slope) const {
   double sum = 0;
   const double factor = link_.sign * slope / step_u, shift = -first_u / step_u;
-  const auto end = static_cast<double>(cells_.size());
+  const auto end = static_cast<double>(cells_);
   for (const PooledLevel& level : counts.levels) {
     const double position = factor * (level.ln_size - t) + shift;
     if (position >= 0 && position < end) {
       const auto index = static_cast<std::size_t>(position);
       const double s = position - static_cast<double>(index);
-      sum += level.right * quintic(cells_[index].right, s) + level.wrong * quintic(cells_[index].wrong, s);
+      const std::size_t at = powers * index;
+      sum += level.right * quintic(&right_[at], s) + level.wrong * quintic(&wrong_[at], s);
     } else {
       sum += outside(level, (position - shift) * step_u);
     }
   }
   return sum;
+}
+
+CountsTable::CountsTable(const LinkTable& table, const PooledCounts& counts) : table_(table), counts_(counts) {
+  const std::size_t count = powers * table.cells_;
+  coefficients_ = std::make_unique_for_overwrite<double[]>(counts.levels.size() * count);
+  double* out = coefficients_.get();
+  for (const PooledLevel& level : counts.levels) {
+    mix(level.right, table.right_.data(), level.wrong, table.wrong_.data(), count, out);
+    out += count;
+  }
+}
+
+std::vector<double> CountsTable::log_likelihoods(std::span<const double> ts, double slope) const {
+  std::vector<double> sums(ts.size());
+  const double factor = table_.link_.sign * slope / step_u, shift = -first_u / step_u;
+  const double* coefficients = coefficients_.get();
+  const auto end = static_cast<double>(table_.cells_);
+  for (const PooledLevel& level : counts_.levels) {
+    const auto position = [&](std::size_t i) { return factor * (level.ln_size - ts[i]) + shift; };
+    const auto inside = [&](std::size_t i) { return position(i) >= 0 && position(i) < end; };
+    const auto outside = [&](std::size_t i) { return table_.outside(level, (position(i) - shift) * step_u); };
+    // Positions are monotonic in t: those inside the table are one run.
+    std::size_t first = 0, last = ts.size();
+    for (; first < last && !inside(first); ++first) sums[first] += outside(first);
+    for (; last > first && !inside(last - 1); --last) sums[last - 1] += outside(last - 1);
+    add_quintics(coefficients, factor, level.ln_size, shift, ts.data() + first, last - first, sums.data() + first);
+    coefficients += powers * table_.cells_;
+  }
+  return sums;
 }
 
 // Constants on both sides, but for errors at lapse 0 near psi = 1, whose logarithm falls without end.

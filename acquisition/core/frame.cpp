@@ -16,6 +16,15 @@ std::string_view to_string(FrameStatus status) {
 
 Result<cv::Mat1d> to_kelvin(const Frame& frame) {
   cv::Mat1d kelvin(frame.counts.size());
+  if (const LinearScale* line = frame.scale->straight_line()) {
+    for (int row = 0; row < kelvin.rows; ++row) {
+      const std::uint16_t* counts = frame.counts.ptr<std::uint16_t>(row);
+      double* out = kelvin[row];
+      for (int column = 0; column < kelvin.cols; ++column)
+        out[column] = line->offset_k + line->kelvin_per_count * counts[column];
+    }
+    return kelvin;
+  }
   for (int row = 0; row < kelvin.rows; ++row) {
     for (int column = 0; column < kelvin.cols; ++column) {
       const auto value = frame.scale->kelvin(frame.counts(row, column));

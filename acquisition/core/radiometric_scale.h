@@ -47,6 +47,8 @@ class RadiometricScale {
   [[nodiscard]] bool calibrated() const { return !std::holds_alternative<Uncalibrated>(scale_); }
   /// Temperature in kelvin, or nothing where the scale does not reach (uncalibrated, outside the table, S <= O).
   [[nodiscard]] std::optional<double> kelvin(double counts) const;
+  /// The scale as a straight line, or null where it is none: for loops over whole frames.
+  [[nodiscard]] const LinearScale* straight_line() const { return std::get_if<LinearScale>(&scale_); }
   /// Counts (not rounded) of a temperature; the inverse of kelvin().
   [[nodiscard]] std::optional<double> counts(double temperature_k) const;
   /// Slope in kelvin per count at `counts`.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "sim_devices/sensor/transfer_functions.h"
 
@@ -31,6 +32,30 @@ double reach(const Polygon& shape) {
   return largest;
 }
 
+/// sensor_transfer() at the frequencies m / period, |m| <= band, to the last bit. Optics know only the radius and the
+/// detector is a product over the axes, so an eighth of the plane and one axis are computed.
+TransferFunction tabulated_transfer(FrequencyLattice lattice, const SensorSpec& spec, const SensorPlan& plan,
+                                    int wavelengths) {
+  const OpticsMtf optics(spec, plan, wavelengths);
+  const double ratio = plan.simulates(Effect::detector) ? spec.detector_pitch_ratio() : 0;
+  const double period = lattice.period;
+  const auto count = static_cast<std::size_t>(lattice.band) + 1;
+  std::vector<double> radial, axis;  // radial: [larger][smaller], a triangle
+  radial.reserve(count * (count + 1) / 2);
+  for (std::size_t larger = 0; larger < count; ++larger) {
+    const double u = static_cast<double>(larger) / period;
+    axis.push_back(detector_mtf(u, 0, ratio));
+    for (std::size_t smaller = 0; smaller <= larger; ++smaller)
+      radial.push_back(optics(std::hypot(u, static_cast<double>(smaller) / period)));
+  }
+  return [radial = std::move(radial), axis = std::move(axis), period](double u, double w) -> std::complex<double> {
+    const auto m = static_cast<std::size_t>(std::llround(std::abs(u) * period));
+    const auto n = static_cast<std::size_t>(std::llround(std::abs(w) * period));
+    const std::size_t larger = std::max(m, n);
+    return radial[larger * (larger + 1) / 2 + std::min(m, n)] * (axis[m] * axis[n]);
+  };
+}
+
 }  // namespace
 
 ImageChain::ImageChain(SensorSpec spec, SensorPlan plan, Accuracy accuracy)
@@ -51,26 +76,12 @@ FrequencyLattice ImageChain::lattice(double size_pitch) const {
   return {.period = period, .band = static_cast<int>(std::floor(band_per_pitch_ * period))};
 }
 
-TransferFunction ImageChain::tabulated_transfer(const FrequencyLattice& lattice) const {
-  // Optics depend on the radius alone, and m^2 + n^2 takes few values: each is computed once.
-  const auto radial = std::make_shared<std::vector<double>>(
-      2 * static_cast<std::size_t>(lattice.band) * static_cast<std::size_t>(lattice.band) + 1, -1.0);
-  const OpticsMtf optics(spec_, plan_, accuracy_.wavelengths);
-  const double ratio = plan_.simulates(Effect::detector) ? spec_.detector_pitch_ratio() : 0;
-  const double period = lattice.period;
-  return [radial, optics, ratio, period](double u, double w) -> std::complex<double> {
-    const auto key = static_cast<std::size_t>(std::llround((u * u + w * w) * period * period));
-    double& value = (*radial)[key];
-    if (value < 0) value = optics(std::sqrt(static_cast<double>(key)) / period);
-    return value * detector_mtf(u, w, ratio);
-  };
-}
-
 std::shared_ptr<const FilterTable> ImageChain::filter(const FrequencyLattice& lattice) const {
   const std::scoped_lock lock(mutex_);
   auto& slot = filters_[lattice.period];
   if (slot == nullptr)
-    slot = std::make_shared<const FilterTable>(lattice, sensor_transfer(spec_, plan_, accuracy_.wavelengths));
+    slot =
+        std::make_shared<const FilterTable>(lattice, tabulated_transfer(lattice, spec_, plan_, accuracy_.wavelengths));
   return slot;
 }
 

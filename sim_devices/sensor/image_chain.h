@@ -38,7 +38,6 @@ class ImageChain {
                                              cv::Size size) const;
 
  private:
-  [[nodiscard]] TransferFunction tabulated_transfer(const FrequencyLattice& lattice) const;
   [[nodiscard]] std::shared_ptr<const FilterTable> filter(const FrequencyLattice& lattice) const;
 
   SensorSpec spec_;
