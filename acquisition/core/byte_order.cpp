@@ -1,5 +1,6 @@
 #include "acquisition/core/byte_order.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -20,9 +21,12 @@ struct Sums {
   std::uint16_t bits = 0;
 };
 
+constexpr int most_rows = 64;
+
 Sums sums_of(const cv::Mat1w& counts) {
   Sums sums;
-  for (int row = 0; row < counts.rows; ++row) {
+  const int step = std::max(1, counts.rows / most_rows);
+  for (int row = 0; row < counts.rows; row += step) {
     const std::uint16_t* pixels = counts.ptr<std::uint16_t>(row);
     // 65535 columns of 65535 counts stay below 2^32, so a row is summed in 32 bits, which vectorises.
     std::uint32_t as_stated = 0, other = 0;

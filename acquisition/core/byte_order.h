@@ -30,7 +30,7 @@ struct ByteOrderOptions {
   double least_log_ratio = 1;
 };
 
-/// Looks at every pixel; about 0.1 ms for 320 x 240. A picture whose low byte is zero everywhere (8 bits shifted up) or
+/// Looks at up to 64 rows, evenly spread. A picture whose low byte is zero everywhere (8 bits shifted up) or
 /// whose high byte is zero everywhere (8 bits) is undecided: it reads the same story in both orders.
 [[nodiscard]] ByteOrderEvidence byte_order_evidence(const cv::Mat1w& counts, const ByteOrderOptions& options);
 

@@ -54,6 +54,11 @@ class Recorder {
     };
     events.on_progress = listener_.on_progress;
     events.on_note = [&](const std::string& sentence) { note(folder_, listener_, sentence); };
+    events.on_rejected = [&](const RejectedFrame& frame) {
+      (void)folder_.log("frame " + std::to_string(frame.sequence) +
+                        " not used: " + std::string(to_string(frame.reason)) +
+                        (frame.seen ? " (" + std::string(to_string(*frame.seen)) + ")" : ""));
+    };
     auto result = measure(*bench.camera, *bench.target, observer, schedule, options, events, halt_.get_token());
     if (auto synced = writer->sync(); !synced && !write_error) write_error = synced.error();
     if (write_error) {
