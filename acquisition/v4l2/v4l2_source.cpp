@@ -182,6 +182,9 @@ std::optional<Frame> V4l2Source::frame_of(const VideoBuffer& buffer) {
     }
     last_counter_ = telemetry.frame_counter;
     frame.device_time_ns = std::int64_t{telemetry.time_ms} * 1'000'000;
+    const bool corrects = telemetry.ffc_state() == FfcState::imminent || telemetry.ffc_state() == FfcState::in_progress;
+    frame.correction = corrects ? CorrectionState::running : CorrectionState::idle;
+    frame.since_correction_s = telemetry.since_ffc_s().value_or(-1);
     if (const auto scale = scale_of(telemetry); scale != info_.scale) set_scale(scale);
   }
   frame.sequence = buffer.sequence - *first_sequence_ - repeated_;
