@@ -160,12 +160,14 @@ int run_simulate(Console& console, SimulateArguments arguments, const Program& p
   return finish(console, *outcome);
 }
 
-int run_demo(Console& console, const RunArguments& arguments, const Program& program) {
+int run_demo(Console& console, const RunArguments& arguments, const std::string& camera, const Program& program) {
 #ifdef TODBENCH_WITH_ARAVIS
+  enter_emulation(camera);
   auto plan = load_plan("demo");
   if (!plan) return report_error(console, plan.error());
   if (program.common.seed_given) plan->seed = program.common.seed;
   EmulationArguments emulation;
+  emulation.camera = camera;
   emulation.sensor = plan->simulation.sensor;
   emulation.plates = plan->target.plates;
   emulation.distance_m = plan->target.distance_m;
@@ -175,7 +177,8 @@ int run_demo(Console& console, const RunArguments& arguments, const Program& pro
   console.phase("starting the emulated laboratory");
   auto laboratory = start_laboratory(emulation);
   if (!laboratory) return report_error(console, laboratory.error());
-  plan->camera.id = "gige:" + (*laboratory)->camera_address();
+  plan->camera.id = camera == "gige" ? "gige:" + (*laboratory)->camera_address() : (*laboratory)->camera_id();
+  if (camera != "gige") plan->unit = "emulated " + camera + " camera";
   plan->target.black_body = (*laboratory)->black_body_endpoint();
   plan->target.stage = (*laboratory)->stage_endpoint();
   if (arguments.record_frames) plan->measurement.record_frames = true;
@@ -196,6 +199,7 @@ int run_demo(Console& console, const RunArguments& arguments, const Program& pro
   return finish(console, *outcome);
 #else
   (void)arguments;
+  (void)camera;
   (void)program;
   return report_error(
       console,
@@ -314,10 +318,15 @@ void add_demo_command(CLI::App& app, Program& program) {
   auto* command =
       app.add_subcommand("demo", "does the whole job on the emulated laboratory: measure, simulate, compare, report");
   auto a = std::make_shared<RunArguments>();
+  auto camera = std::make_shared<std::string>(emulated_cameras().front());
   add_folder_options(*command, *a);
   command->add_flag("--force", a->overwrite, "overwrite the session in an existing folder");
   add_record_flag(*command, *a);
-  finish_command(*command, program, [a, &program](Console& console) { return run_demo(console, *a, program); });
+  command->add_option("--camera", *camera, "interface of the emulated camera")
+      ->check(CLI::IsMember(emulated_cameras()))
+      ->capture_default_str();
+  finish_command(*command, program,
+                 [a, camera, &program](Console& console) { return run_demo(console, *a, *camera, program); });
 }
 
 }  // namespace todbench

@@ -15,7 +15,7 @@
 
 namespace todbench {
 
-/// Every back end of this build: GigE Vision, USB3 Vision, recordings, simulated sensors.
+/// Every back end of this build: GigE Vision, USB3 Vision, V4L2, recordings, simulated sensors.
 [[nodiscard]] CameraRegistry camera_registry();
 
 /// A camera and what changes the target before it.
