@@ -6,6 +6,7 @@
 
 #include "bench/report/report.h"
 #include "bench/run/experiment_inputs.h"
+#include "bench/run/observed_source.h"
 #include "bench/run/report_data.h"
 #include "sim_devices/prediction/contrast_response.h"
 #include "sim_devices/prediction/direct_estimate.h"
@@ -52,6 +53,13 @@ class Recorder {
         halt_.request_stop();
       }
     };
+    events.on_patch = [&](const Trial& trial, const Patch& patch) {
+      if (listener_.on_trial && !write_error) listener_.on_trial(which, trial, patch);
+    };
+    events.on_set_up = [&](const SetUpRecord& set_up) {
+      if (listener_.on_set_up) listener_.on_set_up(which, set_up);
+    };
+    if (listener_.pause != nullptr) events.paused = [this] { return listener_.pause->rest(halt_.get_token()); };
     events.on_progress = listener_.on_progress;
     events.on_note = [&](const std::string& sentence) { note(folder_, listener_, sentence); };
     auto result = measure(*bench.camera, *bench.target, observer, schedule, options, events, halt_.get_token());
@@ -274,6 +282,7 @@ Result<MeasurementResult> run_measured(const Plan& plan, const ExperimentInputs&
   auto response = responses(model, plan, inputs.plates, options, stop);
   if (!response) return tl::unexpected(response.error());
   options.contrast_response = std::move(*response);
+  options.free_running = !bench.simulated;
   ListedSchedule schedule(constant_stimuli(stimuli_options(plan, inputs.plates, plan.camera.ifov_mrad, Side::measured),
                                            RandomStream(plan.seed, "schedule")));
   return Recorder(folder, listener, std::move(stop)).run(bench, observer, schedule, options, SessionCurve::main);
@@ -291,6 +300,7 @@ Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOption
   if (auto fits = check_simulated_geometry(plan, *inputs); !fits) return tl::unexpected(fits.error());
   auto folder = begin_session(plan, options, provenance);
   if (!folder) return tl::unexpected(folder.error());
+  if (listener.on_session) listener.on_session(folder->path());
 
   phase(*folder, listener, "simulating " + inputs->sensor.name);
   auto run = run_simulated(plan, *inputs, *folder, SessionCurve::main, {}, listener, stop);
@@ -314,8 +324,9 @@ Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions
   auto inputs = read_inputs(plan);
   if (!inputs) return tl::unexpected(inputs.error());
   if (listener.on_phase) listener.on_phase("opening " + plan.camera.id);
-  auto bench = open_bench(plan, inputs->plates, stop);
+  auto bench = open_bench(plan, inputs->plates, stop, listener.ask_operator);
   if (!bench) return tl::unexpected(bench.error());
+  if (listener.on_frame) bench->camera = observed_source(std::move(bench->camera), listener.on_frame);
   const SourceInfo info = bench->camera->info();
   if (!info.scale.calibrated()) {
     return fail(ErrorCode::calibration,
@@ -330,6 +341,7 @@ Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions
   provenance.target = bench->target->capabilities().description;
   auto folder = begin_session(plan, options, provenance);
   if (!folder) return tl::unexpected(folder.error());
+  if (listener.on_session) listener.on_session(folder->path());
   for (const auto& warning : info.warnings) note(*folder, listener, warning);
 
   const auto begin = Clock::now();
