@@ -171,6 +171,7 @@ Result<void> align_plan(const Plan& plan, const AlignmentListener& listener, std
   if (listener.on_phase) listener.on_phase("opening " + plan.camera.id);
   auto bench = open_bench(plan, inputs->plates, stop, listener.ask_operator);
   if (!bench) return tl::unexpected(bench.error());
+  if (listener.on_open) listener.on_open(bench->camera->info());
   if (listener.on_frame) bench->camera = observed_source(std::move(bench->camera), listener.on_frame);
   const auto states = constant_stimuli(stimuli_options(plan, inputs->plates, plan.camera.ifov_mrad, Side::measured),
                                        RandomStream(plan.seed, "schedule"));

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/frame.h"
+#include "acquisition/core/frame_source.h"
 #include "bench/run/operator_target.h"
 #include "bench/session/plan.h"
 #include "hvs/polygon.h"
@@ -53,6 +53,7 @@ struct Alignment {
 /// Called from the aligning thread.
 struct AlignmentListener {
   std::function<void(std::string_view phase)> on_phase;
+  std::function<void(const SourceInfo&)> on_open;
   std::function<void(const Frame&)> on_frame;
   std::function<void(const Alignment&)> on_alignment;
   OperatorDialogue ask_operator;

@@ -326,6 +326,7 @@ Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions
   if (listener.on_phase) listener.on_phase("opening " + plan.camera.id);
   auto bench = open_bench(plan, inputs->plates, stop, listener.ask_operator);
   if (!bench) return tl::unexpected(bench.error());
+  if (listener.on_open) listener.on_open(bench->camera->info());
   if (listener.on_frame) bench->camera = observed_source(std::move(bench->camera), listener.on_frame);
   const SourceInfo info = bench->camera->info();
   if (!info.scale.calibrated()) {

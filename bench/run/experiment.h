@@ -26,6 +26,7 @@ struct ExperimentListener {
   std::function<void(std::string_view sentence)> on_note{};
   /// The folder exists and holds the plan.
   std::function<void(const std::filesystem::path& folder)> on_session{};
+  std::function<void(const SourceInfo&)> on_open{};
   /// Every frame of the camera as it arrives, good or bad; not those of the twin.
   std::function<void(const Frame&)> on_frame{};
   std::function<void(SessionCurve, const SetUpRecord&)> on_set_up{};
