@@ -18,7 +18,6 @@ BEGIN {
   home["^(linux/videodev2.h|libudev.h)"] = "^acquisition/v4l2/"
   home["^libusb"] = "^acquisition/usb/"
   home["^(Q[A-Z]|qcustomplot.h)"] = "^bench/gui/"
-  home["^spdlog/"] = "^bench/"
   home["^toml\\+\\+/"] = "^bench/"
   home["^CLI/"] = "^bench/cli/"
   home["^fftw3.h"] = "^hvs/"
