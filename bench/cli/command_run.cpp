@@ -1,11 +1,10 @@
 // todbench measure, todbench simulate, todbench replay, todbench demo
 #include <algorithm>
-#include <cctype>
 #include <memory>
 
 #include "bench/cli/commands.h"
-#include "bench/cli/demonstration.h"
 #include "bench/cli/simulation_plan.h"
+#include "bench/run/emulation.h"
 #include "bench/run/experiment.h"
 #include "bench/run/replay.h"
 #include "bench/session/provenance.h"
@@ -26,19 +25,8 @@ struct SimulateArguments {
   SimulationOverrides overrides;
 };
 
-/// "session-20260131T123456Z-NAME" in the current folder; a second one within the same second gets a number.
-std::string default_folder(const std::string& name) {
-  std::string stamp;
-  for (const char c : utc_now()) {
-    if (c != '-' && c != ':') stamp += c;
-  }
-  std::string clean;
-  for (const char c : name) clean += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' ? c : '_';
-  return "session-" + stamp + "-" + clean;
-}
-
 ExperimentOptions folder_of(const RunArguments& arguments, const Plan& plan) {
-  if (arguments.out.empty()) return {.folder = default_folder(plan.name), .existing = ExistingFolder::number};
+  if (arguments.out.empty()) return {.folder = session_folder_name(plan.name), .existing = ExistingFolder::number};
   return {.folder = arguments.out,
           .existing = arguments.overwrite ? ExistingFolder::overwrite : ExistingFolder::refuse};
 }
@@ -166,21 +154,13 @@ int run_demo(Console& console, const RunArguments& arguments, const std::string&
   auto plan = load_plan("demo");
   if (!plan) return report_error(console, plan.error());
   if (program.common.seed_given) plan->seed = program.common.seed;
-  EmulationArguments emulation;
+  EmulationArguments emulation = emulation_for(*plan);
   emulation.camera = camera;
-  emulation.sensor = plan->simulation.sensor;
-  emulation.plates = plan->target.plates;
-  emulation.distance_m = plan->target.distance_m;
-  emulation.black_body_port = 0;
-  emulation.stage_port = 0;
-  emulation.seed = plan->seed + 1;  // a camera of its own, not the twin's noise
   console.phase("starting the emulated laboratory");
   auto laboratory = start_laboratory(emulation);
   if (!laboratory) return report_error(console, laboratory.error());
-  plan->camera.id = camera == "gige" ? "gige:" + (*laboratory)->camera_address() : (*laboratory)->camera_id();
+  *plan = with_laboratory(*std::move(plan), **laboratory);
   if (camera != "gige") plan->unit = "emulated " + camera + " camera";
-  plan->target.black_body = (*laboratory)->black_body_endpoint();
-  plan->target.stage = (*laboratory)->stage_endpoint();
   if (arguments.record_frames) plan->measurement.record_frames = true;
   auto outcome = measure_plan(*plan, folder_of(arguments, *plan), listener_of(console), program.stop->token());
   console.end_progress();
