@@ -84,6 +84,28 @@ VerdictItem judge_acuity(const AcuityLimit& limit, const TodCurve& curve) {
   return item;
 }
 
+/// The largest deviation of a ratio from 1, in the direction that the margin is defined for.
+std::optional<double> largest_deviation_percent(const Comparison& comparison) {
+  std::optional<double> largest;
+  for (const ComparisonPoint& point : comparison.points) {
+    if (!point.ratio) return {};
+    largest = std::max(largest.value_or(0), 100 * (std::max(*point.ratio, 1 / *point.ratio) - 1));
+  }
+  return largest;
+}
+
+/// "; ratios with their 90 % intervals between 0.951 and 1.063", or nothing where a side is open.
+std::string span_of_ratios(const Comparison& comparison) {
+  std::optional<double> low, high;
+  for (const ComparisonPoint& point : comparison.points) {
+    if (!point.ratio_ci90.low || !point.ratio_ci90.high) return {};
+    low = std::min(low.value_or(*point.ratio_ci90.low), *point.ratio_ci90.low);
+    high = std::max(high.value_or(*point.ratio_ci90.high), *point.ratio_ci90.high);
+  }
+  if (!low) return {};
+  return "; 90 % intervals of the ratios between " + rounded(*low) + " and " + rounded(*high);
+}
+
 VerdictItem judge_equivalence(double margin_percent, const std::optional<Comparison>& comparison) {
   VerdictItem item;
   item.demand = "acuity equivalent to the simulated twin within " + rounded(margin_percent) + " %";
@@ -97,7 +119,8 @@ VerdictItem judge_equivalence(double margin_percent, const std::optional<Compari
     item.reason = "the comparison was made with another margin, " + rounded(point.margin_percent) + " %";
     return item;
   }
-  const std::string margin = " (two one-sided tests at 5 %)";
+  item.value = largest_deviation_percent(*comparison);
+  const std::string margin = " (two one-sided tests at 5 %)" + span_of_ratios(*comparison);
   switch (comparison->verdict) {
     case ComparisonVerdict::equivalent:
       item.kind = VerdictKind::pass;
@@ -105,7 +128,7 @@ VerdictItem judge_equivalence(double margin_percent, const std::optional<Compari
       break;
     case ComparisonVerdict::different:
       item.kind = VerdictKind::fail;
-      item.reason = "different at one contrast or more";
+      item.reason = "different at one contrast or more" + span_of_ratios(*comparison);
       break;
     case ComparisonVerdict::inconclusive:
       item.reason = "neither equivalence nor a difference is shown by these data" + margin;
