@@ -45,5 +45,6 @@ void add_measure_command(CLI::App& app, Program& program);
 void add_simulate_command(CLI::App& app, Program& program);
 void add_compare_command(CLI::App& app, Program& program);
 void add_report_command(CLI::App& app, Program& program);
+void add_range_command(CLI::App& app, Program& program);
 
 }  // namespace todbench
