@@ -43,20 +43,7 @@ struct MeasurementOptions {
   IntegrityOptions integrity;
   RegistrationOptions registration;  ///< expected scale is filled in from distance and IFOV
   std::uint64_t seed = 1;
-};
-
-/// What the run says while it goes on. Called from the measuring thread; a slow listener slows the measurement, it
-/// never loses trials.
-struct MeasurementListener {
-  std::function<void(const Trial&)> on_trial;
-  std::function<void(std::size_t done, std::size_t planned)> on_progress;
-  std::function<void(const std::string& sentence)> on_note;
-  std::function<void(const RejectedFrame&)> on_rejected{};  ///< every frame that was not used, with the reason
-  /// The camera was lost. Brings the same source back to deliver frames, started and set as before, and returns
-  /// success; then the plate is looked for again and the presentation is repeated. Empty, or an error: the run ends.
-  std::function<Result<void>(const Error& why, std::stop_token stop)> on_lost{};
-  /// The plate was found again after a loss, and the presentation was made.
-  std::function<void()> on_resumed{};
+  bool free_running = true;  ///< the camera exposes whether its frames are taken or not: they are taken in a pause too
 };
 
 /// A loss of the camera that the run survived. Begins a new segment.
@@ -73,6 +60,25 @@ struct SetUpRecord {
   std::string plate;
   Mounting mounting = Mounting::identity;
   Registration registration;
+};
+
+/// What the run says while it goes on. Called from the measuring thread; a slow listener slows the measurement, it
+/// never loses trials.
+struct MeasurementListener {
+  std::function<void(const Trial&)> on_trial;
+  /// After on_trial: what the observer saw; lent for the call.
+  std::function<void(const Trial&, const Patch&)> on_patch;
+  std::function<void(const SetUpRecord&)> on_set_up;
+  /// Asked before every presentation and again while it says true; may take a tenth of a second to answer.
+  std::function<bool()> paused;
+  std::function<void(std::size_t done, std::size_t planned)> on_progress;
+  std::function<void(const std::string& sentence)> on_note;
+  std::function<void(const RejectedFrame&)> on_rejected{};  ///< every frame that was not used, with the reason
+  /// The camera was lost. Brings the same source back to deliver frames, started and set as before, and returns
+  /// success; then the plate is looked for again and the presentation is repeated. Empty, or an error: the run ends.
+  std::function<Result<void>(const Error& why, std::stop_token stop)> on_lost{};
+  /// The plate was found again after a loss, and the presentation was made.
+  std::function<void()> on_resumed{};
 };
 
 struct MeasurementResult {

@@ -220,13 +220,15 @@ FrameStreamWriter::FrameStreamWriter(FrameStreamWriter&& other) noexcept
     : path_(std::move(other.path_)),
       descriptor_(std::exchange(other.descriptor_, -1)),
       frames_(other.frames_),
-      bytes_(other.bytes_) {}
+      bytes_(other.bytes_),
+      broken_(other.broken_) {}
 
 FrameStreamWriter& FrameStreamWriter::operator=(FrameStreamWriter&& other) noexcept {
   std::swap(path_, other.path_);
   std::swap(descriptor_, other.descriptor_);
   std::swap(frames_, other.frames_);
   std::swap(bytes_, other.bytes_);
+  std::swap(broken_, other.broken_);
   return *this;
 }
 
@@ -249,6 +251,7 @@ Result<void> FrameStreamWriter::write_all(const void* data, std::size_t bytes) {
 
 Result<void> FrameStreamWriter::write_record(const char (&kind)[5], const void* head, std::size_t head_bytes,
                                              const void* body, std::size_t body_bytes) {
+  if (broken_) return fail(ErrorCode::io, path_.string() + ": ended where the disk refused to go on");
   RecordHead record;
   std::memcpy(record.kind.data(), kind, 4);
   record.payload_bytes = static_cast<std::uint32_t>(head_bytes + body_bytes);
@@ -260,7 +263,7 @@ Result<void> FrameStreamWriter::write_record(const char (&kind)[5], const void* 
   if (written) written = write_all(head, head_bytes);
   if (written && body_bytes > 0) written = write_all(body, body_bytes);
   if (written) return {};
-  // A record that did not fit is taken back, so that later ones, should there be room again, are readable.
+  broken_ = true;
   if (::ftruncate(descriptor_, static_cast<off_t>(before)) == 0 &&
       ::lseek(descriptor_, static_cast<off_t>(before), SEEK_SET) >= 0) {
     bytes_ = before;

@@ -23,7 +23,8 @@ struct StreamHeader {
 
 /// Appends to a recording. Every record is handed to the system whole, with checksums, before the call returns: a crash
 /// of the program loses nothing, one of the machine at most what the system had not written yet. Move-only, one thread
-/// at a time. Errors: `io` with the path; what a full disk cut off is taken back.
+/// at a time. Errors: `io` with the path; what a full disk cut off is taken back, and nothing is appended any more: a
+/// recording has no holes.
 class FrameStreamWriter {
  public:
   /// Creates the file or empties it.
@@ -55,6 +56,7 @@ class FrameStreamWriter {
   int descriptor_ = -1;
   std::uint64_t frames_ = 0;
   std::uint64_t bytes_ = 0;
+  bool broken_ = false;  ///< a record was refused by the disk
 };
 
 /// An opened recording. Readings and failures are in their order; a failure stands before the frame with its index.

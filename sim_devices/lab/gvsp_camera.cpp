@@ -21,7 +21,7 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 /// Frames that a camera keeps for packets that are asked for again.
-constexpr std::size_t kept_frames = 8;
+constexpr std::size_t kept_frames = 16;
 /// How often the heartbeat is looked at.
 constexpr auto control_patience = 50ms;
 /// A camera that fell behind by more than this goes on from now instead of catching up.

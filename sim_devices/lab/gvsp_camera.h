@@ -18,7 +18,7 @@ namespace todbench {
 
 /// What a camera does when it is asked to send packets again.
 enum class ResendPolicy {
-  answer,       ///< sends them, while it keeps the frame: the last eight
+  answer,       ///< sends them, while it keeps the frame: the last 16
   unavailable,  ///< says that it does not have them
   ignore,
 };
