@@ -4,6 +4,9 @@
 #include <string_view>
 
 #include "bench/session/descriptions.h"
+#ifdef TODBENCH_WITH_ARAVIS
+#include "sim_devices/lab/gvsp_laboratory.h"
+#endif
 #ifdef TODBENCH_WITH_EMULATED_VIDEO
 #include "sim_devices/lab/v4l2_laboratory.h"
 #endif
@@ -12,6 +15,14 @@ namespace todbench {
 namespace {
 
 constexpr std::string_view gige = "gige";
+
+#ifdef TODBENCH_WITH_ARAVIS
+/// "gige-ax5", "gige-a-series", ...: a family of cameras with its own registers.
+std::optional<CameraModel> gvsp_model(std::string_view camera) {
+  constexpr std::string_view prefix = "gige-";
+  return camera.starts_with(prefix) ? camera_model(camera.substr(prefix.size())) : std::nullopt;
+}
+#endif
 
 #ifdef TODBENCH_WITH_EMULATED_VIDEO
 std::optional<VideoCameraKind> video_kind(const std::string& camera) {
@@ -24,11 +35,14 @@ std::optional<VideoCameraKind> video_kind(const std::string& camera) {
 }  // namespace
 
 std::vector<std::string> emulated_cameras() {
-#ifdef TODBENCH_WITH_EMULATED_VIDEO
-  return {std::string(gige), "v4l2", "v4l2-yuyv"};
-#else
-  return {std::string(gige)};
+  std::vector<std::string> names{std::string(gige)};
+#ifdef TODBENCH_WITH_ARAVIS
+  names.insert(names.end(), {"gige-ax5", "gige-a-series", "gige-legacy-science"});
 #endif
+#ifdef TODBENCH_WITH_EMULATED_VIDEO
+  names.insert(names.end(), {"v4l2", "v4l2-yuyv"});
+#endif
+  return names;
 }
 
 void enter_emulation(const std::string& camera) {
@@ -56,6 +70,14 @@ Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& a
   auto sensor = load_sensor(arguments.sensor);
   if (!sensor) return tl::unexpected(sensor.error());
   options.sensor = *sensor;
+  if (const auto model = gvsp_model(arguments.camera)) {
+    options.sensor = with_counts_of(*model, *sensor);
+    GvspCameraConfig camera;
+    camera.interface_address = arguments.interface_address;
+    camera.model = *model;
+    camera.serial = arguments.serial;
+    options.connect = connect_gvsp(camera);
+  }
 #ifdef TODBENCH_WITH_EMULATED_VIDEO
   if (const auto kind = video_kind(arguments.camera)) {
     options.sensor = with_counts_of(*kind, *sensor);

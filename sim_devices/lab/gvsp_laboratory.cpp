@@ -1,0 +1,55 @@
+#include "sim_devices/lab/gvsp_laboratory.h"
+
+#include <map>
+#include <string>
+#include <utility>
+
+#include "acquisition/aravis/aravis_backend.h"
+#include "sim_devices/lab/camera_models.h"
+
+namespace todbench {
+namespace {
+
+class GvspLaboratoryCamera final : public LaboratoryCamera {
+ public:
+  explicit GvspLaboratoryCamera(std::unique_ptr<GvspCamera> camera) : camera_(std::move(camera)) {}
+
+  [[nodiscard]] std::string id() const override {
+    const GvspCameraConfig& config = camera_->config();
+    const auto description = describe_camera(
+        config.model, {.vendor = config.vendor, .model = config.model_name, .serial = {}, .firmware = {}});
+    return camera_id("gige", description.genicam.vendor, config.serial);
+  }
+  [[nodiscard]] std::string address() const override { return camera_->config().interface_address; }
+  [[nodiscard]] std::map<std::string, std::string> client_environment() const override { return {}; }
+
+ private:
+  std::unique_ptr<GvspCamera> camera_;
+};
+
+}  // namespace
+
+SensorSpec with_counts_of(CameraModel model, SensorSpec sensor) {
+  if (model == CameraModel::unlisted) return sensor;
+  sensor.kelvin_per_count = model == CameraModel::ax5 ? 0.04 : 0.01;
+  sensor.offset_k = 0;
+  sensor.bits = model == CameraModel::ax5 ? 14 : 16;
+  return sensor;
+}
+
+ConnectCamera connect_gvsp(GvspCameraConfig config) {
+  return [config](const SensorSpec& sensor,
+                  LaboratoryExposure exposure) mutable -> Result<std::unique_ptr<LaboratoryCamera>> {
+    config.width = sensor.width * sensor.microscan;
+    config.height = sensor.height * sensor.microscan;
+    config.significant_bits = sensor.bits;
+    config.frame_rate_hz = sensor.frame_rate_hz;
+    config.kelvin_per_count = sensor.kelvin_per_count;
+    config.offset_k = sensor.offset_k;
+    auto camera = GvspCamera::start(config, std::move(exposure));
+    if (!camera) return fail("starting the emulated GigE camera", camera.error());
+    return std::make_unique<GvspLaboratoryCamera>(std::move(*camera));
+  };
+}
+
+}  // namespace todbench
