@@ -1,0 +1,146 @@
+// Load and soak of the GigE Vision path: a camera on plain sockets, the Aravis back end, and a recording of every
+// frame.
+//   gige_load SECONDS [RATE_HZ WIDTH HEIGHT [RECORDING]]
+// The camera is a process of its own, so that processor time is the client's alone. Prints one line per ten seconds and
+// a sum; exit 1 when a frame was lost, incomplete or false.
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <fstream>
+#include <optional>
+#include <string>
+
+#include "acquisition/aravis/aravis_backend.h"
+#include "acquisition/recording/recording_camera.h"
+#include "sim_devices/lab/gige_camera.h"
+#include "sim_devices/lab/gvsp_camera.h"
+
+namespace todbench {
+namespace {
+
+struct Load {
+  int seconds = 60;
+  double rate_hz = 190;
+  int width = 640, height = 480;
+  std::string recording;
+};
+
+/// Different in every frame, cheap to make and to check: a picture of one count, with the index in its first pixels.
+cv::Mat1w load_picture(std::uint64_t index, int width, int height) {
+  cv::Mat1w picture(height, width, static_cast<ushort>(7000 + index % 4096));
+  picture(0, 0) = static_cast<ushort>(index & 0x3FFF);
+  return picture;
+}
+
+[[noreturn]] void serve(const Load& load, int ready) {
+  GvspCameraConfig config;
+  config.width = load.width;
+  config.height = load.height;
+  config.frame_rate_hz = load.rate_hz;
+  const auto camera =
+      GvspCamera::start(config, [&](std::uint64_t index) { return load_picture(index, load.width, load.height); });
+  if (!camera) std::fprintf(stderr, "%s\n", camera.error().message.c_str());
+  const char answer = camera ? '+' : '-';
+  if (::write(ready, &answer, 1) != 1 || !camera) std::_Exit(EXIT_FAILURE);
+  for (;;) ::pause();
+}
+
+double cpu_s(clockid_t clock) {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// Resident memory that belongs to this process alone, in MiB.
+double resident_mib() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("RssAnon:")) return std::atof(line.c_str() + 8) / 1024;
+  }
+  return 0;
+}
+
+struct Sum {
+  std::uint64_t frames = 0, lost = 0, incomplete = 0, false_pixels = 0;
+};
+
+int measure(const Load& load) {
+  auto source = aravis_backend()->open("gige:127.0.0.1");
+  if (!source) return std::fprintf(stderr, "%s\n", source.error().message.c_str()), EXIT_FAILURE;
+  for (const auto& warning : (*source)->info().warnings) std::printf("%s\n", warning.c_str());
+  if (!load.recording.empty()) {
+    StreamHeader header;
+    header.info = (*source)->info();
+    auto writer = FrameStreamWriter::create(load.recording, header);
+    if (!writer) return std::fprintf(stderr, "%s\n", writer.error().message.c_str()), EXIT_FAILURE;
+    *source = recording_camera(std::move(*source), std::make_shared<FrameStreamWriter>(std::move(*writer)));
+  }
+  if (const auto started = (*source)->start(); !started)
+    return std::fprintf(stderr, "%s\n", started.error().message.c_str()), EXIT_FAILURE;
+  Sum sum;
+  std::optional<std::uint64_t> last;
+  const double begin = cpu_s(CLOCK_MONOTONIC);
+  const double cpu_begin = cpu_s(CLOCK_PROCESS_CPUTIME_ID);
+  double next_line = begin + 10;
+  while (cpu_s(CLOCK_MONOTONIC) - begin < load.seconds) {
+    const auto frame = (*source)->next(std::chrono::seconds(2));
+    if (!frame) return std::fprintf(stderr, "%s\n", frame.error().message.c_str()), EXIT_FAILURE;
+    ++sum.frames;
+    if (last) sum.lost += frame->sequence - *last - 1;
+    last = frame->sequence;
+    if (frame->status != FrameStatus::complete) {
+      ++sum.incomplete;
+    } else {
+      const auto truth = load_picture(exposure_index(*frame, load.rate_hz), load.width, load.height);
+      const std::size_t bytes = truth.total() * truth.elemSize();
+      if (std::memcmp(truth.data, frame->counts.data, bytes) != 0) ++sum.false_pixels;
+    }
+    if (cpu_s(CLOCK_MONOTONIC) < next_line) continue;
+    next_line += 10;
+    std::printf("%6.0f s  %8llu frames  %llu lost  %llu incomplete  %.1f MiB\n", cpu_s(CLOCK_MONOTONIC) - begin,
+                static_cast<unsigned long long>(sum.frames), static_cast<unsigned long long>(sum.lost),
+                static_cast<unsigned long long>(sum.incomplete), resident_mib());
+    std::fflush(stdout);
+  }
+  const double wall = cpu_s(CLOCK_MONOTONIC) - begin;
+  const double cpu = cpu_s(CLOCK_PROCESS_CPUTIME_ID) - cpu_begin;
+  (*source)->stop();
+  const double bits = 16.0 * load.width * load.height * static_cast<double>(sum.frames) / wall;
+  std::printf(
+      "%.1f frames/s, %.0f Mbit/s of pixels, %llu frames, %llu lost, %llu incomplete, %llu false; client %.1f %% "
+      "of one core with the check of every pixel\n",
+      static_cast<double>(sum.frames) / wall, bits * 1e-6, static_cast<unsigned long long>(sum.frames),
+      static_cast<unsigned long long>(sum.lost), static_cast<unsigned long long>(sum.incomplete),
+      static_cast<unsigned long long>(sum.false_pixels), 100 * cpu / wall);
+  return sum.lost + sum.incomplete + sum.false_pixels == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+}  // namespace
+}  // namespace todbench
+
+int main(int argc, char** argv) {
+  todbench::Load load;
+  if (argc > 1) load.seconds = std::atoi(argv[1]);
+  if (argc > 4) {
+    load.rate_hz = std::atof(argv[2]);
+    load.width = std::atoi(argv[3]);
+    load.height = std::atoi(argv[4]);
+  }
+  if (argc > 5) load.recording = argv[5];
+  int ends[2];
+  if (::pipe(ends) != 0) return EXIT_FAILURE;
+  const pid_t camera = ::fork();
+  if (camera == 0) todbench::serve(load, ends[1]);
+  char answer = 0;
+  if (::read(ends[0], &answer, 1) != 1 || answer != '+') return EXIT_FAILURE;
+  const int result = todbench::measure(load);
+  ::kill(camera, SIGKILL);
+  ::waitpid(camera, nullptr, 0);
+  return result;
+}
