@@ -2,7 +2,7 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
-#include "bench/cli/demonstration.h"
+#include "bench/run/emulation.h"
 #include "bench/run/devices.h"
 
 namespace todbench {

@@ -1,4 +1,4 @@
-#include "bench/cli/demonstration.h"
+#include "bench/run/emulation.h"
 
 #include <optional>
 #include <string_view>
@@ -39,6 +39,17 @@ void enter_emulation(const std::string& camera) {
 #endif
 }
 
+EmulationArguments emulation_for(const Plan& plan) {
+  EmulationArguments arguments;
+  arguments.sensor = plan.simulation.sensor;
+  arguments.plates = plan.target.plates;
+  arguments.distance_m = plan.target.distance_m;
+  arguments.black_body_port = 0;
+  arguments.stage_port = 0;
+  arguments.seed = plan.seed + 1;  // a camera of its own, not the twin's noise
+  return arguments;
+}
+
 #ifdef TODBENCH_WITH_ARAVIS
 Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& arguments) {
   LaboratoryOptions options;
@@ -77,6 +88,14 @@ Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& a
   options.stage.plate_change_s = 0.1;
   options.stage.mounting_change_s = 0.1;
   return Laboratory::start(std::move(options));
+}
+
+Plan with_laboratory(Plan plan, const Laboratory& laboratory) {
+  plan.camera.id = "gige:" + laboratory.camera_address();
+  plan.target.kind = TargetKind::scpi;
+  plan.target.black_body = laboratory.black_body_endpoint();
+  plan.target.stage = laboratory.stage_endpoint();
+  return plan;
 }
 #endif
 

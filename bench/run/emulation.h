@@ -1,4 +1,4 @@
-// The emulated laboratory as `emulate` and `demo` start it.
+// The emulated laboratory as `emulate`, `demo` and the window start it.
 #pragma once
 
 #include <cstdint>
@@ -30,12 +30,19 @@ struct EmulationArguments {
   double distance_m = 2;
   std::uint16_t black_body_port = 5025, stage_port = 5026;  ///< 0: the system chooses
   std::uint64_t seed = 1;
+  bool operator==(const EmulationArguments&) const = default;
 };
+
+/// The laboratory that a plan is measured in: its sensor, plates and distance, on ports that the system chooses.
+[[nodiscard]] EmulationArguments emulation_for(const Plan& plan);
 
 #ifdef TODBENCH_WITH_ARAVIS
 /// Starts camera, black body and plate stage. Their settling is that of a bench in fast motion: 50 ms time constant,
 /// 0.1 s per plate.
 [[nodiscard]] Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& arguments);
+
+/// The plan with the camera and instruments of a laboratory.
+[[nodiscard]] Plan with_laboratory(Plan plan, const Laboratory& laboratory);
 #endif
 
 }  // namespace todbench
