@@ -91,7 +91,9 @@ Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& a
 }
 
 Plan with_laboratory(Plan plan, const Laboratory& laboratory) {
-  plan.camera.id = "gige:" + laboratory.camera_address();
+  // The address of the camera is enough on GigE; anything else is known by its serial number.
+  plan.camera.id =
+      laboratory.camera_id().starts_with("gige:") ? "gige:" + laboratory.camera_address() : laboratory.camera_id();
   plan.target.kind = TargetKind::scpi;
   plan.target.black_body = laboratory.black_body_endpoint();
   plan.target.stage = laboratory.stage_endpoint();
