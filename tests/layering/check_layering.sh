@@ -22,6 +22,7 @@ BEGIN {
   home["^(Q[A-Z]|qcustomplot.h)"] = "^bench/gui/"
   home["^toml\\+\\+/"] = "^bench/"
   home["^CLI/"] = "^bench/cli/"
+  home["^tiffio.h"] = "^acquisition/recording/"
   home["^fftw3.h"] = "^hvs/"
 }
 function layer_of(file,   parts) {
