@@ -11,7 +11,7 @@ namespace todbench {
 struct V4l2Options {
   /// PFNC name of the counts: "Mono16", "Mono14", "Mono8" ...; empty: the format that carries the most.
   std::string pixel_format;
-  unsigned buffers = 32;  ///< shared with the driver; a slow reader loses frames beyond them, which shows as a gap
+  unsigned buffers = 8;  ///< shared with the driver; a receiving thread empties them at once
 };
 
 /// Cameras by identity, "v4l2:VENDOR-MODEL-SERIAL" as the USB device tells it, or by where they are now,

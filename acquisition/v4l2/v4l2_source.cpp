@@ -16,6 +16,8 @@ namespace {
 constexpr std::chrono::milliseconds longest_nap{250};
 /// A Lepton that corrects itself at the start of a stream is silent for up to 3 s.
 constexpr std::chrono::seconds patience_with_first_frame{5};
+/// Frames between the receiving thread and the reader: 5 s of a 50 Hz camera, 37 MiB of 320 x 240.
+constexpr std::size_t most_arrivals = 256;
 
 std::int64_t monotonic_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
@@ -122,59 +124,106 @@ void V4l2Source::set_scale(const RadiometricScale& scale) {
 }
 
 Result<void> V4l2Source::start() {
-  const std::lock_guard lock(device_mutex_);
-  if (lost_) return tl::unexpected(disconnected());
-  if (streaming_ && running_) return {};
-  device_.stop();
-  streaming_ = false;
-  const auto failed = [&](const Error& error) {
-    if (error.code == ErrorCode::disconnected) lost_ = true;
-    return fail("starting " + info_.id, error);
-  };
-  if (const auto same = device_.check_format(layout_); !same) {
+  const std::lock_guard control(control_);
+  if (is_lost()) return tl::unexpected(disconnected());
+  if (receiver_.joinable()) return {};
+  if (!device_.check_format(layout_)) {
     // Another program may have used the camera since; its format is set again.
-    const auto set = device_.set_format(layout_);
-    if (!set) return failed(set.error());
+    if (const auto set = device_.set_format(layout_); !set) return fail("starting " + info_.id, noted(set.error()));
   }
   std::uint64_t stale = 0;
-  static_cast<void>(::read(wake_.get(), &stale, sizeof stale));
+  static_cast<void>(!::read(wake_.get(), &stale, sizeof stale));
   first_sequence_.reset();
   last_counter_.reset();
   repeated_ = 0;
-  if (const auto started = device_.start(options_.buffers); !started) return failed(started.error());
-  streaming_ = true;
-  running_ = true;
+  if (const auto started = device_.start(options_.buffers); !started) {
+    return fail("starting " + info_.id, noted(started.error()));
+  }
+  {
+    const std::lock_guard lock(inbox_.mutex);
+    inbox_.arrivals.clear();
+    inbox_.running = true;
+  }
+  receiver_ = std::jthread([this](const std::stop_token& stop) { receive(stop); });
   return {};
 }
 
 void V4l2Source::stop() {
-  running_ = false;
+  {
+    const std::lock_guard lock(inbox_.mutex);
+    inbox_.running = false;
+  }
+  inbox_.changed.notify_all();
+  const std::lock_guard control(control_);
+  if (!receiver_.joinable()) return;
+  receiver_.request_stop();
   const std::uint64_t one = 1;
   static_cast<void>(!::write(wake_.get(), &one, sizeof one));
-  const std::lock_guard lock(device_mutex_);
-  // A start() between the two lines above and here wins: its stream goes on.
-  if (running_ || !streaming_) return;
+  receiver_.join();
   device_.stop();
-  streaming_ = false;
+  const std::lock_guard lock(inbox_.mutex);
+  inbox_.running = false;
+  inbox_.arrivals.clear();
 }
 
-std::optional<Frame> V4l2Source::frame_of(const VideoBuffer& buffer) {
-  Frame frame;
+void V4l2Source::receive(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    const auto taken = device_.take([this](const VideoBuffer& buffer) { keep(buffer); });
+    if (!taken) {
+      // Every failure of a stream ends it: only opening the camera again mends it.
+      mark_lost();
+      return;
+    }
+    if (*taken) continue;
+    std::array<pollfd, 3> waiting{{{.fd = device_.fd(), .events = POLLIN, .revents = 0},
+                                   {.fd = wake_.get(), .events = POLLIN, .revents = 0},
+                                   {.fd = watch_.fd(), .events = POLLIN, .revents = 0}}};
+    static_cast<void>(::poll(waiting.data(), waiting.size(), static_cast<int>(longest_nap.count())));
+    if (device_has_gone()) {
+      mark_lost();
+      return;
+    }
+  }
+}
+
+bool V4l2Source::device_has_gone() {
+  bool gone = false;
+  while (const auto event = watch_.next(std::chrono::milliseconds(0))) {
+    gone = gone || (event->kind == VideoEvent::Kind::removed && event->sys_path == node_.sys_path);
+  }
+  return gone;
+}
+
+void V4l2Source::keep(const VideoBuffer& buffer) {
+  Arrival arrival;
+  arrival.sequence = buffer.sequence;
+  Frame& frame = arrival.frame;
   frame.host_time_ns = monotonic_ns();
   frame.device_time_ns = buffer.time_ns;
   frame.significant_bits = layout_.significant_bits;
   auto picture = read_video_frame(buffer.bytes, layout_);
   if (picture) {
     frame.counts = picture->counts;
+    arrival.telemetry = picture->telemetry;
   } else {
     frame.counts = cv::Mat1w::zeros(layout_.picture.size());
     frame.status = FrameStatus::wrong_size;
   }
   // UVC marks a frame with missing packets so.
   if (buffer.damaged) frame.status = FrameStatus::incomplete;
-  if (!first_sequence_) first_sequence_ = buffer.sequence;
-  if (picture && picture->telemetry) {
-    const LeptonTelemetry& telemetry = *picture->telemetry;
+  {
+    const std::lock_guard lock(inbox_.mutex);
+    // A reader that is this far behind loses the newest, which shows as a gap.
+    if (inbox_.arrivals.size() < most_arrivals) inbox_.arrivals.push_back(std::move(arrival));
+  }
+  inbox_.changed.notify_all();
+}
+
+std::optional<Frame> V4l2Source::finished(Arrival arrival) {
+  Frame& frame = arrival.frame;
+  if (!first_sequence_) first_sequence_ = arrival.sequence;
+  if (arrival.telemetry) {
+    const LeptonTelemetry& telemetry = *arrival.telemetry;
     // A Lepton exposes 26 times a second and sends every third; its bridge may send one twice.
     if (last_counter_ == telemetry.frame_counter) {
       ++repeated_;
@@ -182,11 +231,14 @@ std::optional<Frame> V4l2Source::frame_of(const VideoBuffer& buffer) {
     }
     last_counter_ = telemetry.frame_counter;
     frame.device_time_ns = std::int64_t{telemetry.time_ms} * 1'000'000;
+    const bool corrects = telemetry.ffc_state() == FfcState::imminent || telemetry.ffc_state() == FfcState::in_progress;
+    frame.correction = corrects ? CorrectionState::running : CorrectionState::idle;
+    frame.since_correction_s = telemetry.since_ffc_s().value_or(-1);
     if (const auto scale = scale_of(telemetry); scale != info_.scale) set_scale(scale);
   }
-  frame.sequence = buffer.sequence - *first_sequence_ - repeated_;
+  frame.sequence = arrival.sequence - *first_sequence_ - repeated_;
   frame.scale = scale_;
-  return frame;
+  return std::move(frame);
 }
 
 RadiometricScale V4l2Source::scale_of(const LeptonTelemetry& telemetry) const {
@@ -204,47 +256,42 @@ Result<void> V4l2Source::learn_scale() {
   return {};
 }
 
-Result<std::optional<Frame>> V4l2Source::take_frame() {
-  const std::lock_guard lock(device_mutex_);
-  std::optional<Frame> frame;
-  if (!running_ || !streaming_) return frame;
-  const auto taken = device_.take([&](const VideoBuffer& buffer) { frame = frame_of(buffer); });
-  if (!taken) return tl::unexpected(taken.error());
-  return frame;
-}
-
-void V4l2Source::wait_until(Clock::time_point deadline) {
-  const auto left =
-      std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()) + std::chrono::milliseconds(1);
-  const auto nap = std::clamp(left, std::chrono::milliseconds(0), longest_nap);
-  std::array<pollfd, 3> waiting{{{.fd = device_.fd(), .events = POLLIN, .revents = 0},
-                                 {.fd = wake_.get(), .events = POLLIN, .revents = 0},
-                                 {.fd = watch_.fd(), .events = POLLIN, .revents = 0}}};
-  static_cast<void>(::poll(waiting.data(), waiting.size(), static_cast<int>(nap.count())));
-  while (const auto event = watch_.next(std::chrono::milliseconds(0))) {
-    if (event->kind == VideoEvent::Kind::removed && event->sys_path == node_.sys_path) lost_ = true;
-  }
-}
-
 Result<Frame> V4l2Source::next(std::chrono::milliseconds timeout) {
   const auto deadline = Clock::now() + timeout;
   for (;;) {
-    if (lost_) return tl::unexpected(disconnected());
-    if (!running_) return fail(ErrorCode::interrupted, info_.id + " is stopped");
-    auto frame = take_frame();
-    if (!frame && frame.error().code == ErrorCode::disconnected) {
-      // A stop() from another thread ends the stream under the reader: that is no loss.
-      if (!running_) continue;
-      lost_ = true;
-      return fail("camera " + info_.id, frame.error());
+    Arrival arrival;
+    {
+      std::unique_lock lock(inbox_.mutex);
+      const auto ready = [&] { return !inbox_.running || inbox_.lost || !inbox_.arrivals.empty(); };
+      if (!inbox_.changed.wait_until(lock, deadline, ready)) {
+        return fail(ErrorCode::timeout,
+                    "no frame from " + info_.id + " within " + std::to_string(timeout.count()) + " ms");
+      }
+      if (inbox_.lost && (inbox_.arrivals.empty() || !inbox_.running)) return tl::unexpected(disconnected());
+      if (!inbox_.running) return fail(ErrorCode::interrupted, info_.id + " is stopped");
+      arrival = std::move(inbox_.arrivals.front());
+      inbox_.arrivals.pop_front();
     }
-    if (frame && *frame) return std::move(**frame);
-    if (Clock::now() >= deadline) {
-      return fail(ErrorCode::timeout,
-                  "no frame from " + info_.id + " within " + std::to_string(timeout.count()) + " ms");
-    }
-    wait_until(deadline);
+    if (auto frame = finished(std::move(arrival))) return std::move(*frame);
   }
+}
+
+bool V4l2Source::is_lost() const {
+  const std::lock_guard lock(inbox_.mutex);
+  return inbox_.lost;
+}
+
+void V4l2Source::mark_lost() {
+  {
+    const std::lock_guard lock(inbox_.mutex);
+    inbox_.lost = true;
+  }
+  inbox_.changed.notify_all();
+}
+
+Error V4l2Source::noted(const Error& error) {
+  if (error.code == ErrorCode::disconnected) mark_lost();
+  return error;
 }
 
 Error V4l2Source::disconnected() const {
@@ -252,8 +299,8 @@ Error V4l2Source::disconnected() const {
 }
 
 Result<std::string> V4l2Source::get(const std::string& feature) {
-  const std::lock_guard lock(device_mutex_);
-  if (lost_) return tl::unexpected(disconnected());
+  const std::lock_guard control(control_);
+  if (is_lost()) return tl::unexpected(disconnected());
   if (feature == "PixelFormat") return info_.pixel_format;
   if (feature == "Width") return std::to_string(info_.width);
   if (feature == "Height") return std::to_string(info_.height);
@@ -263,15 +310,15 @@ Result<std::string> V4l2Source::get(const std::string& feature) {
   if (feature == "AcquisitionFrameRate") return text_of(info_.frame_rate_hz);
   if (feature == "TemperatureLinearScale") return text_of(info_.scale.kelvin_per_count(0).value_or(0));
   if (feature == "TemperatureLinearOffset") return text_of(info_.scale.kelvin(0).value_or(0));
-  const VideoControl* control = find_control(controls_, feature);
-  if (control == nullptr)
+  const VideoControl* known = find_control(controls_, feature);
+  if (known == nullptr)
     return fail(ErrorCode::invalid_input, "camera " + info_.id + " has no feature '" + feature + "'");
-  return get_control(device_, *control);
+  return get_control(device_, *known);
 }
 
 Result<void> V4l2Source::set(const std::string& feature, const std::string& value) {
-  const std::lock_guard lock(device_mutex_);
-  if (lost_) return tl::unexpected(disconnected());
+  const std::lock_guard control(control_);
+  if (is_lost()) return tl::unexpected(disconnected());
   const auto refused = [&](const std::string& expected) {
     return fail(ErrorCode::invalid_input, feature + " = " + value + ": expected " + expected);
   };
@@ -282,7 +329,8 @@ Result<void> V4l2Source::set(const std::string& feature, const std::string& valu
     if (!kelvin || (is_scale && !(*kelvin > 0))) return refused(is_scale ? "kelvin per count, above 0" : "kelvin");
     (is_scale ? stated_kelvin_per_count_.emplace() : stated_offset_k_) = *kelvin;
   } else if (feature == "PixelFormat" || feature == "AcquisitionFrameRate") {
-    if (streaming_) return fail(ErrorCode::invalid_input, feature + " cannot change while the camera streams");
+    if (receiver_.joinable())
+      return fail(ErrorCode::invalid_input, feature + " cannot change while the camera streams");
     const auto rate = number(value);
     if (feature == "PixelFormat") {
       done = take_layout(value);
@@ -292,26 +340,25 @@ Result<void> V4l2Source::set(const std::string& feature, const std::string& valu
     } else {
       done = device_.set_frame_rate(*rate);
     }
-  } else if (const VideoControl* control = find_control(controls_, feature)) {
-    done = set_control(device_, *control, value);
+  } else if (const VideoControl* known = find_control(controls_, feature)) {
+    done = set_control(device_, *known, value);
   } else {
     return fail(ErrorCode::invalid_input, "camera " + info_.id + " has no feature '" + feature + "'");
   }
-  if (!done && done.error().code == ErrorCode::disconnected) lost_ = true;
-  if (done) refresh();
-  return done;
+  if (!done) return tl::unexpected(noted(done.error()));
+  refresh();
+  return {};
 }
 
 Result<void> V4l2Source::correct_nonuniformity() {
-  const std::lock_guard lock(device_mutex_);
-  if (lost_) return tl::unexpected(disconnected());
+  const std::lock_guard control(control_);
+  if (is_lost()) return tl::unexpected(disconnected());
   const VideoControl* button = nonuniformity_button(controls_);
   if (button == nullptr) {
     return fail(ErrorCode::invalid_input, "camera " + info_.id + " has no control that corrects its non-uniformity");
   }
-  auto done = set_control(device_, *button, "1");
-  if (!done && done.error().code == ErrorCode::disconnected) lost_ = true;
-  return done;
+  if (const auto done = set_control(device_, *button, "1"); !done) return tl::unexpected(noted(done.error()));
+  return {};
 }
 
 }  // namespace todbench

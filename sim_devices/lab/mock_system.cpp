@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <sstream>
+#include <vector>
 
 namespace todbench {
 namespace {
@@ -13,6 +15,18 @@ namespace {
 struct FreeText {
   void operator()(gchar* text) const { g_free(text); }
 };
+
+std::string content_of(const char* path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+std::vector<std::string> command_line() {
+  std::vector<std::string> words;
+  std::istringstream line(content_of("/proc/self/cmdline"));
+  for (std::string word; std::getline(line, word, '\0');) words.push_back(word);
+  return words;
+}
 
 }  // namespace
 
@@ -25,12 +39,10 @@ MockSystem::~MockSystem() {
 }
 
 bool MockSystem::is_preloaded() {
-  std::ifstream maps("/proc/self/maps");
-  const std::string text((std::istreambuf_iterator<char>(maps)), std::istreambuf_iterator<char>());
-  return text.find("libumockdev-preload") != std::string::npos;
+  return content_of("/proc/self/maps").find("libumockdev-preload") != std::string::npos;
 }
 
-void MockSystem::enter(char** argv) {
+void MockSystem::enter() {
   // A second failure would start the program for ever.
   constexpr const char* tried = "TODBENCH_MOCK_SYSTEM";
   if (is_preloaded() || std::getenv(tried) != nullptr) return;
@@ -44,7 +56,11 @@ void MockSystem::enter(char** argv) {
   const std::string relaxed = std::string(options != nullptr ? options : "") + ":verify_asan_link_order=0";
   ::setenv("ASAN_OPTIONS", relaxed.c_str(), 1);
 #endif
-  ::execv("/proc/self/exe", argv);
+  std::vector<std::string> words = command_line();
+  std::vector<char*> arguments;
+  for (auto& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  ::execv("/proc/self/exe", arguments.data());
 }
 
 std::string MockSystem::preload_library() {

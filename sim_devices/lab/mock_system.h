@@ -24,8 +24,8 @@ class MockSystem {
   /// environment names it.
   [[nodiscard]] static bool is_preloaded();
   /// Starts this program again, in this process, with the preload library; returns only when it is loaded already or
-  /// cannot be. Call it first in main(), before any thread.
-  static void enter(char** argv);
+  /// cannot be. Files and threads of the process are gone then: call it first.
+  static void enter();
   /// What LD_PRELOAD has to be for a client.
   [[nodiscard]] static std::string preload_library();
   /// What UMOCKDEV_DIR has to be for a client.

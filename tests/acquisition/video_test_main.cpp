@@ -6,7 +6,7 @@
 #include "sim_devices/lab/mock_system.h"
 
 int main(int argc, char** argv) {
-  todbench::MockSystem::enter(argv);
+  todbench::MockSystem::enter();
   if (!todbench::MockSystem::is_preloaded()) {
     std::fprintf(stderr, "umockdev's preload library cannot be loaded\n");
     return 1;
