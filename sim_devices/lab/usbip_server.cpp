@@ -231,6 +231,7 @@ void UsbIpServer::State::read_commands() {
     submit(std::move(transfer));
   }
   connected = false;
+  ::shutdown(socket, SHUT_RDWR);
 }
 
 UsbIpServer::UsbIpServer(std::unique_ptr<State> state) : state_(std::move(state)) {}

@@ -44,9 +44,13 @@ std::uint32_t interval_100ns(double frame_rate_hz) {
   return static_cast<std::uint32_t>(std::lround(1e7 / frame_rate_hz));
 }
 
-/// A format is named by a GUID whose first four bytes are its four-character code.
+/// A format is named by a GUID that begins with its four-character code; that of V4L2's YUYV is called YUY2.
 UsbBytes format_guid(std::uint32_t fourcc) {
-  return Bytes().u32(fourcc).all({0x00, 0x00, 0x10, 0x00, 0x80, 0x00, 0x00, 0xAA, 0x00, 0x38, 0x9B, 0x71}).get();
+  constexpr std::uint32_t yuyv = 0x56595559, yuy2 = 0x32595559;
+  return Bytes()
+      .u32(fourcc == yuyv ? yuy2 : fourcc)
+      .all({0x00, 0x00, 0x10, 0x00, 0x80, 0x00, 0x00, 0xAA, 0x00, 0x38, 0x9B, 0x71})
+      .get();
 }
 
 UsbBytes control_interface() {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <future>
+#include <thread>
 
 #include "tests/acquisition/video_test_support.h"
 
@@ -31,6 +32,11 @@ VideoCameraConfig small(VideoCameraKind kind) {
 /// Exposure since power-up of a frame, from the camera's clock.
 std::uint64_t exposure_of(const Frame& frame, double frame_rate_hz) {
   return static_cast<std::uint64_t>(std::llround(static_cast<double>(frame.device_time_ns) * 1e-9 * frame_rate_hz)) - 1;
+}
+
+std::int64_t monotonic_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
 }
 
 bool same_pixels(const cv::Mat1w& a, const cv::Mat1w& b) {
@@ -273,6 +279,46 @@ TEST(V4l2Stream, StopWakesAReaderThatWaitsForASlowCamera) {
   ASSERT_FALSE(nothing);
   EXPECT_EQ(nothing.error().code, ErrorCode::timeout);
   EXPECT_EQ(woken.error().code, ErrorCode::interrupted);
+}
+
+TEST(V4l2Stream, TheHostTimeOfAFrameIsItsArrivalHoweverLateItIsRead) {
+  const auto config = small(VideoCameraKind::y16);
+  const auto bench = start_video(config);
+  const auto source = open_video(config);
+  ASSERT_TRUE(source && source->start());
+  // Exposure 20 has begun: the ones before it have been delivered to the driver and, with 8 buffers there, to the
+  // receiving thread at least up to the eleventh.
+  while (bench.camera->exposures() < 20) std::this_thread::yield();
+  const auto scene_changes_ns = monotonic_ns();
+
+  const auto first = source->next(patience);
+
+  ASSERT_TRUE(first);
+  EXPECT_LT(first->host_time_ns, scene_changes_ns);
+}
+
+TEST(V4l2Stream, FramesDuringACorrectionSaySoAndTellTheTimeAfterIt) {
+  auto config = small(VideoCameraKind::lepton);
+  config.nuc_freeze_frames = 5;
+  const auto bench = start_video(config);
+  const auto source = open_video(config);
+  ASSERT_TRUE(source && source->start());
+  EXPECT_EQ(source->next(patience)->since_correction_s, -1);
+
+  ASSERT_TRUE(source->correct_nonuniformity());
+
+  int running = 0;
+  double since_s = -1;
+  for (int k = 0; k < 100; ++k) {
+    const auto frame = source->next(patience);
+    ASSERT_TRUE(frame);
+    if (frame->correction == CorrectionState::running) ++running;
+    if (frame->correction == CorrectionState::idle && running > 0) since_s = frame->since_correction_s;
+  }
+  EXPECT_EQ(running, 5);
+  // 100 frames of 5 ms, some of which came before the correction.
+  EXPECT_GT(since_s, 0);
+  EXPECT_LE(since_s, 0.5);
 }
 
 TEST(V4l2Stream, ACorrectionIsCommandedByItsButton) {

@@ -16,6 +16,9 @@
 #ifdef TODBENCH_CONTRACT_WITH_ARAVIS
 #include "tests/acquisition/gvsp_test_support.h"
 #endif
+#ifdef TODBENCH_CONTRACT_WITH_V4L2
+#include "tests/acquisition/video_test_support.h"
+#endif
 
 namespace todbench {
 namespace {
@@ -46,6 +49,7 @@ void PrintTo(const SourceCase& source, std::ostream* out) {
   *out << source.name;
 }
 
+#ifndef TODBENCH_CONTRACT_WITH_V4L2
 Bench simulated() {
   SensorSpec spec;
   spec.name = "contract";
@@ -72,6 +76,7 @@ Bench lepton() {
 Bench sc660() {
   return recorded(open_flir_seq(golden("flir_sc660.seq")));
 }
+#endif
 
 #ifdef TODBENCH_CONTRACT_WITH_ARAVIS
 Bench emulated_gige() {
@@ -94,6 +99,40 @@ Bench real_camera() {
 }
 #endif
 
+#ifdef TODBENCH_CONTRACT_WITH_V4L2
+Bench emulated_video(VideoCameraKind kind) {
+  VideoCameraConfig config;
+  config.kind = kind;
+  config.width = 160;
+  config.height = 120;
+  auto bench = std::make_shared<testing_support::VideoBench>(testing_support::start_video(config));
+  return {std::move(bench), testing_support::open_video(config)};
+}
+
+Bench real_video_camera() {
+  auto source = v4l2_backend()->open(std::getenv("TODBENCH_CONTRACT_CAMERA"));
+  EXPECT_TRUE(source) << source.error().message;
+  return {nullptr, std::move(*source)};
+}
+
+/// A program of its own, because it runs under umockdev's preload library.
+std::vector<SourceCase> sources() {
+  std::vector<SourceCase> all;
+  const auto add = [&](const std::string& name, VideoCameraKind kind) {
+    all.push_back({name, Ending::never, [kind] { return emulated_video(kind); }});
+  };
+  add("V4l2Y16", VideoCameraKind::y16);
+  add("V4l2Y14", VideoCameraKind::y14);
+  add("V4l2Grey", VideoCameraKind::grey);
+  add("V4l2Lepton", VideoCameraKind::lepton);
+  add("V4l2TemperatureRows", VideoCameraKind::temperature_rows);
+  const char* real = std::getenv("TODBENCH_CONTRACT_CAMERA");
+  if (real != nullptr && std::string_view(real).starts_with("v4l2:")) {
+    all.push_back({"RealCamera", Ending::never, real_video_camera});
+  }
+  return all;
+}
+#else
 std::vector<SourceCase> sources() {
   std::vector<SourceCase> all{{"Simulated", Ending::never, simulated},
                               {"RecordedRaw", Ending::after_last_frame, lepton},
@@ -105,6 +144,7 @@ std::vector<SourceCase> sources() {
 #endif
   return all;
 }
+#endif
 
 class FrameSourceContract : public testing::TestWithParam<SourceCase> {
  protected:
@@ -269,6 +309,7 @@ TEST_P(FrameSourceContract, CorrectsItsNonuniformityOrSaysThatItCannot) {
   EXPECT_TRUE(corrected || corrected.error().code == ErrorCode::invalid_input);
 }
 
+#ifndef TODBENCH_CONTRACT_WITH_V4L2
 class EndingFrameSourceContract : public FrameSourceContract {};
 
 TEST_P(EndingFrameSourceContract, EndsAsDisconnectedAndStaysDead) {
@@ -291,12 +332,16 @@ std::vector<SourceCase> ending_sources() {
   return ending;
 }
 
+#endif
+
 std::string name_of(const testing::TestParamInfo<SourceCase>& test_case) {
   return test_case.param.name;
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, FrameSourceContract, testing::ValuesIn(sources()), name_of);
+#ifndef TODBENCH_CONTRACT_WITH_V4L2
 INSTANTIATE_TEST_SUITE_P(Every, EndingFrameSourceContract, testing::ValuesIn(ending_sources()), name_of);
+#endif
 
 #ifdef TODBENCH_CONTRACT_WITH_ARAVIS
 TEST(FrameSourceWaiting, SaysTimeoutWhenNothingCameAndIsWokenByStop) {

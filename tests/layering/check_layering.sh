@@ -10,7 +10,7 @@ BEGIN {
   may["hvs"] = "acquisition/core/"
   may["tod"] = "acquisition/core/ hvs/"
   may["sim_devices"] = "acquisition/core/ hvs/ tod/"
-  may["sim_devices/lab"] = "acquisition/core/ acquisition/aravis/ acquisition/v4l2/ hvs/ tod/ sim_devices/"
+  may["sim_devices/lab"] = "acquisition/core/ acquisition/aravis/ acquisition/usb/ acquisition/v4l2/ hvs/ tod/ sim_devices/"
   may["bench"] = "acquisition/ hvs/ tod/ sim_devices/"
   may["bench/gui"] = "acquisition/ hvs/ tod/ sim_devices/ bench/"
   # third-party header: the only folders that may include it
@@ -22,6 +22,7 @@ BEGIN {
   home["^(Q[A-Z]|qcustomplot.h)"] = "^bench/gui/"
   home["^toml\\+\\+/"] = "^bench/"
   home["^CLI/"] = "^bench/cli/"
+  home["^tiffio.h"] = "^acquisition/recording/"
   home["^fftw3.h"] = "^hvs/"
 }
 function layer_of(file,   parts) {

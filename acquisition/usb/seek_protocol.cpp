@@ -1,0 +1,217 @@
+#include "acquisition/usb/seek_protocol.h"
+
+#include <algorithm>
+#include <string>
+
+namespace todbench {
+namespace {
+
+const SeekGeometry compact_geometry{.product_id = 0x0010,
+                                    .raw_width = 208,
+                                    .raw_height = 156,
+                                    .picture = {0, 1, 207, 154},
+                                    .kind_word = 10,
+                                    .counter_word = 40,
+                                    .temperature_word = 1};
+const SeekGeometry pro_geometry{.product_id = 0x0011,
+                                .raw_width = 342,
+                                .raw_height = 260,
+                                .picture = {1, 4, 320, 240},
+                                .kind_word = 2,
+                                .counter_word = 1,
+                                .temperature_word = 5};
+
+std::uint16_t word(std::span<const std::uint8_t> bytes, std::size_t index) {
+  return static_cast<std::uint16_t>(bytes[2 * index] | bytes[2 * index + 1] << 8U);
+}
+
+using Bytes = std::vector<std::uint8_t>;
+
+SeekTransfer settings_at(std::uint8_t words, std::uint16_t address) {
+  return {SeekRequest::set_factory_settings_features,
+          {words, 0, static_cast<std::uint8_t>(address & 0xFFU), static_cast<std::uint8_t>(address >> 8U), 0, 0}};
+}
+
+void read_settings(std::vector<SeekTransfer>& transfers, std::uint8_t words, std::uint16_t address) {
+  transfers.push_back(settings_at(words, address));
+  transfers.push_back({SeekRequest::get_factory_settings, Bytes(2UL * words)});
+}
+
+void wake(std::vector<SeekTransfer>& transfers) {
+  transfers.push_back({SeekRequest::target_platform, {1}});
+  transfers.push_back(seek_sleep());
+  transfers.push_back({SeekRequest::get_firmware_info, Bytes(4)});
+  transfers.push_back({SeekRequest::read_chip_id, Bytes(12)});
+}
+
+std::vector<SeekTransfer> compact_initialisation() {
+  std::vector<SeekTransfer> all;
+  wake(all);
+  read_settings(all, 0x20, 0x0030);
+  read_settings(all, 0x20, 0x0050);
+  read_settings(all, 0x0C, 0x0070);
+  read_settings(all, 0x06, 0x0008);
+  all.push_back({SeekRequest::set_image_processing_mode, {8, 0}});
+  all.push_back({SeekRequest::get_operation_mode, Bytes(2)});
+  all.push_back({SeekRequest::set_image_processing_mode, {8, 0}});
+  all.push_back({SeekRequest::set_operation_mode, {1, 0}});
+  all.push_back({SeekRequest::get_operation_mode, Bytes(2)});
+  return all;
+}
+
+std::vector<SeekTransfer> pro_initialisation() {
+  constexpr std::uint16_t settings_end = 2560;
+  std::vector<SeekTransfer> all;
+  wake(all);
+  read_settings(all, 0x06, 0x0008);
+  all.push_back({SeekRequest::set_firmware_info_features, {0x17, 0}});
+  all.push_back({SeekRequest::get_firmware_info, Bytes(64)});
+  read_settings(all, 0x01, 0x0600);
+  read_settings(all, 0x01, 0x0601);
+  for (std::uint16_t address = 0; address < settings_end; address += 32) read_settings(all, 0x20, address);
+  all.push_back({SeekRequest::set_firmware_info_features, {0x15, 0}});
+  all.push_back({SeekRequest::get_firmware_info, Bytes(64)});
+  all.push_back({SeekRequest::set_image_processing_mode, {8, 0}});
+  all.push_back({SeekRequest::set_operation_mode, {1, 0}});
+  return all;
+}
+
+/// Half of the median of the pixels that are not zero; 0 when all are.
+double dead_limit(const cv::Mat1w& picture) {
+  std::vector<std::uint16_t> values;
+  for (const auto value : picture) {
+    if (value != 0) values.push_back(value);
+  }
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return 0.5 * *middle;
+}
+
+}  // namespace
+
+const SeekGeometry& geometry(SeekModel model) {
+  return model == SeekModel::compact ? compact_geometry : pro_geometry;
+}
+
+std::optional<SeekModel> seek_model(std::uint16_t vendor_id, std::uint16_t product_id) {
+  if (vendor_id != seek_vendor_id) return std::nullopt;
+  for (const auto model : {SeekModel::compact, SeekModel::compact_pro}) {
+    if (geometry(model).product_id == product_id) return model;
+  }
+  return std::nullopt;
+}
+
+std::string_view to_string(SeekModel model) {
+  return model == SeekModel::compact ? "Compact" : "CompactPRO";
+}
+
+bool SeekTransfer::reads() const {
+  switch (request) {
+    case SeekRequest::read_chip_id:
+    case SeekRequest::get_operation_mode:
+    case SeekRequest::get_firmware_info:
+    case SeekRequest::get_factory_settings:
+      return true;
+    default:
+      return false;
+  }
+}
+
+std::vector<SeekTransfer> seek_initialisation(SeekModel model) {
+  return model == SeekModel::compact ? compact_initialisation() : pro_initialisation();
+}
+
+SeekTransfer seek_sleep() {
+  return {SeekRequest::set_operation_mode, {0, 0}};
+}
+
+SeekTransfer seek_frame_request(SeekModel model) {
+  const auto words = static_cast<std::uint32_t>(geometry(model).frame_words());
+  SeekTransfer transfer{SeekRequest::start_image_transfer, {}};
+  for (unsigned shift = 0; shift < 32; shift += 8)
+    transfer.data.push_back(static_cast<std::uint8_t>(words >> shift & 0xFFU));
+  return transfer;
+}
+
+Result<SeekFrame> parse_seek_frame(std::span<const std::uint8_t> bytes, SeekModel model) {
+  const SeekGeometry& g = geometry(model);
+  if (bytes.size() != g.frame_bytes()) {
+    return fail(ErrorCode::invalid_input,
+                "a frame of " + std::to_string(bytes.size()) + " bytes; expected " + std::to_string(g.frame_bytes()));
+  }
+  SeekFrame frame;
+  frame.kind = word(bytes, g.kind_word);
+  frame.counter = word(bytes, g.counter_word);
+  frame.temperature_word = word(bytes, g.temperature_word);
+  frame.picture.create(g.picture.height, g.picture.width);
+  for (int y = 0; y < g.picture.height; ++y) {
+    const auto row = static_cast<std::size_t>(g.picture.y + y) * static_cast<std::size_t>(g.raw_width) +
+                     static_cast<std::size_t>(g.picture.x);
+    for (int x = 0; x < g.picture.width; ++x) frame.picture(y, x) = word(bytes, row + static_cast<std::size_t>(x));
+  }
+  return frame;
+}
+
+std::optional<std::uint16_t> seek_counter(std::span<const std::uint8_t> bytes, SeekModel model) {
+  const std::size_t index = geometry(model).counter_word;
+  if (bytes.size() < 2 * index + 2) return std::nullopt;
+  return word(bytes, index);
+}
+
+SeekDeadPixels::SeekDeadPixels(const cv::Mat1w& calibration_picture) {
+  const double limit = dead_limit(calibration_picture);
+  cv::Mat1b known(calibration_picture.size());
+  std::vector<cv::Point> left;
+  for (int y = 0; y < known.rows; ++y) {
+    for (int x = 0; x < known.cols; ++x) {
+      const bool dead = calibration_picture(y, x) == 0 || calibration_picture(y, x) < limit;
+      known(y, x) = dead ? 0 : 1;
+      if (dead) left.emplace_back(x, y);
+    }
+  }
+  dead_ = left.size();
+  const cv::Rect inside({}, known.size());
+  for (std::size_t before = left.size() + 1; left.size() < before;) {
+    before = left.size();
+    std::vector<cv::Point> ring, rest;
+    for (const auto at : left) {
+      Filled filled{.at = at, .from = {}, .neighbours = 0};
+      for (const cv::Point step : {cv::Point{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+        const cv::Point from = at + step;
+        if (inside.contains(from) && known(from) != 0) {
+          filled.from[static_cast<std::size_t>(filled.neighbours++)] = from;
+        }
+      }
+      if (filled.neighbours > 0) order_.push_back(filled);
+      (filled.neighbours > 0 ? ring : rest).push_back(at);
+    }
+    for (const auto at : ring) known(at) = 1;
+    left = std::move(rest);
+  }
+}
+
+void SeekDeadPixels::fill(cv::Mat1w& picture) const {
+  for (const auto& pixel : order_) {
+    unsigned sum = 0;
+    for (int k = 0; k < pixel.neighbours; ++k) sum += picture(pixel.from[static_cast<std::size_t>(k)]);
+    picture(pixel.at) = static_cast<std::uint16_t>(sum / static_cast<unsigned>(pixel.neighbours));
+  }
+}
+
+cv::Mat1w corrected_seek_picture(const cv::Mat1w& picture, const cv::Mat1w& shutter, const SeekDeadPixels& dead) {
+  constexpr std::uint16_t full_scale = 0xFFFF;
+  CV_Assert(picture.size() == shutter.size());
+  cv::Mat1w corrected(picture.size());
+  auto offset = shutter.begin();
+  auto out = corrected.begin();
+  for (const auto sent : picture) {
+    const bool saturated = sent == 0 || sent == full_scale;
+    *out++ = saturated ? sent : cv::saturate_cast<std::uint16_t>(int{sent} + seek_shutter_level - int{*offset});
+    ++offset;
+  }
+  dead.fill(corrected);
+  return corrected;
+}
+
+}  // namespace todbench

@@ -1,0 +1,119 @@
+// What Seek Thermal cameras say over USB: pure functions from bytes to pictures, no device. The facts are those that
+// the libseek-thermal project published (OpenThermal); Seek documents nothing.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "acquisition/core/result.h"
+
+namespace todbench {
+
+inline constexpr std::uint16_t seek_vendor_id = 0x289D;
+inline constexpr std::uint8_t seek_bulk_in_endpoint = 0x81;
+
+enum class SeekModel {
+  compact,      ///< 289d:0010, picture 207 x 154
+  compact_pro,  ///< 289d:0011, picture 320 x 240
+};
+
+/// Where things are in a frame of 16-bit little-endian words. The first row of every frame is a header, and the picture
+/// does not fill the rest.
+struct SeekGeometry {
+  std::uint16_t product_id;
+  int raw_width, raw_height;  ///< words
+  cv::Rect picture;           ///< in the raw frame
+  std::size_t kind_word, counter_word, temperature_word;
+
+  [[nodiscard]] std::size_t frame_words() const {
+    return static_cast<std::size_t>(raw_width) * static_cast<std::size_t>(raw_height);
+  }
+  [[nodiscard]] std::size_t frame_bytes() const { return 2 * frame_words(); }
+};
+[[nodiscard]] const SeekGeometry& geometry(SeekModel model);
+[[nodiscard]] std::optional<SeekModel> seek_model(std::uint16_t vendor_id, std::uint16_t product_id);
+/// "Compact", "CompactPRO".
+[[nodiscard]] std::string_view to_string(SeekModel model);
+
+/// Vendor requests to the interface (bmRequestType 0x41 out, 0xC1 in), wValue and wIndex 0.
+enum class SeekRequest : std::uint8_t {
+  read_chip_id = 0x36,
+  set_operation_mode = 0x3C,
+  get_operation_mode = 0x3D,
+  set_image_processing_mode = 0x3E,
+  get_firmware_info = 0x4E,
+  start_image_transfer = 0x53,  ///< four bytes: how many words
+  target_platform = 0x54,
+  set_firmware_info_features = 0x55,
+  set_factory_settings_features = 0x56,
+  get_factory_settings = 0x58,
+};
+
+/// One control transfer. `data` is what is sent; of a reading request only its size counts.
+struct SeekTransfer {
+  SeekRequest request;
+  std::vector<std::uint8_t> data;
+  [[nodiscard]] bool reads() const;
+};
+/// What has to be exchanged before the first frame, in order.
+[[nodiscard]] std::vector<SeekTransfer> seek_initialisation(SeekModel model);
+/// What puts the camera to sleep; sent three times, as its own software does.
+[[nodiscard]] SeekTransfer seek_sleep();
+/// Asks for one frame.
+[[nodiscard]] SeekTransfer seek_frame_request(SeekModel model);
+
+/// What a frame shows, by its number on the wire; there are further ones, all of them for calibration.
+enum class SeekFrameKind : std::uint16_t {
+  shutter = 1,      ///< the closed shutter: the offsets of the pixels
+  image = 3,        ///< the scene
+  calibration = 4,  ///< the first after initialisation: dead pixels are zero
+};
+
+struct SeekFrame {
+  std::uint16_t kind = 0;     ///< a SeekFrameKind, or another number
+  std::uint16_t counter = 0;  ///< exposures, wraps at 2^16
+  std::uint16_t temperature_word = 0;
+  cv::Mat1w picture;  ///< as sent; shutter offsets and dead pixels still in it
+  [[nodiscard]] bool is(SeekFrameKind k) const { return kind == static_cast<std::uint16_t>(k); }
+};
+/// Reads a frame. `invalid_input` when the bytes are not exactly one frame.
+[[nodiscard]] Result<SeekFrame> parse_seek_frame(std::span<const std::uint8_t> bytes, SeekModel model);
+/// The counter of a frame of which only the beginning came; nothing when that is too short.
+[[nodiscard]] std::optional<std::uint16_t> seek_counter(std::span<const std::uint8_t> bytes, SeekModel model);
+
+/// The pixels that carry no picture, and from which neighbours each is filled. A pixel is dead when it is zero in the
+/// calibration frame, or below half of the median of the pixels that are not. It gets the mean, rounded down, of those
+/// of its four neighbours that live or have been filled before it; pixels inside larger defects are filled from the
+/// rim inwards, each ring from the ring outside it, so that the result does not depend on the order within a ring.
+class SeekDeadPixels {
+ public:
+  SeekDeadPixels() = default;  ///< none
+  explicit SeekDeadPixels(const cv::Mat1w& calibration_picture);
+  [[nodiscard]] std::size_t count() const { return dead_; }
+  /// Fills the dead pixels. Precondition: the geometry of the calibration picture, or no dead pixels.
+  void fill(cv::Mat1w& picture) const;
+
+ private:
+  struct Filled {
+    cv::Point at;
+    std::array<cv::Point, 4> from;
+    int neighbours;
+  };
+  std::vector<Filled> order_;
+  std::size_t dead_ = 0;
+};
+
+/// Count of a picture that is as warm as the shutter.
+inline constexpr int seek_shutter_level = 0x4000;
+
+/// Picture less shutter picture plus seek_shutter_level, clipped to 16 bits, dead pixels filled. A pixel that is 0 or
+/// 65535 as sent stays so, for the integrity gate to see.
+[[nodiscard]] cv::Mat1w corrected_seek_picture(const cv::Mat1w& picture, const cv::Mat1w& shutter,
+                                               const SeekDeadPixels& dead);
+
+}  // namespace todbench

@@ -1,0 +1,63 @@
+// One open Seek camera as a FrameSource. Private to the USB back end.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "acquisition/core/frame_source.h"
+#include "acquisition/usb/seek_stream.h"
+#include "acquisition/usb/usb_connection.h"
+
+namespace todbench {
+
+class SeekSource final : public FrameSource {
+ public:
+  /// Takes the camera. Errors: `not_found`.
+  [[nodiscard]] static Result<std::unique_ptr<FrameSource>> create(UsbContext context, const SeekOnBus& camera,
+                                                                   std::string id, UsbConnection connection);
+  ~SeekSource() override;
+
+  [[nodiscard]] const SourceInfo& info() const override { return info_; }
+  [[nodiscard]] Result<void> start() override;
+  [[nodiscard]] Result<Frame> next(std::chrono::milliseconds timeout) override;
+  void stop() override;
+  [[nodiscard]] Result<std::string> get(const std::string& feature) override;
+  [[nodiscard]] Result<void> set(const std::string& feature, const std::string& value) override;
+  [[nodiscard]] Result<void> correct_nonuniformity() override;
+
+ private:
+  SeekSource(UsbContext context, UsbConnection connection, SeekModel model);
+  /// Initialises the camera and reads frames until dead pixels and shutter picture are known.
+  [[nodiscard]] Result<void> calibrate();
+  [[nodiscard]] Result<void> initialise();
+  /// The calibration frame, the frames after it up to the shutter's, and the shutter's.
+  [[nodiscard]] Result<void> read_calibration_frames();
+  [[nodiscard]] Result<SeekFrame> read_frame();
+  [[nodiscard]] Frame frame_of(const SeekArrival& arrival);
+  void sleep();
+  void update_scale();
+  /// Remembers a loss.
+  [[nodiscard]] tl::unexpected<Error> failed(const Error& error);
+  [[nodiscard]] Error disconnected() const;
+
+  UsbContext context_;        ///< outlives the connection
+  UsbConnection connection_;  ///< outlives the stream
+  SeekModel model_;
+  SourceInfo info_;
+  std::shared_ptr<const RadiometricScale> scale_;
+  double kelvin_per_count_ = 0, offset_k_ = 0;  ///< as the user states; 0: not stated
+  SeekDeadPixels dead_;
+  cv::Mat1w shutter_;
+  std::int64_t shutter_time_ns_ = 0;
+  std::optional<std::uint16_t> last_counter_;
+  std::uint64_t sequence_ = 0;
+
+  std::atomic<bool> running_{false};
+  std::atomic<bool> lost_{false};
+  std::mutex mutex_;  ///< guards the stream against stop(), and stop() against itself
+  std::shared_ptr<SeekStream> stream_;
+};
+
+}  // namespace todbench

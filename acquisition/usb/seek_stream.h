@@ -1,0 +1,79 @@
+// The stream of frames of an opened Seek camera: asynchronous transfers, one frame requested at a time, as the camera
+// wants it. Private to the USB back end.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "acquisition/core/result.h"
+#include "acquisition/usb/usb_connection.h"
+
+namespace todbench {
+
+/// What came for one request.
+struct SeekArrival {
+  std::vector<std::uint8_t> bytes;  ///< fewer than a frame when the transfer ended early
+  std::int64_t host_time_ns = 0;    ///< CLOCK_MONOTONIC at the end of the transfer
+};
+
+/// Requests and receives frames on a thread of its own from creation to end().
+class SeekStream {
+ public:
+  /// `connection` outlives it. `waiting`: frames kept for a slow reader; further ones are dropped, which
+  /// shows as a gap in the camera's counter. Errors: `disconnected`.
+  [[nodiscard]] static Result<std::unique_ptr<SeekStream>> start(UsbContext context, UsbConnection& connection,
+                                                                 SeekModel model, std::size_t waiting);
+  ~SeekStream();
+  SeekStream(const SeekStream&) = delete;
+  SeekStream& operator=(const SeekStream&) = delete;
+
+  /// The next arrival. Errors: `timeout`, `interrupted` (end() was called), `disconnected`. Any thread.
+  [[nodiscard]] Result<SeekArrival> next(std::chrono::milliseconds timeout);
+  /// Ends the stream and every next() from now on; takes milliseconds. Any thread, one at a time.
+  void end();
+
+ private:
+  struct FreeTransfer {
+    void operator()(libusb_transfer* transfer) const { libusb_free_transfer(transfer); }
+  };
+  using TransferPtr = std::unique_ptr<libusb_transfer, FreeTransfer>;
+  enum class Step { requesting, reading };
+
+  SeekStream(UsbContext context, UsbConnection& connection, SeekModel model, std::size_t waiting);
+  void serve_events();
+  void submit(Step step);
+  void on_requested(const libusb_transfer& transfer);
+  void on_read(const libusb_transfer& transfer);
+  void deliver();
+  void retry(int status);
+  void lose();
+  static void LIBUSB_CALL called_back(libusb_transfer* transfer);
+  static int LIBUSB_CALL on_left(libusb_context*, libusb_device*, libusb_hotplug_event, void* stream);
+
+  UsbContext context_;
+  UsbConnection& connection_;
+  std::size_t frame_bytes_;
+  std::size_t most_waiting_;
+  std::vector<std::uint8_t> request_, frame_;  ///< buffers of the transfers
+  std::size_t received_ = 0;                   ///< bytes of the frame so far
+  int failures_ = 0;                           ///< in succession
+  TransferPtr requesting_, reading_;
+  libusb_hotplug_callback_handle hotplug_{};
+
+  std::mutex mutex_;  ///< guards what follows
+  std::condition_variable changed_;
+  std::deque<SeekArrival> arrivals_;
+  bool under_way_ = false;  ///< a transfer has been submitted and has not been called back
+  bool ending_ = false, lost_ = false;
+  libusb_transfer* submitted_ = nullptr;
+
+  std::thread events_;
+};
+
+}  // namespace todbench

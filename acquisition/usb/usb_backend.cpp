@@ -1,0 +1,127 @@
+#include "acquisition/usb/usb_backend.h"
+
+#include <sys/time.h>
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+#include "acquisition/usb/seek_source.h"
+#include "acquisition/usb/usb_connection.h"
+
+namespace todbench {
+namespace {
+
+std::string identity(SeekModel model, const std::string& serial) {
+  std::string clean = serial;
+  for (char& c : clean) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.' && c != '_') c = '_';
+  }
+  return "usb:SEEK-" + std::string(to_string(model)) + "-" + clean;
+}
+
+/// A camera that answered, and its id.
+struct Found {
+  SeekOnBus on_bus;
+  UsbConnection connection;
+  std::string id, serial;
+};
+
+struct Search {
+  std::vector<Found> found;
+  std::string unusable;  ///< a clause for each that could not be asked for its serial number
+};
+
+Result<Search> search(libusb_context* context) {
+  auto cameras = seek_cameras(context);
+  if (!cameras) return tl::unexpected(cameras.error());
+  Search search;
+  for (auto& camera : *cameras) {
+    auto connection = UsbConnection::open(camera);
+    const auto serial = connection ? connection->serial_number() : tl::unexpected(connection.error());
+    if (!serial) {
+      search.unusable += "; Seek " + std::string(to_string(camera.model)) + " at " + serial.error().message;
+      continue;
+    }
+    std::string id = identity(camera.model, *serial);
+    search.found.push_back({std::move(camera), std::move(*connection), std::move(id), *serial});
+  }
+  return search;
+}
+
+class UsbBackend final : public CameraBackend {
+ public:
+  [[nodiscard]] std::string scheme() const override { return "usb"; }
+
+  [[nodiscard]] Result<std::vector<CameraEntry>> list() override {
+    auto context = usb_context();
+    if (!context) return tl::unexpected(context.error());
+    const auto seen = search(context->get());
+    if (!seen) return tl::unexpected(seen.error());
+    std::vector<CameraEntry> entries;
+    for (const auto& camera : seen->found) {
+      entries.push_back({.id = camera.id,
+                         .vendor = "Seek Thermal",
+                         .model = std::string(to_string(camera.on_bus.model)),
+                         .serial = camera.serial,
+                         .transport = "USB (Seek)",
+                         .address = camera.on_bus.address});
+    }
+    if (entries.empty() && !seen->unusable.empty()) return fail(ErrorCode::not_found, seen->unusable.substr(2));
+    return entries;
+  }
+
+  [[nodiscard]] Result<std::unique_ptr<FrameSource>> open(const std::string& id) override {
+    auto context = usb_context();
+    if (!context) return tl::unexpected(context.error());
+    auto seen = search(context->get());
+    if (!seen) return tl::unexpected(seen.error());
+    std::string names;
+    for (auto& camera : seen->found) {
+      if (camera.id != id) {
+        names += (names.empty() ? "" : ", ") + camera.id;
+        continue;
+      }
+      return SeekSource::create(*context, camera.on_bus, camera.id, std::move(camera.connection));
+    }
+    return fail(ErrorCode::not_found, "no such camera; seen: " + (names.empty() ? "none" : names) + seen->unusable);
+  }
+};
+
+int LIBUSB_CALL on_arrival(libusb_context*, libusb_device*, libusb_hotplug_event, void* arrived) {
+  *static_cast<bool*>(arrived) = true;
+  return 0;
+}
+
+}  // namespace
+
+std::unique_ptr<CameraBackend> usb_backend() {
+  return std::make_unique<UsbBackend>();
+}
+
+Result<void> wait_for_usb_camera(const std::string& id, std::chrono::milliseconds timeout, std::stop_token stop) {
+  auto context = usb_context();
+  if (!context) return tl::unexpected(context.error());
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
+  bool arrived = true;  // what is there already counts
+  libusb_hotplug_callback_handle callback{};
+  libusb_hotplug_register_callback(context->get(), LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED, 0, seek_vendor_id,
+                                   LIBUSB_HOTPLUG_MATCH_ANY, LIBUSB_HOTPLUG_MATCH_ANY, &on_arrival, &arrived,
+                                   &callback);
+  while (!stop.stop_requested()) {
+    if (std::exchange(arrived, false)) {
+      const auto seen = search(context->get());
+      if (seen && std::any_of(seen->found.begin(), seen->found.end(), [&](const Found& f) { return f.id == id; })) {
+        return {};
+      }
+    }
+    if (std::chrono::steady_clock::now() >= deadline) {
+      return fail(ErrorCode::timeout, id + " was not plugged in within " + std::to_string(timeout.count()) + " ms");
+    }
+    timeval nap{.tv_sec = 0, .tv_usec = 50'000};
+    libusb_handle_events_timeout_completed(context->get(), &nap, nullptr);
+  }
+  return fail(ErrorCode::interrupted, "stopped while waiting for " + id);
+}
+
+}  // namespace todbench

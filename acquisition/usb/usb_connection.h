@@ -1,0 +1,66 @@
+// libusb's objects with an owner: a context, the devices that it sees, an opened device with its claimed interface.
+#pragma once
+
+#include <libusb.h>
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "acquisition/core/result.h"
+#include "acquisition/usb/seek_protocol.h"
+
+namespace todbench {
+
+/// Shared by everything that came out of it, because libusb wants it to end last.
+using UsbContext = std::shared_ptr<libusb_context>;
+[[nodiscard]] Result<UsbContext> usb_context();
+
+struct UsbDeviceDeleter {
+  void operator()(libusb_device* device) const { libusb_unref_device(device); }
+};
+using UsbDevicePtr = std::unique_ptr<libusb_device, UsbDeviceDeleter>;
+
+/// What libusb says of an error, for people.
+[[nodiscard]] std::string usb_error_text(int error);
+
+/// A Seek camera on the bus, not opened.
+struct SeekOnBus {
+  UsbDevicePtr device;
+  SeekModel model = SeekModel::compact;
+  std::string address;  ///< "/dev/bus/usb/001/004"
+};
+[[nodiscard]] Result<std::vector<SeekOnBus>> seek_cameras(libusb_context* context);
+
+/// An opened camera with interface 0 claimed. Owns it; gives it back on destruction. One thread at a time.
+class UsbConnection {
+ public:
+  /// Errors: `not_found`: access denied (the message says what mends it), busy, or it has gone.
+  [[nodiscard]] static Result<UsbConnection> open(const SeekOnBus& camera);
+
+  /// One vendor request to the interface. Returns what was read. Errors: `disconnected`, `timeout`, `io`.
+  [[nodiscard]] Result<std::vector<std::uint8_t>> control(const SeekTransfer& transfer);
+  /// Reads up to `bytes` from the camera's bulk endpoint; less when it ends its transfer early. Errors as control().
+  [[nodiscard]] Result<std::vector<std::uint8_t>> bulk_in(std::size_t bytes, std::chrono::milliseconds timeout);
+
+  /// The serial number in the descriptors, or the chip's in hexadecimal where they have none.
+  [[nodiscard]] Result<std::string> serial_number();
+  [[nodiscard]] Result<std::string> firmware();
+  [[nodiscard]] libusb_device_handle* handle() const { return handle_.get(); }
+
+ private:
+  struct Close {
+    void operator()(libusb_device_handle* handle) const {
+      libusb_release_interface(handle, 0);
+      libusb_close(handle);
+    }
+  };
+  explicit UsbConnection(libusb_device_handle* handle) : handle_(handle) {}
+  std::unique_ptr<libusb_device_handle, Close> handle_;
+};
+
+}  // namespace todbench
