@@ -43,6 +43,7 @@ cv::Mat1w load_picture(std::uint64_t index, int width, int height) {
   config.width = load.width;
   config.height = load.height;
   config.frame_rate_hz = load.rate_hz;
+  config.automatic_nuc_frames = 1U << 30U;  // a shutter would repeat pictures
   const auto camera =
       GvspCamera::start(config, [&](std::uint64_t index) { return load_picture(index, load.width, load.height); });
   if (!camera) std::fprintf(stderr, "%s\n", camera.error().message.c_str());

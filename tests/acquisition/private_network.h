@@ -1,0 +1,11 @@
+// A network of its own for a test program.
+#pragma once
+
+namespace todbench::testing_support {
+
+/// Moves the calling process, which must have one thread, into a network namespace with only a loopback, so that its
+/// emulated cameras meet nobody else's. Where the system does not permit that, the host's loopback is shared and a line
+/// on stderr says so.
+void enter_private_network();
+
+}  // namespace todbench::testing_support
