@@ -100,6 +100,7 @@ struct GvspCamera::State {
   std::mutex mutex;  ///< guards what follows
   std::condition_variable_any changed;
   bool acquiring = false;
+  std::uint64_t acquisitions = 0;  ///< how often it was started
   std::uint64_t clock_ns = 0;
   std::uint64_t period_ns = 0;
   std::uint16_t next_block_id = 1;
@@ -133,6 +134,7 @@ struct GvspCamera::State {
 
   struct Exposed {
     std::uint64_t index = 0, timestamp_ns = 0;
+    std::uint64_t acquisition = 0;
     std::uint16_t block_id = 1;
     bool shutter_closed = false;
     FrameFaults planned;
@@ -202,6 +204,7 @@ void GvspCamera::State::on_write(std::uint32_t address, std::uint32_t value) {
     registers.lock_transport();
     const std::lock_guard lock(mutex);
     acquiring = true;
+    ++acquisitions;
     changed.notify_all();
   } else if (address == r.acquisition_stop) {
     stop_acquisition();
@@ -322,6 +325,7 @@ GvspCamera::State::Exposed GvspCamera::State::begin_exposure() {
   out.index = counts.exposures++;
   clock_ns += period_ns;
   out.timestamp_ns = clock_ns;
+  out.acquisition = acquisitions;
   out.block_id = next_block_id;
   next_block_id = static_cast<std::uint16_t>(next_block_id % 65535U + 1U);
   if (automatic && out.index > 0 && out.index % std::max(1U, config.automatic_nuc_frames) == 0) {
@@ -401,6 +405,8 @@ void GvspCamera::State::send_frame(const GvspFrame& frame, const Exposed& expose
       schedule_packets(frame.packets(), exposed.planned, exposed.faults, random, exposed.index);
   {
     const std::lock_guard lock(mutex);
+    // An exposure that was under way when the client stopped belongs to no later stream.
+    if (!acquiring || acquisitions != exposed.acquisition) return;
     counts.faults.packets_lost += schedule.lost;
     counts.faults.packets_duplicated += schedule.duplicated;
     counts.faults.packets_reordered += schedule.reordered;

@@ -100,7 +100,12 @@ int measure(const Load& load) {
     } else {
       const auto truth = load_picture(exposure_index(*frame, load.rate_hz), load.width, load.height);
       const std::size_t bytes = truth.total() * truth.elemSize();
-      if (std::memcmp(truth.data, frame->counts.data, bytes) != 0) ++sum.false_pixels;
+      if (std::memcmp(truth.data, frame->counts.data, bytes) != 0 && ++sum.false_pixels <= 5) {
+        std::printf("frame %llu, exposure %llu: %d pixels are false, the first of them counts %d instead of %d\n",
+                    static_cast<unsigned long long>(frame->sequence),
+                    static_cast<unsigned long long>(exposure_index(*frame, load.rate_hz)),
+                    cv::countNonZero(truth != frame->counts), frame->counts(0, 0), truth(0, 0));
+      }
     }
     if (cpu_s(CLOCK_MONOTONIC) < next_line) continue;
     next_line += 10;
