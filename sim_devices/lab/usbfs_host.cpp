@@ -26,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 
 /// How long a REAPURBNDELAY waits for something to reap. The client holds its lock on the node meanwhile: a submission
 /// by another of its threads waits as long.
-constexpr auto reap_patience = 2ms;
+constexpr auto reap_patience = 300us;
 /// No camera needs more; what a client asks for is not to be trusted.
 constexpr int longest_transfer = 64 << 20;
 constexpr std::size_t setup_size = 8;
