@@ -29,6 +29,11 @@ std::string mib(double bytes) {
   return number(bytes / static_cast<double>(mebibyte), 1) + " MiB";
 }
 
+std::string listed(std::string items, const std::string& item) {
+  if (!items.empty()) items += ", ";
+  return items.append(item);
+}
+
 }  // namespace
 
 std::string_view to_string(Finding finding) {
@@ -76,7 +81,7 @@ DoctorCheck check_mtu(const fs::path& root, const DoctorDemand& demand) {
   const auto widest = std::max_element(interfaces.begin(), interfaces.end(),
                                        [](const auto& a, const auto& b) { return a.mtu < b.mtu; });
   for (const auto& one : interfaces) {
-    check.found += (check.found.empty() ? "" : ", ") + one.name + " " + std::to_string(one.mtu) + " bytes";
+    check.found = listed(check.found, one.name) + " " + std::to_string(one.mtu) + " bytes";
   }
   const double bits_per_s = 8.0 * static_cast<double>(demand.frame_bytes) * demand.frame_rate_hz;
   check.finding = Finding::ok;
@@ -99,7 +104,7 @@ DoctorCheck check_interfaces(const fs::path& root) {
   check.finding = Finding::ok;
   std::string slow;
   for (const auto& one : interfaces) {
-    check.found += (check.found.empty() ? "" : ", ") + one.name;
+    check.found = listed(check.found, one.name);
     if (one.wireless) check.found += " (wireless)";
     if (one.speed_mbit > 0) check.found += " " + std::to_string(one.speed_mbit) + " Mbit/s";
     const bool poor = one.wireless || (one.speed_mbit > 0 && one.speed_mbit < 1000);

@@ -75,7 +75,9 @@ DoctorCheck check_permissions(const fs::path& root, const SystemFacts& facts) {
   const auto nodes = camera_nodes(root);
   for (const auto& camera : nodes) {
     const bool allowed = may_read_and_write(root / camera.node, facts);
-    check.found += (check.found.empty() ? "/" : ", /") + camera.node + (allowed ? "" : " (access denied)");
+    if (!check.found.empty()) check.found += ", ";
+    check.found.append("/").append(camera.node);
+    if (!allowed) check.found += " (access denied)";
     if (allowed) continue;
     check.finding = Finding::problem;
     if (!check.command.empty()) continue;

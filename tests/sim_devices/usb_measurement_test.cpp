@@ -49,6 +49,7 @@ TEST_P(UsbMeasurement, DecidesAsTheSimulatedCameraForTheSameExposures) {
   options.registration_frames = 8;
   options.contrast_frames = 8;
   options.frame_timeout = std::chrono::seconds(20);
+  options.nuc_wait_s = 0;  // the simulated camera has no shutter whose frames would be waited for
   const SensorModel model(bench.spec, full_plan(bench.spec, {}, {}), Accuracy::normal(), 1);
   PlateScene empty;
   empty.distance_m = bench.distance_m;
