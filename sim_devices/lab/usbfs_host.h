@@ -35,8 +35,9 @@ class PluggedUsbDevice {
 
  private:
   struct State;
-  explicit PluggedUsbDevice(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
+  PluggedUsbDevice(std::shared_ptr<MockSystem> system, std::shared_ptr<State> state);
+  std::shared_ptr<MockSystem> system_;
+  std::shared_ptr<State> state_;  ///< shared with the emulated system, whose clients ask on when the device has gone
 };
 
 }  // namespace todbench
