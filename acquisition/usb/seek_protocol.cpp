@@ -1,6 +1,7 @@
 #include "acquisition/usb/seek_protocol.h"
 
 #include <algorithm>
+#include <cctype>
 #include <string>
 
 namespace todbench {
@@ -104,6 +105,14 @@ std::optional<SeekModel> seek_model(std::uint16_t vendor_id, std::uint16_t produ
 
 std::string_view to_string(SeekModel model) {
   return model == SeekModel::compact ? "Compact" : "CompactPRO";
+}
+
+std::string seek_camera_id(SeekModel model, std::string_view serial) {
+  std::string clean(serial);
+  for (char& c : clean) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.' && c != '_') c = '_';
+  }
+  return "usb:SEEK-" + std::string(to_string(model)) + "-" + clean;
 }
 
 bool SeekTransfer::reads() const {

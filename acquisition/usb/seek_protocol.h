@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -39,6 +40,9 @@ struct SeekGeometry {
 [[nodiscard]] std::optional<SeekModel> seek_model(std::uint16_t vendor_id, std::uint16_t product_id);
 /// "Compact", "CompactPRO".
 [[nodiscard]] std::string_view to_string(SeekModel model);
+
+/// "usb:SEEK-MODEL-SERIAL"; characters that are no letter, digit, dot or underscore become underscores.
+[[nodiscard]] std::string seek_camera_id(SeekModel model, std::string_view serial);
 
 /// Vendor requests to the interface (bmRequestType 0x41 out, 0xC1 in), wValue and wIndex 0.
 enum class SeekRequest : std::uint8_t {

@@ -3,7 +3,6 @@
 #include <sys/time.h>
 
 #include <algorithm>
-#include <cctype>
 #include <utility>
 
 #include "acquisition/usb/seek_source.h"
@@ -11,14 +10,6 @@
 
 namespace todbench {
 namespace {
-
-std::string identity(SeekModel model, const std::string& serial) {
-  std::string clean = serial;
-  for (char& c : clean) {
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.' && c != '_') c = '_';
-  }
-  return "usb:SEEK-" + std::string(to_string(model)) + "-" + clean;
-}
 
 /// A camera that answered, and its id.
 struct Found {
@@ -43,7 +34,7 @@ Result<Search> search(libusb_context* context) {
       search.unusable += "; Seek " + std::string(to_string(camera.model)) + " at " + serial.error().message;
       continue;
     }
-    std::string id = identity(camera.model, *serial);
+    std::string id = seek_camera_id(camera.model, *serial);
     search.found.push_back({std::move(camera), std::move(*connection), std::move(id), *serial});
   }
   return search;

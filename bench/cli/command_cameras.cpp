@@ -2,8 +2,8 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
-#include "bench/run/emulation.h"
 #include "bench/run/devices.h"
+#include "bench/run/emulation.h"
 
 namespace todbench {
 namespace {
@@ -36,11 +36,13 @@ int run_emulate(Console& console, const EmulationArguments& arguments, StopSigna
   if (!laboratory) return report_error(console, laboratory.error());
   const Laboratory& lab = **laboratory;
   if (console.json()) {
-    console.object(
-        {{"camera",
-          {{"id", lab.camera_id()}, {"address", lab.camera_address()}, {"environment", lab.client_environment()}}},
-         {"black_body", lab.black_body_endpoint()},
-         {"stage", lab.stage_endpoint()}});
+    console.object({{"camera",
+                     {{"id", lab.camera_id()},
+                      {"address", lab.camera_address()},
+                      {"settings", lab.camera_settings()},
+                      {"environment", lab.client_environment()}}},
+                    {"black_body", lab.black_body_endpoint()},
+                    {"stage", lab.stage_endpoint()}});
   } else {
     const auto environment = lab.client_environment();
     const std::string by_address = environment.empty() ? " or \"gige:" + lab.camera_address() + "\"" : "";
@@ -51,6 +53,9 @@ int run_emulate(Console& console, const EmulationArguments& arguments, StopSigna
          {"plate stage", lab.stage_endpoint(), "[target] stage = \"" + lab.stage_endpoint() + "\""}});
     std::string before_the_command;
     for (const auto& [name, value] : environment) before_the_command += name + "=" + value + " ";
+    for (const auto& [name, value] : lab.camera_settings()) {
+      console.text("the plan has to state [camera.settings] " + name + " = \"" + value + "\"");
+    }
     if (!environment.empty()) {
       console.text("the device node exists for programs that are started with it: " + before_the_command +
                    "todbench measure PLAN.toml");

@@ -39,6 +39,7 @@ void add_fit_command(CLI::App& app, Program& program);
 void add_render_command(CLI::App& app, Program& program);
 void add_mtf_command(CLI::App& app, Program& program);
 void add_devices_command(CLI::App& app, Program& program);
+void add_doctor_command(CLI::App& app, Program& program);
 void add_emulate_command(CLI::App& app, Program& program);
 void add_demo_command(CLI::App& app, Program& program);
 void add_measure_command(CLI::App& app, Program& program);

@@ -106,6 +106,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "todbench " + std::string(info.version) + " (" + std::string(info.commit) + ")");
   add_demo_command(app, program);
   add_devices_command(app, program);
+  add_doctor_command(app, program);
   add_emulate_command(app, program);
   add_measure_command(app, program);
   add_simulate_command(app, program);

@@ -7,6 +7,9 @@
 #ifdef TODBENCH_WITH_ARAVIS
 #include "sim_devices/lab/gvsp_laboratory.h"
 #endif
+#ifdef TODBENCH_WITH_EMULATED_USB
+#include "sim_devices/lab/usb_laboratory.h"
+#endif
 #ifdef TODBENCH_WITH_EMULATED_VIDEO
 #include "sim_devices/lab/v4l2_laboratory.h"
 #endif
@@ -35,19 +38,23 @@ std::optional<VideoCameraKind> video_kind(const std::string& camera) {
 }  // namespace
 
 std::vector<std::string> emulated_cameras() {
-  std::vector<std::string> names{std::string(gige)};
+  std::vector<std::string> cameras{std::string(gige)};
 #ifdef TODBENCH_WITH_ARAVIS
-  names.insert(names.end(), {"gige-ax5", "gige-a-series", "gige-legacy-science"});
+  cameras.insert(cameras.end(), {"gige-ax5", "gige-a-series", "gige-legacy-science"});
+#endif
+#ifdef TODBENCH_WITH_EMULATED_USB
+  cameras.insert(cameras.end(), {"u3v", "seek"});
 #endif
 #ifdef TODBENCH_WITH_EMULATED_VIDEO
-  names.insert(names.end(), {"v4l2", "v4l2-yuyv"});
+  cameras.insert(cameras.end(), {"v4l2", "v4l2-yuyv"});
 #endif
-  return names;
+  return cameras;
 }
 
 void enter_emulation(const std::string& camera) {
 #ifdef TODBENCH_WITH_EMULATED_VIDEO
-  if (video_kind(camera)) MockSystem::enter();
+  // All of them but the GigE camera are behind device nodes.
+  if (camera != gige) MockSystem::enter();
 #else
   (void)camera;
 #endif
@@ -88,6 +95,18 @@ Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& a
     options.connect = connect_v4l2(MockSystem::create(), camera);
   }
 #endif
+#ifdef TODBENCH_WITH_EMULATED_USB
+  if (arguments.camera == "u3v") {
+    U3vCameraConfig camera;
+    camera.model = "Emulated " + sensor->name;
+    camera.serial = arguments.serial;
+    options.connect = connect_u3v(MockSystem::create(), camera);
+  } else if (arguments.camera == "seek") {
+    SeekCameraConfig camera;
+    camera.serial = arguments.serial;
+    options.connect = connect_seek(MockSystem::create(), camera);
+  }
+#endif
   options.plan = full_plan(options.sensor, {}, {});
   for (const auto& name : arguments.plates) {
     auto plate = load_plate(name);
@@ -116,6 +135,7 @@ Plan with_laboratory(Plan plan, const Laboratory& laboratory) {
   // The address of the camera is enough on GigE; anything else is known by its serial number.
   plan.camera.id =
       laboratory.camera_id().starts_with("gige:") ? "gige:" + laboratory.camera_address() : laboratory.camera_id();
+  for (const auto& [name, value] : laboratory.camera_settings()) plan.camera.settings.insert_or_assign(name, value);
   plan.target.kind = TargetKind::scpi;
   plan.target.black_body = laboratory.black_body_endpoint();
   plan.target.stage = laboratory.stage_endpoint();

@@ -14,8 +14,8 @@
 namespace todbench {
 
 /// The cameras that can be emulated in this build, by the names of `--camera`: "gige", "gige-ax5" and other families on
-/// plain sockets, "v4l2" (Y16 with telemetry, as a Lepton sends it), "v4l2-yuyv" (temperatures below a picture, as a
-/// Tiny1 does).
+/// plain sockets, "u3v" (USB3 Vision), "seek" (a CompactPRO; the sensor has to have 320 x 240 pixels), "v4l2" (Y16 with
+/// telemetry, as a Lepton sends it), "v4l2-yuyv" (temperatures below a picture, as a Tiny1 does).
 [[nodiscard]] std::vector<std::string> emulated_cameras();
 
 /// Makes this process one that can look at an emulated device node: starts the program again under the preload library

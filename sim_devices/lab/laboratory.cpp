@@ -43,7 +43,7 @@ struct Laboratory::State {
   std::unique_ptr<BlackBody> black_body;
   std::unique_ptr<PlateStage> stage;
   std::string camera_id, camera_address;
-  std::map<std::string, std::string> client_environment;
+  std::map<std::string, std::string> camera_settings, client_environment;
   std::unique_ptr<LaboratoryCamera> camera;  // last: its thread looks at the others
 
   [[nodiscard]] PlateScene scene() const {
@@ -91,6 +91,7 @@ Result<std::unique_ptr<Laboratory>> Laboratory::start(LaboratoryOptions options)
   state->camera = std::move(*camera);
   state->camera_id = state->camera->id();
   state->camera_address = state->camera->address();
+  state->camera_settings = state->camera->settings();
   state->client_environment = state->camera->client_environment();
   return std::unique_ptr<Laboratory>(new Laboratory(std::move(state)));
 }
@@ -100,6 +101,9 @@ std::string Laboratory::camera_id() const {
 }
 std::string Laboratory::camera_address() const {
   return state_->camera_address;
+}
+std::map<std::string, std::string> Laboratory::camera_settings() const {
+  return state_->camera_settings;
 }
 std::map<std::string, std::string> Laboratory::client_environment() const {
   return state_->client_environment;

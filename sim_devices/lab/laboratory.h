@@ -46,6 +46,8 @@ class Laboratory {
   [[nodiscard]] std::string camera_id() const;
   /// IPv4 address of the camera, or its device node.
   [[nodiscard]] std::string camera_address() const;
+  /// What a plan has to state of the camera: [camera.settings].
+  [[nodiscard]] std::map<std::string, std::string> camera_settings() const;
   /// What a client in another process needs in its environment.
   [[nodiscard]] std::map<std::string, std::string> client_environment() const;
   /// "address:port".

@@ -25,6 +25,8 @@ class LaboratoryCamera {
   [[nodiscard]] virtual std::string id() const = 0;
   /// Where it is: an IPv4 address, a device node.
   [[nodiscard]] virtual std::string address() const = 0;
+  /// What a plan has to state, because the camera does not say it itself.
+  [[nodiscard]] virtual std::map<std::string, std::string> settings() const { return {}; }
   /// What the environment of a client in another process has to be; empty: nothing special.
   [[nodiscard]] virtual std::map<std::string, std::string> client_environment() const { return {}; }
 };

@@ -100,32 +100,21 @@ std::uint32_t crc32(std::span<const std::uint8_t> bytes) {
   return ~crc;
 }
 
-/// A ZIP archive with one file, in one stored DEFLATE block per 65535 bytes (RFC 1951, section 3.2.4): readers
-/// decompress it as any other.
+/// A ZIP archive with one stored file.
 UsbBytes zipped(std::string_view name, std::string_view content) {
   const std::span data(reinterpret_cast<const std::uint8_t*>(content.data()), content.size());
-  UsbBytes deflated;
-  for (std::size_t from = 0; from < data.size();) {
-    const auto size = static_cast<std::uint16_t>(std::min<std::size_t>(65535, data.size() - from));
-    deflated.push_back(from + size == data.size() ? 1 : 0);
-    put(deflated, size);
-    put(deflated, static_cast<std::uint16_t>(~size));
-    deflated.insert(deflated.end(), data.begin() + static_cast<std::ptrdiff_t>(from),
-                    data.begin() + static_cast<std::ptrdiff_t>(from + size));
-    from += size;
-  }
-  // Fields that local header and directory entry share: version, flags, method 8, time, date, crc, sizes, name.
+  // Fields that local header and directory entry share: version, flags, method 0, time, date, crc, sizes, name.
   UsbBytes common;
-  for (const unsigned word : {20U, 0U, 8U, 0U, 0x21U}) put(common, static_cast<std::uint16_t>(word));
+  for (const unsigned word : {20U, 0U, 0U, 0U, 0x21U}) put(common, static_cast<std::uint16_t>(word));
   put(common, crc32(data));
-  put(common, static_cast<std::uint32_t>(deflated.size()));
+  put(common, static_cast<std::uint32_t>(data.size()));
   put(common, static_cast<std::uint32_t>(data.size()));
   put(common, static_cast<std::uint16_t>(name.size()));
   put(common, std::uint16_t{0});
   UsbBytes zip{'P', 'K', 3, 4};
   zip.insert(zip.end(), common.begin(), common.end());
   zip.insert(zip.end(), name.begin(), name.end());
-  zip.insert(zip.end(), deflated.begin(), deflated.end());
+  zip.insert(zip.end(), data.begin(), data.end());
   const auto directory = static_cast<std::uint32_t>(zip.size());
   zip.insert(zip.end(), {'P', 'K', 1, 2, 20, 0});
   zip.insert(zip.end(), common.begin(), common.end());

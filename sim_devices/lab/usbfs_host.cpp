@@ -26,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 
 /// How long a REAPURBNDELAY waits for something to reap. The client holds its lock on the node meanwhile: a submission
 /// by another of its threads waits as long.
-constexpr auto reap_patience = 2ms;
+constexpr auto reap_patience = 300us;
 /// No camera needs more; what a client asks for is not to be trusted.
 constexpr int longest_transfer = 64 << 20;
 constexpr std::size_t setup_size = 8;
@@ -132,10 +132,8 @@ UMockdevIoctlData* resolve(UMockdevIoctlData* data, std::size_t offset, std::siz
 }  // namespace
 
 struct PluggedUsbDevice::State {
-  std::shared_ptr<MockSystem> system;
-  std::shared_ptr<UsbDevice> device;
+  std::shared_ptr<UsbDevice> device;  ///< null when it was unplugged and its port has gone
   int number = 0;
-  UMockdevIoctlBase* handler = nullptr;
 
   std::mutex mutex;  ///< guards what follows
   std::condition_variable_any changed;
@@ -154,6 +152,8 @@ struct PluggedUsbDevice::State {
   std::jthread answers;                          ///< completes the calls of reapers
 
   ~State();
+  /// After unplugging: nothing is submitted any more.
+  void end_workers();
   void perform(const std::stop_token& stop, std::uint8_t endpoint);
   void answer_reapers(const std::stop_token& stop);
   [[nodiscard]] TransferPtr finished_for(UMockdevIoctlClient* client);
@@ -164,6 +164,8 @@ struct PluggedUsbDevice::State {
   [[nodiscard]] int claim(UMockdevIoctlClient* client, std::size_t size, unsigned long request);
   void cancel(UMockdevIoctlClient* client, int status);
 
+  /// The handler owns what its signals are given.
+  static UMockdevIoctlBase* handler(const std::shared_ptr<State>& state);
   static gboolean on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer data);
   static void on_vanished(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer data);
 };
@@ -216,13 +218,14 @@ int hand_over(UMockdevIoctlClient* client, Transfer& transfer) {
 }  // namespace
 
 PluggedUsbDevice::State::~State() {
+  end_workers();
+  answers = {};
+}
+
+void PluggedUsbDevice::State::end_workers() {
   for (auto& [endpoint, worker] : workers) worker.request_stop();
   workers.clear();
-  answers = {};
-  if (handler == nullptr) return;
-  umockdev_testbed_detach_ioctl(system->testbed(), ("/dev/bus/usb/001/" + three_digits(number)).c_str(), nullptr);
-  g_signal_handlers_disconnect_by_data(handler, this);
-  g_object_unref(handler);
+  device.reset();
 }
 
 void PluggedUsbDevice::State::perform(const std::stop_token& stop, std::uint8_t endpoint) {
@@ -451,7 +454,7 @@ std::optional<std::pair<int, int>> PluggedUsbDevice::State::serve(UMockdevIoctlC
 }
 
 gboolean PluggedUsbDevice::State::on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer data) {
-  auto* state = static_cast<State*>(data);
+  auto& state = *static_cast<std::shared_ptr<State>*>(data);
   const std::lock_guard lock(state->mutex);
   const auto answer = state->serve(client);
   if (answer) umockdev_ioctl_client_complete(client, answer->first, answer->second);
@@ -459,7 +462,7 @@ gboolean PluggedUsbDevice::State::on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClie
 }
 
 void PluggedUsbDevice::State::on_vanished(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer data) {
-  auto* state = static_cast<State*>(data);
+  auto& state = *static_cast<std::shared_ptr<State>*>(data);
   const std::lock_guard lock(state->mutex);
   state->cancel(client, -ENOENT);
   state->reapers.remove_if([&](const Reaper& r) {
@@ -470,36 +473,51 @@ void PluggedUsbDevice::State::on_vanished(UMockdevIoctlBase*, UMockdevIoctlClien
   std::erase_if(state->claims, [&](const auto& claim) { return claim.second == client; });
 }
 
-PluggedUsbDevice::PluggedUsbDevice(std::unique_ptr<State> state) : state_(std::move(state)) {}
+UMockdevIoctlBase* PluggedUsbDevice::State::handler(const std::shared_ptr<State>& state) {
+  UMockdevIoctlBase* made = umockdev_ioctl_base_new();
+  const auto connect = [&](const char* signal, GCallback callback) {
+    const GClosureNotify forget = [](gpointer data, GClosure*) {
+      const std::unique_ptr<std::shared_ptr<State>> ended(static_cast<std::shared_ptr<State>*>(data));
+    };
+    auto given = std::make_unique<std::shared_ptr<State>>(state);
+    g_signal_connect_data(made, signal, callback, given.release(), forget, static_cast<GConnectFlags>(0));
+  };
+  connect("handle-ioctl", G_CALLBACK(&State::on_ioctl));
+  connect("client-vanished", G_CALLBACK(&State::on_vanished));
+  return made;
+}
+
+PluggedUsbDevice::PluggedUsbDevice(std::shared_ptr<MockSystem> system, std::shared_ptr<State> state)
+    : system_(std::move(system)), state_(std::move(state)) {}
 
 PluggedUsbDevice::~PluggedUsbDevice() {
   unplug();
+  state_->end_workers();
 }
 
 Result<std::unique_ptr<PluggedUsbDevice>> PluggedUsbDevice::plug(std::shared_ptr<MockSystem> system,
                                                                  std::shared_ptr<UsbDevice> device) {
-  auto state = std::make_unique<State>();
-  state->system = std::move(system);
-  state->device = std::move(device);
+  if (device->descriptors().device.size() != 18) {
+    return fail(ErrorCode::internal, "emulated USB device: no device descriptor");
+  }
+  auto state = std::make_shared<State>();
   state->number = next_number++;
+  const std::string sysfs = description(device->descriptors(), state->number);
+  state->device = std::move(device);
   const std::string node = "/dev/bus/usb/001/" + three_digits(state->number);
-  const UsbDescriptors& descriptors = state->device->descriptors();
-  if (descriptors.device.size() != 18) return fail(ErrorCode::internal, "emulated USB device: no device descriptor");
-  state->handler = umockdev_ioctl_base_new();
-  g_signal_connect(state->handler, "handle-ioctl", G_CALLBACK(&State::on_ioctl), state.get());
-  g_signal_connect(state->handler, "client-vanished", G_CALLBACK(&State::on_vanished), state.get());
   // Attached first: a hot-plug listener opens the node as soon as it is announced.
+  UMockdevIoctlBase* handler = State::handler(state);
   GError* error = nullptr;
-  if (umockdev_testbed_attach_ioctl(state->system->testbed(), node.c_str(), state->handler, &error) == 0) {
+  const bool attached = umockdev_testbed_attach_ioctl(system->testbed(), node.c_str(), handler, &error) != 0;
+  g_object_unref(handler);  // the emulated system has it
+  if (!attached) {
     const std::string message = error != nullptr ? error->message : "unknown error";
     g_clear_error(&error);
     return fail(ErrorCode::internal, "emulated USB device: " + message);
   }
   state->answers = std::jthread([raw = state.get()](const std::stop_token& stop) { raw->answer_reapers(stop); });
-  if (auto added = state->system->add(description(descriptors, state->number)); !added) {
-    return tl::unexpected(added.error());
-  }
-  return std::unique_ptr<PluggedUsbDevice>(new PluggedUsbDevice(std::move(state)));
+  if (auto added = system->add(sysfs); !added) return tl::unexpected(added.error());
+  return std::unique_ptr<PluggedUsbDevice>(new PluggedUsbDevice(std::move(system), std::move(state)));
 }
 
 std::string PluggedUsbDevice::node() const {
@@ -519,8 +537,8 @@ void PluggedUsbDevice::unplug() {
   }
   state_->changed.notify_all();
   const std::string path = "/sys" + sys_path(state_->number);
-  state_->system->announce(path, "remove");
-  state_->system->remove(path);
+  system_->announce(path, "remove");
+  system_->remove(path);
 }
 
 }  // namespace todbench

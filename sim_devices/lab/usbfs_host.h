@@ -16,8 +16,8 @@ namespace todbench {
 /// As with the kernel: transfers of an endpoint are performed in the order of submission, endpoints go on at the same
 /// time, a discarded transfer ends as ENOENT, a claimed interface is EBUSY to the next program, and pulling the cable
 /// ends every transfer as ESHUTDOWN and every call as ENODEV, while udev announces the removal. Not as with the kernel:
-/// poll() on the node is always ready, so that a REAPURBNDELAY with nothing to reap waits for up to 2 ms before it says
-/// EAGAIN; a client that polls does not spin. Isochronous and interrupt transfers are refused.
+/// poll() on the node is always ready, so that a REAPURBNDELAY with nothing to reap waits for up to 0.3 ms before it
+/// says EAGAIN; a client that polls does not spin. Isochronous and interrupt transfers are refused.
 class PluggedUsbDevice {
  public:
   /// Errors: `internal` (the emulated file system refuses).
@@ -35,8 +35,9 @@ class PluggedUsbDevice {
 
  private:
   struct State;
-  explicit PluggedUsbDevice(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
+  PluggedUsbDevice(std::shared_ptr<MockSystem> system, std::shared_ptr<State> state);
+  std::shared_ptr<MockSystem> system_;
+  std::shared_ptr<State> state_;  ///< shared with the emulated system, whose clients ask on when the device has gone
 };
 
 }  // namespace todbench

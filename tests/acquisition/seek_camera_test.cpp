@@ -254,6 +254,21 @@ TEST(SeekHotPlug, APulledCableIsDisconnectedAndTheSourceStaysDead) {
   EXPECT_EQ(source->get("Width").error().code, ErrorCode::disconnected);
 }
 
+TEST(SeekHotPlug, ADeviceThatVanishesWithItsPortIsDisconnectedToo) {
+  const auto config = fast(SeekModel::compact);
+  auto bench = plug_seek(config);
+  const auto source = open_seek(config);
+  ASSERT_TRUE(source && source->start());
+  ASSERT_TRUE(source->next(patience));
+
+  bench.port.reset();
+
+  auto next = source->next(patience);
+  for (int k = 0; k < 100 && next; ++k) next = source->next(patience);
+  ASSERT_FALSE(next);
+  EXPECT_EQ(next.error().code, ErrorCode::disconnected);
+}
+
 TEST(SeekHotPlug, ACameraThatIsPluggedInAgainIsWaitedForAndOpened) {
   const auto config = fast(SeekModel::compact);
   auto bench = plug_seek(config);

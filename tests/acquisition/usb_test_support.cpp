@@ -6,6 +6,11 @@
 
 namespace todbench::testing_support {
 
+std::shared_ptr<MockSystem> shared_system() {
+  static const std::shared_ptr<MockSystem> system = MockSystem::create();
+  return system;
+}
+
 cv::Mat1w seek_picture(SeekModel model, std::uint64_t index) {
   const cv::Size size = geometry(model).picture.size();
   cv::Mat1w picture(size);
@@ -20,7 +25,7 @@ cv::Mat1w seek_picture(SeekModel model, std::uint64_t index) {
 }
 
 SeekBench plug_seek(const SeekCameraConfig& config, SeekCamera::Exposure exposure) {
-  SeekBench bench{.system = MockSystem::create(), .camera = nullptr, .port = nullptr};
+  SeekBench bench{.system = shared_system(), .camera = nullptr, .port = nullptr};
   if (!exposure) exposure = [model = config.model](std::uint64_t index) { return seek_picture(model, index); };
   auto camera = SeekCamera::create(config, std::move(exposure));
   if (!camera) {

@@ -10,6 +10,9 @@
 
 namespace todbench::testing_support {
 
+/// The one bus of the program: Aravis looks for USB cameras through a context that it makes once.
+[[nodiscard]] std::shared_ptr<MockSystem> shared_system();
+
 /// A camera on a bus; destroyed in the right order.
 struct SeekBench {
   std::shared_ptr<MockSystem> system;

@@ -20,6 +20,14 @@
 #include "tests/acquisition/video_test_support.h"
 #endif
 
+#ifdef TODBENCH_CONTRACT_WITH_USB
+#include "acquisition/aravis/aravis_backend.h"
+#include "acquisition/usb/usb_backend.h"
+#include "sim_devices/lab/usb_laboratory.h"
+#include "tests/acquisition/usb_test_support.h"
+#include "tests/acquisition/video_test_support.h"
+#endif
+
 namespace todbench {
 namespace {
 
@@ -49,7 +57,7 @@ void PrintTo(const SourceCase& source, std::ostream* out) {
   *out << source.name;
 }
 
-#ifndef TODBENCH_CONTRACT_WITH_V4L2
+#if !defined(TODBENCH_CONTRACT_WITH_V4L2) && !defined(TODBENCH_CONTRACT_WITH_USB)
 Bench simulated() {
   SensorSpec spec;
   spec.name = "contract";
@@ -99,7 +107,40 @@ Bench real_camera() {
 }
 #endif
 
-#ifdef TODBENCH_CONTRACT_WITH_V4L2
+#ifdef TODBENCH_CONTRACT_WITH_USB
+/// A camera on the emulated bus, opened by its identity.
+Bench plugged(const ConnectCamera& connect, CameraBackend& backend, int width, int height) {
+  SensorSpec sensor;
+  sensor.width = width;
+  sensor.height = height;
+  sensor.frame_rate_hz = 200;
+  auto camera =
+      connect(sensor, [=](std::uint64_t index) { return testing_support::video_picture(index, width, height, 14); });
+  EXPECT_TRUE(camera) << camera.error().message;
+  auto source = backend.open((*camera)->id());
+  EXPECT_TRUE(source) << source.error().message;
+  return {std::shared_ptr<LaboratoryCamera>(std::move(*camera)), source ? std::move(*source) : nullptr};
+}
+
+Bench plugged_seek(SeekModel model) {
+  SeekCameraConfig config;
+  config.model = model;
+  const cv::Size size = geometry(model).picture.size();
+  return plugged(connect_seek(testing_support::shared_system(), config), *usb_backend(), size.width, size.height);
+}
+
+Bench plugged_u3v() {
+  const auto backend = aravis_backend({.transport = AravisTransport::usb3_vision});
+  return plugged(connect_u3v(testing_support::shared_system(), {}), *backend, 160, 120);
+}
+
+/// A program of its own, because it runs under umockdev's preload library.
+std::vector<SourceCase> sources() {
+  return {{"SeekCompact", Ending::never, [] { return plugged_seek(SeekModel::compact); }},
+          {"SeekCompactPro", Ending::never, [] { return plugged_seek(SeekModel::compact_pro); }},
+          {"EmulatedU3v", Ending::never, plugged_u3v}};
+}
+#elif defined(TODBENCH_CONTRACT_WITH_V4L2)
 Bench emulated_video(VideoCameraKind kind) {
   VideoCameraConfig config;
   config.kind = kind;
@@ -309,7 +350,7 @@ TEST_P(FrameSourceContract, CorrectsItsNonuniformityOrSaysThatItCannot) {
   EXPECT_TRUE(corrected || corrected.error().code == ErrorCode::invalid_input);
 }
 
-#ifndef TODBENCH_CONTRACT_WITH_V4L2
+#if !defined(TODBENCH_CONTRACT_WITH_V4L2) && !defined(TODBENCH_CONTRACT_WITH_USB)
 class EndingFrameSourceContract : public FrameSourceContract {};
 
 TEST_P(EndingFrameSourceContract, EndsAsDisconnectedAndStaysDead) {
@@ -339,7 +380,7 @@ std::string name_of(const testing::TestParamInfo<SourceCase>& test_case) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, FrameSourceContract, testing::ValuesIn(sources()), name_of);
-#ifndef TODBENCH_CONTRACT_WITH_V4L2
+#if !defined(TODBENCH_CONTRACT_WITH_V4L2) && !defined(TODBENCH_CONTRACT_WITH_USB)
 INSTANTIATE_TEST_SUITE_P(Every, EndingFrameSourceContract, testing::ValuesIn(ending_sources()), name_of);
 #endif
 

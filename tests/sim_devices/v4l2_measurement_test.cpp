@@ -1,115 +1,21 @@
 // A measurement through an emulated V4L2 camera makes the decisions of the simulated camera for the same exposures.
 #include <gmock/gmock.h>
 
-#include <cmath>
-#include <map>
-#include <mutex>
-
 #include "acquisition/v4l2/v4l2_backend.h"
 #include "sim_devices/lab/v4l2_camera.h"
 #include "sim_devices/lab/v4l2_laboratory.h"
+#include "tests/sim_devices/free_running_camera.h"
 #include "tests/sim_devices/measurement_bench.h"
 
 namespace todbench {
 namespace {
 
+using test::ExposureLog;
+using test::GivenExposures;
 using test::options_of;
+using test::PresentScene;
 using test::schedule_of;
 using test::SimulatedBench;
-
-std::int64_t monotonic_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
-/// Which scene every exposure of a free-running camera looked at. Thread-safe.
-class ExposureLog {
- public:
-  void add(std::uint64_t index, std::shared_ptr<const PlateScene> scene) {
-    const std::lock_guard lock(mutex_);
-    scenes_[index] = std::move(scene);
-  }
-  [[nodiscard]] std::shared_ptr<const PlateScene> scene(std::uint64_t index) const {
-    const std::lock_guard lock(mutex_);
-    return scenes_.at(index);
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::map<std::uint64_t, std::shared_ptr<const PlateScene>> scenes_;
-};
-
-/// A source whose other members are of no interest here.
-class PlainSource : public FrameSource {
- public:
-  explicit PlainSource(SourceInfo info) : info_(std::move(info)) {}
-  [[nodiscard]] const SourceInfo& info() const override { return info_; }
-  [[nodiscard]] Result<void> start() override { return {}; }
-  void stop() override {}
-  [[nodiscard]] Result<std::string> get(const std::string&) override { return fail(ErrorCode::invalid_input, ""); }
-  [[nodiscard]] Result<void> set(const std::string&, const std::string&) override {
-    return fail(ErrorCode::invalid_input, "");
-  }
-  [[nodiscard]] Result<void> correct_nonuniformity() override { return fail(ErrorCode::invalid_input, ""); }
-
- private:
-  SourceInfo info_;
-};
-
-/// The frames of a camera that were exposed to the present scene, numbered anew, and which exposures they are: the
-/// camera runs freely, so which ones they are differs from run to run.
-class PresentScene final : public PlainSource {
- public:
-  PresentScene(FrameSource& camera, const SceneHolder& present, const ExposureLog& log)
-      : PlainSource(camera.info()), camera_(camera), present_(present), log_(log) {}
-  [[nodiscard]] Result<void> start() override { return camera_.start(); }
-  void stop() override { camera_.stop(); }
-  [[nodiscard]] Result<Frame> next(std::chrono::milliseconds timeout) override {
-    for (;;) {
-      auto frame = camera_.next(timeout);
-      if (!frame) return frame;
-      const double seconds = static_cast<double>(frame->device_time_ns) * 1e-9;
-      const auto index = static_cast<std::uint64_t>(std::llround(seconds * info().frame_rate_hz)) - 1;
-      if (log_.scene(index) != present_.scene()) continue;
-      exposures_.push_back(index);
-      frame->sequence = exposures_.size() - 1;
-      frame->host_time_ns = monotonic_ns();
-      return frame;
-    }
-  }
-  [[nodiscard]] const std::vector<std::uint64_t>& exposures() const { return exposures_; }
-
- private:
-  FrameSource& camera_;
-  const SceneHolder& present_;
-  const ExposureLog& log_;
-  std::vector<std::uint64_t> exposures_;
-};
-
-/// The simulated camera, exposing the present scene with these indices.
-class GivenExposures final : public PlainSource {
- public:
-  GivenExposures(SourceInfo info, const SensorModel& model, const SceneHolder& present,
-                 std::vector<std::uint64_t> exposures)
-      : PlainSource(std::move(info)), model_(model), present_(present), exposures_(std::move(exposures)) {}
-  [[nodiscard]] Result<Frame> next(std::chrono::milliseconds) override {
-    if (next_ >= exposures_.size()) return fail(ErrorCode::disconnected, "no exposure left");
-    Frame frame;
-    frame.counts = model_.expose(*present_.scene(), exposures_[next_]);
-    frame.sequence = next_++;
-    frame.host_time_ns = monotonic_ns();
-    frame.significant_bits = info().significant_bits;
-    frame.correction = CorrectionState::idle;
-    frame.scale = std::make_shared<const RadiometricScale>(info().scale);
-    return frame;
-  }
-
- private:
-  const SensorModel& model_;
-  const SceneHolder& present_;
-  std::vector<std::uint64_t> exposures_;
-  std::size_t next_ = 0;
-};
 
 class V4l2Measurement : public testing::TestWithParam<VideoCameraKind> {};
 
@@ -142,7 +48,7 @@ TEST_P(V4l2Measurement, DecidesAsTheSimulatedCameraForTheSameExposures) {
   ASSERT_TRUE(source) << source.error().message;
   const auto share = [](SceneHolder& holder) { return std::shared_ptr<SceneHolder>(&holder, [](SceneHolder*) {}); };
 
-  PresentScene fresh(**source, before_camera, log);
+  PresentScene fresh(**source, before_camera, log, test::exposure_by_clock(bench.spec.frame_rate_hz));
   auto schedule = schedule_of(bench);
   const auto measured =
       measure(fresh, *scene_target(share(before_camera), bench.plates), observer, schedule, options, {}, {});
