@@ -207,7 +207,7 @@ int run_replay(Console& console, const std::string& session, const RunArguments&
   ExperimentOptions options{.folder = arguments.out, .existing = ExistingFolder::refuse};
   if (arguments.overwrite) options.existing = ExistingFolder::overwrite;
   if (arguments.out.empty())
-    options = {.folder = default_folder(name.filename().string() + "-replay"), .existing = ExistingFolder::number};
+    options = {.folder = session_folder_name(name.filename().string() + "-replay"), .existing = ExistingFolder::number};
   auto outcome = replay_session(session, options, listener_of(console), program.stop->token());
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
