@@ -2,8 +2,8 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
-#include "bench/run/emulation.h"
 #include "bench/run/devices.h"
+#include "bench/run/emulation.h"
 
 namespace todbench {
 namespace {
