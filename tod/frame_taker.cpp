@@ -110,6 +110,13 @@ Result<Frame> FrameTaker::next(std::stop_token stop) {
   }
 }
 
+Result<void> FrameTaker::discard(std::stop_token stop) {
+  auto frame = next(std::move(stop));
+  if (!frame) return tl::unexpected(frame.error());
+  --used_;
+  return {};
+}
+
 Result<AveragedPicture> FrameTaker::average(int count, std::stop_token stop) {
   AveragedPicture out;
   cv::Mat1d previous;

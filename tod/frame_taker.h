@@ -54,6 +54,8 @@ class FrameTaker {
   /// The next good frame. Errors: `integrity` (too many rejected), `disconnected` (lost, or silent for the frame
   /// timeout), `interrupted`.
   [[nodiscard]] Result<Frame> next(std::stop_token stop);
+  /// Takes one good frame off the source without counting it as used.
+  [[nodiscard]] Result<void> discard(std::stop_token stop);
   /// Average of `count` good frames.
   [[nodiscard]] Result<AveragedPicture> average(int count, std::stop_token stop);
 

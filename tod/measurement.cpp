@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <span>
 #include <tuple>
 
 #include "tod/frame_taker.h"
@@ -70,10 +71,12 @@ class Run {
     if (auto corrected = correct_when_due(); !corrected) return tl::unexpected(corrected.error());
     std::optional<Error> ended_by;
     while (const auto state = schedule_.next()) {
+      const std::size_t before = result_.trials.size();
       if (auto shown = show(*state); !shown) {
         ended_by = shown.error();
         break;
       }
+      schedule_.observe(std::span(result_.trials).subspan(before));
       if (listener_.on_progress) listener_.on_progress(static_cast<std::size_t>(presentation_), schedule_.planned());
     }
     source_.stop();
@@ -115,8 +118,18 @@ class Run {
     return taker_.correct_nonuniformity();
   }
 
+  /// A free-running camera whose frames nobody takes would lose them.
+  Result<void> wait_while_paused() {
+    while (listener_.paused && !stop_.stop_requested() && listener_.paused()) {
+      if (!options_.free_running) continue;
+      if (auto passed = taker_.discard(stop_); !passed) return passed;
+    }
+    return {};
+  }
+
   /// One presentation: target, frame, answers.
   Result<void> show(const TargetState& state) {
+    if (auto resumed = wait_while_paused(); !resumed) return resumed;
     if (stop_.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
     const auto plate = std::find_if(plates_.begin(), plates_.end(),
                                     [&](const PreparedPlate& p) { return p.plate.name == state.plate; });
@@ -175,6 +188,7 @@ class Run {
                     "the triangles of " + where + " have the opposite polarity of the contrast asked for");
       }
       result_.set_ups.push_back({state.plate, state.mounting, *registration});
+      if (listener_.on_set_up) listener_.on_set_up(result_.set_ups.back());
       base_ = registration->shifted(-shift_mm);
     }
     registered_[{state.plate, state.mounting}] = base_;
@@ -253,6 +267,7 @@ class Run {
       trial.since_nuc_s = taker_.since_nuc_s(frame);
       result_.trials.push_back(trial);
       if (listener_.on_trial) listener_.on_trial(trial);
+      if (listener_.on_patch) listener_.on_patch(trial, patch);
     }
     return {};
   }

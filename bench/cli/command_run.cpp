@@ -1,11 +1,10 @@
 // todbench measure, todbench simulate, todbench replay, todbench demo
 #include <algorithm>
-#include <cctype>
 #include <memory>
 
 #include "bench/cli/commands.h"
-#include "bench/cli/demonstration.h"
 #include "bench/cli/simulation_plan.h"
+#include "bench/run/emulation.h"
 #include "bench/run/experiment.h"
 #include "bench/run/replay.h"
 #include "bench/session/provenance.h"
@@ -26,19 +25,8 @@ struct SimulateArguments {
   SimulationOverrides overrides;
 };
 
-/// "session-20260131T123456Z-NAME" in the current folder; a second one within the same second gets a number.
-std::string default_folder(const std::string& name) {
-  std::string stamp;
-  for (const char c : utc_now()) {
-    if (c != '-' && c != ':') stamp += c;
-  }
-  std::string clean;
-  for (const char c : name) clean += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' ? c : '_';
-  return "session-" + stamp + "-" + clean;
-}
-
 ExperimentOptions folder_of(const RunArguments& arguments, const Plan& plan) {
-  if (arguments.out.empty()) return {.folder = default_folder(plan.name), .existing = ExistingFolder::number};
+  if (arguments.out.empty()) return {.folder = session_folder_name(plan.name), .existing = ExistingFolder::number};
   return {.folder = arguments.out,
           .existing = arguments.overwrite ? ExistingFolder::overwrite : ExistingFolder::refuse};
 }
@@ -160,24 +148,19 @@ int run_simulate(Console& console, SimulateArguments arguments, const Program& p
   return finish(console, *outcome);
 }
 
-int run_demo(Console& console, const RunArguments& arguments, const Program& program) {
+int run_demo(Console& console, const RunArguments& arguments, const std::string& camera, const Program& program) {
 #ifdef TODBENCH_WITH_ARAVIS
+  enter_emulation(camera);
   auto plan = load_plan("demo");
   if (!plan) return report_error(console, plan.error());
   if (program.common.seed_given) plan->seed = program.common.seed;
-  EmulationArguments emulation;
-  emulation.sensor = plan->simulation.sensor;
-  emulation.plates = plan->target.plates;
-  emulation.distance_m = plan->target.distance_m;
-  emulation.black_body_port = 0;
-  emulation.stage_port = 0;
-  emulation.seed = plan->seed + 1;  // a camera of its own, not the twin's noise
+  EmulationArguments emulation = emulation_for(*plan);
+  emulation.camera = camera;
   console.phase("starting the emulated laboratory");
   auto laboratory = start_laboratory(emulation);
   if (!laboratory) return report_error(console, laboratory.error());
-  plan->camera.id = "gige:" + (*laboratory)->camera_address();
-  plan->target.black_body = (*laboratory)->black_body_endpoint();
-  plan->target.stage = (*laboratory)->stage_endpoint();
+  *plan = with_laboratory(*std::move(plan), **laboratory);
+  if (camera != "gige") plan->unit = "emulated " + camera + " camera";
   if (arguments.record_frames) plan->measurement.record_frames = true;
   auto outcome = measure_plan(*plan, folder_of(arguments, *plan), listener_of(console), program.stop->token());
   console.end_progress();
@@ -196,6 +179,7 @@ int run_demo(Console& console, const RunArguments& arguments, const Program& pro
   return finish(console, *outcome);
 #else
   (void)arguments;
+  (void)camera;
   (void)program;
   return report_error(
       console,
@@ -220,10 +204,9 @@ void add_record_flag(CLI::App& command, RunArguments& arguments) {
 int run_replay(Console& console, const std::string& session, const RunArguments& arguments, const Program& program) {
   auto name = std::filesystem::path(session).lexically_normal();
   if (name.filename().empty()) name = name.parent_path();
-  ExperimentOptions options{.folder = arguments.out, .existing = ExistingFolder::refuse};
-  if (arguments.overwrite) options.existing = ExistingFolder::overwrite;
-  if (arguments.out.empty())
-    options = {.folder = default_folder(name.filename().string() + "-replay"), .existing = ExistingFolder::number};
+  Plan named;
+  named.name = name.filename().string() + "-replay";
+  const ExperimentOptions options = folder_of(arguments, named);
   auto outcome = replay_session(session, options, listener_of(console), program.stop->token());
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
@@ -314,10 +297,15 @@ void add_demo_command(CLI::App& app, Program& program) {
   auto* command =
       app.add_subcommand("demo", "does the whole job on the emulated laboratory: measure, simulate, compare, report");
   auto a = std::make_shared<RunArguments>();
+  auto camera = std::make_shared<std::string>(emulated_cameras().front());
   add_folder_options(*command, *a);
   command->add_flag("--force", a->overwrite, "overwrite the session in an existing folder");
   add_record_flag(*command, *a);
-  finish_command(*command, program, [a, &program](Console& console) { return run_demo(console, *a, program); });
+  command->add_option("--camera", *camera, "interface of the emulated camera")
+      ->check(CLI::IsMember(emulated_cameras()))
+      ->capture_default_str();
+  finish_command(*command, program,
+                 [a, camera, &program](Console& console) { return run_demo(console, *a, *camera, program); });
 }
 
 }  // namespace todbench

@@ -6,6 +6,7 @@
 
 #include "bench/report/report.h"
 #include "bench/run/experiment_inputs.h"
+#include "bench/run/observed_source.h"
 #include "bench/run/recorded_bench.h"
 #include "bench/run/report_data.h"
 #include "sim_devices/prediction/contrast_response.h"
@@ -53,6 +54,18 @@ class Recorder {
         halt_.request_stop();
       }
     };
+    events.on_patch = [&](const Trial& trial, const Patch& patch) {
+      if (listener_.on_trial && !write_error) listener_.on_trial(which, trial, patch);
+    };
+    events.on_set_up = [&](const SetUpRecord& set_up) {
+      if (listener_.on_set_up) listener_.on_set_up(which, set_up);
+    };
+    if (listener_.pause != nullptr || bench.remember_rest) {
+      events.paused = [this, &bench] {
+        const bool rests = listener_.pause != nullptr && listener_.pause->rest(halt_.get_token());
+        return bench.remember_rest ? bench.remember_rest(rests) : rests;
+      };
+    }
     events.on_progress = listener_.on_progress;
     events.on_note = [&](const std::string& sentence) { note(folder_, listener_, sentence); };
     events.on_rejected = [&](const RejectedFrame& frame) {
@@ -281,6 +294,7 @@ Result<MeasurementResult> run_measured(const Plan& plan, const ExperimentInputs&
   if (!response) return tl::unexpected(response.error());
   options.contrast_response = std::move(*response);
   options.now_ns = bench.now_ns;
+  options.free_running = !bench.simulated;
   ListedSchedule schedule(constant_stimuli(stimuli_options(plan, inputs.plates, plan.camera.ifov_mrad, Side::measured),
                                            RandomStream(plan.seed, "schedule")));
   return Recorder(folder, listener, std::move(stop)).run(bench, observer, schedule, options, SessionCurve::main);
@@ -298,6 +312,7 @@ Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOption
   if (auto fits = check_simulated_geometry(plan, *inputs); !fits) return tl::unexpected(fits.error());
   auto folder = begin_session(plan, options, provenance);
   if (!folder) return tl::unexpected(folder.error());
+  if (listener.on_session) listener.on_session(folder->path());
 
   phase(*folder, listener, "simulating " + inputs->sensor.name);
   auto run = run_simulated(plan, *inputs, *folder, SessionCurve::main, {}, listener, stop);
@@ -321,7 +336,7 @@ Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions
   auto inputs = read_inputs(plan);
   if (!inputs) return tl::unexpected(inputs.error());
   if (listener.on_phase) listener.on_phase("opening " + plan.camera.id);
-  auto bench = open_bench(plan, inputs->plates, stop);
+  auto bench = open_bench(plan, inputs->plates, stop, listener.ask_operator);
   if (!bench) return tl::unexpected(bench.error());
   return measure_on_bench(plan, *inputs, *std::move(bench), options, listener, std::move(stop));
 }
@@ -329,6 +344,8 @@ Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions
 Result<ExperimentOutcome> measure_on_bench(const Plan& plan, const ExperimentInputs& inputs, OpenedBench bench,
                                            const ExperimentOptions& options, const ExperimentListener& listener,
                                            std::stop_token stop) {
+  if (listener.on_open) listener.on_open(bench.camera->info());
+  if (listener.on_frame) bench.camera = observed_source(std::move(bench.camera), listener.on_frame);
   const SourceInfo info = bench.camera->info();
   if (!info.scale.calibrated()) {
     return fail(ErrorCode::calibration,
@@ -343,6 +360,7 @@ Result<ExperimentOutcome> measure_on_bench(const Plan& plan, const ExperimentInp
   provenance.target = bench.target->capabilities().description;
   auto folder = begin_session(plan, options, provenance);
   if (!folder) return tl::unexpected(folder.error());
+  if (listener.on_session) listener.on_session(folder->path());
   for (const auto& warning : info.warnings) note(*folder, listener, warning);
   if (plan.measurement.record_frames) {
     if (auto recording = record_bench(bench, folder->path()); !recording)

@@ -11,6 +11,7 @@
 
 #include "bench/run/devices.h"
 #include "bench/run/experiment_inputs.h"
+#include "bench/run/pause.h"
 #include "bench/session/json_output.h"
 #include "bench/session/plan.h"
 #include "bench/session/plan_options.h"
@@ -21,9 +22,21 @@ namespace todbench {
 
 /// What goes on, for a terminal or a window. Called from the thread of the run.
 struct ExperimentListener {
-  std::function<void(std::string_view phase)> on_phase;
-  std::function<void(std::size_t done, std::size_t planned)> on_progress;
-  std::function<void(std::string_view sentence)> on_note;
+  std::function<void(std::string_view phase)> on_phase{};
+  std::function<void(std::size_t done, std::size_t planned)> on_progress{};
+  std::function<void(std::string_view sentence)> on_note{};
+  /// The folder exists and holds the plan.
+  std::function<void(const std::filesystem::path& folder)> on_session{};
+  std::function<void(const SourceInfo&)> on_open{};
+  /// Every frame of the camera as it arrives, good or bad; not those of the twin.
+  std::function<void(const Frame&)> on_frame{};
+  std::function<void(SessionCurve, const SetUpRecord&)> on_set_up{};
+  /// A trial that is on disk, and the patch that was judged, lent for the call.
+  std::function<void(SessionCurve, const Trial&, const Patch&)> on_trial{};
+  /// Lets a run rest between two presentations; null: it never does. Outlives the run.
+  const Pause* pause = nullptr;
+  /// Answers a request to a target of kind prompt; none: the terminal.
+  OperatorDialogue ask_operator{};
 };
 
 struct ExperimentOptions {
