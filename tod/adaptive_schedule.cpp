@@ -166,7 +166,7 @@ void AdaptiveSchedule::judge(Contrast& contrast) const {
   std::vector<double> sizes;
   for (const Trial& trial : contrast.trials) sizes.push_back(trial.size_mrad);
   std::ranges::sort(sizes);
-  const auto distinct = static_cast<std::size_t>(std::ranges::unique(sizes).begin() - sizes.begin());
+  const auto distinct = static_cast<std::size_t>(std::unique(sizes.begin(), sizes.end()) - sizes.begin());
   progress.settled = fit.verdict == FitVerdict::ok && progress.trials >= least_trials && distinct >= least_sizes &&
                      progress.presentations >= least_presentations &&
                      *progress.half_width_percent < options_.half_width_percent && !contradicted(fit);

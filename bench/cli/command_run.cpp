@@ -204,10 +204,9 @@ void add_record_flag(CLI::App& command, RunArguments& arguments) {
 int run_replay(Console& console, const std::string& session, const RunArguments& arguments, const Program& program) {
   auto name = std::filesystem::path(session).lexically_normal();
   if (name.filename().empty()) name = name.parent_path();
-  ExperimentOptions options{.folder = arguments.out, .existing = ExistingFolder::refuse};
-  if (arguments.overwrite) options.existing = ExistingFolder::overwrite;
-  if (arguments.out.empty())
-    options = {.folder = session_folder_name(name.filename().string() + "-replay"), .existing = ExistingFolder::number};
+  Plan named;
+  named.name = name.filename().string() + "-replay";
+  const ExperimentOptions options = folder_of(arguments, named);
   auto outcome = replay_session(session, options, listener_of(console), program.stop->token());
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());

@@ -27,6 +27,8 @@ struct OpenedBench {
   ReconnectingSource* reconnecting = nullptr;  ///< `camera`, or inside it, when it can be opened again after a loss
   bool simulated = false;                      ///< the camera is a sensor model, its clock that of the model
   std::function<std::int64_t()> now_ns = monotonic_ns;  ///< the clock of the camera's host times
+  /// Told whether the run rests before a presentation, says whether it does: a recording remembers, a replay repeats.
+  std::function<bool(bool rests)> remember_rest{};
 };
 
 /// Opens what the plan names and writes its settings into the camera. Errors: `not_found`, `invalid_input` (a target

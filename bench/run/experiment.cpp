@@ -6,8 +6,8 @@
 
 #include "bench/report/report.h"
 #include "bench/run/experiment_inputs.h"
-#include "bench/run/recorded_bench.h"
 #include "bench/run/observed_source.h"
+#include "bench/run/recorded_bench.h"
 #include "bench/run/report_data.h"
 #include "sim_devices/prediction/contrast_response.h"
 #include "sim_devices/prediction/direct_estimate.h"
@@ -60,7 +60,12 @@ class Recorder {
     events.on_set_up = [&](const SetUpRecord& set_up) {
       if (listener_.on_set_up) listener_.on_set_up(which, set_up);
     };
-    if (listener_.pause != nullptr) events.paused = [this] { return listener_.pause->rest(halt_.get_token()); };
+    if (listener_.pause != nullptr || bench.remember_rest) {
+      events.paused = [this, &bench] {
+        const bool rests = listener_.pause != nullptr && listener_.pause->rest(halt_.get_token());
+        return bench.remember_rest ? bench.remember_rest(rests) : rests;
+      };
+    }
     events.on_progress = listener_.on_progress;
     events.on_note = [&](const std::string& sentence) { note(folder_, listener_, sentence); };
     events.on_rejected = [&](const RejectedFrame& frame) {

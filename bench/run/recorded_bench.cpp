@@ -1,6 +1,7 @@
 #include "bench/run/recorded_bench.h"
 
-#include <algorithm>
+#include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -34,18 +35,13 @@ class RecordedTarget final : public Target {
   TargetCapabilities capabilities_;
 };
 
-/// Readings of then, one after the other, whoever asks; behind the last one time stands still.
-std::function<std::int64_t()> recorded_clock(std::vector<std::int64_t> readings) {
-  struct State {
-    std::vector<std::int64_t> readings;
-    std::size_t next = 0;
-  };
-  const auto state = std::make_shared<State>(State{.readings = std::move(readings), .next = 0});
-  return [state]() -> std::int64_t {
-    if (state->readings.empty()) return 0;
-    return state->readings[std::min(state->next++, state->readings.size() - 1)];
-  };
-}
+/// Readings of then, one after the other, whoever asks.
+struct Readings {
+  std::vector<std::int64_t> values;
+  std::size_t next = 0;
+  /// Nothing behind the last one.
+  std::optional<std::int64_t> take() { return next < values.size() ? std::optional(values[next++]) : std::nullopt; }
+};
 
 }  // namespace
 
@@ -75,6 +71,10 @@ Result<void> record_bench(OpenedBench& bench, const std::filesystem::path& sessi
     (void)stream->append_reading(now);
     return now;
   };
+  bench.remember_rest = [stream](bool rests) {
+    (void)stream->append_reading(rests ? 1 : 0);
+    return rests;
+  };
   return {};
 }
 
@@ -97,7 +97,11 @@ Result<OpenedBench> open_recorded_bench(const std::filesystem::path& session) {
   OpenedBench bench;
   bench.simulated = annotations[simulated_key] == "yes";
   bench.target = std::make_unique<RecordedTarget>(std::move(capabilities));
-  bench.now_ns = recorded_clock(std::move(stream->readings));
+  const auto readings = std::make_shared<Readings>(Readings{.values = std::move(stream->readings)});
+  // Behind the last reading time stands still and nobody rests: the frames end there too.
+  const std::int64_t last = readings->values.empty() ? 0 : readings->values.back();
+  bench.now_ns = [readings, last] { return readings->take().value_or(last); };
+  bench.remember_rest = [readings](bool) { return readings->take().value_or(0) == 1; };
   bench.camera = recorded_source(std::move(stream->recording), Playback::replay);
   return bench;
 }
