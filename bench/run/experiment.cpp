@@ -91,7 +91,7 @@ Result<std::map<std::string, double>> responses(const SensorModel& model, const 
   std::map<std::string, double> out;
   RegistrationOptions registration = options.registration;
   registration.expected_scale_px_per_mm =
-      1 / (plan.target.distance_m * model.spec().ifov_mrad() / model.spec().microscan);
+      1 / (plan.target.distance_m * model.spec().ifov_mrad() / model.spec().samples_per_pitch());
   for (const auto& plate : plates) {
     auto response =
         contrast_response(model, plate, plan.target.distance_m, options.min_reference_px, registration, stop);
@@ -119,7 +119,7 @@ DirectResults direct_results(const TodCurve& curve, const ExperimentInputs& inpu
                              std::stop_token stop) {
   TemplateObserver observer(inputs.observer, triangle_alternatives());
   const DirectEstimateOptions options{
-      .samples_per_pitch = inputs.sensor.microscan, .accuracy = inputs.accuracy, .seed = seed, .stop = std::move(stop)};
+      .motion = inputs.motion, .accuracy = inputs.accuracy, .seed = seed, .stop = std::move(stop)};
   std::vector<double> contrasts;
   for (const auto& point : curve.points) contrasts.push_back(point.delta_t_k);
   DirectResults results;
@@ -150,7 +150,8 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
   auto response = responses(*model, plan, inputs.plates, options, stop);
   if (!response) return tl::unexpected(response.error());
   options.contrast_response = std::move(*response);
-  OpenedBench bench = simulated_bench(model, inputs.plates, plan.target.distance_m, std::move(shown_delta_t_k));
+  OpenedBench bench =
+      simulated_bench(model, inputs.plates, plan.target.distance_m, std::move(shown_delta_t_k), inputs.motion);
   ListedSchedule schedule(
       constant_stimuli(stimuli_options(plan, inputs.plates, inputs.sensor.ifov_mrad(), Side::simulated),
                        RandomStream(plan.seed, "schedule.simulated")));
@@ -309,6 +310,7 @@ Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOption
   if (!folder) return tl::unexpected(folder.error());
   if (listener.on_session) listener.on_session(folder->path());
 
+  for (const auto& warning : inputs->warnings) note(*folder, listener, warning);
   phase(*folder, listener, "simulating " + inputs->sensor.name);
   auto run = run_simulated(plan, *inputs, *folder, SessionCurve::main, {}, listener, stop);
   if (!run) return abandon(*folder, provenance, run.error());
@@ -357,6 +359,7 @@ Result<ExperimentOutcome> measure_on_bench(const Plan& plan, const ExperimentInp
   if (!folder) return tl::unexpected(folder.error());
   if (listener.on_session) listener.on_session(folder->path());
   for (const auto& warning : info.warnings) note(*folder, listener, warning);
+  for (const auto& warning : inputs.warnings) note(*folder, listener, warning);
   if (plan.measurement.record_frames) {
     if (auto recording = record_bench(bench, folder->path()); !recording)
       return abandon(*folder, provenance, recording.error());

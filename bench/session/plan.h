@@ -55,10 +55,11 @@ struct TargetPlan {
 /// [simulation]: the twin.
 struct SimulationPlan {
   std::string sensor = "sc2000";    ///< name or file
-  std::string accuracy = "normal";  ///< draft, normal or reference
+  std::string accuracy = "normal";  ///< draft, normal, reference, or auto: from tolerance_percent alone
   double tolerance_percent = 1;     ///< of the 75 % acuity
   int microscan = 1;                ///< in place of the sensor's own, which a file need not repeat
-  int phases = 16;  ///< sub-pixel shifts per plate, mounting and contrast, in place of those of [target]
+  int phases = 16;       ///< sub-pixel shifts per plate, mounting and contrast, in place of those of [target]
+  SceneMotion motion{};  ///< of the target; matters where the sensor has a time constant
   std::vector<Effect> skip, force;
   bool operator==(const SimulationPlan&) const = default;
 };

@@ -82,8 +82,13 @@ ComparisonOptions comparison_options(const Plan& plan) {
 }
 
 Result<Accuracy> accuracy_of(const Plan& plan) {
-  Result<Accuracy> accuracy = Accuracy::named(plan.simulation.accuracy);
-  if (accuracy) accuracy->acuity_tolerance_percent = plan.simulation.tolerance_percent;
+  const SimulationPlan& simulation = plan.simulation;
+  if (simulation.accuracy == "auto") return Accuracy::for_tolerance(simulation.tolerance_percent);
+  Result<Accuracy> accuracy = Accuracy::named(simulation.accuracy);
+  if (!accuracy) return accuracy;
+  // A draft is not asked for more than it can give; the others meet the tolerance.
+  if (simulation.accuracy != "draft") accuracy->standard_error_percent = simulation.tolerance_percent / 2;
+  accuracy->acuity_tolerance_percent = simulation.tolerance_percent;
   return accuracy;
 }
 

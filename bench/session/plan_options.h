@@ -30,7 +30,8 @@ enum class Side {
 [[nodiscard]] FitOptions fit_options(const Plan& plan);
 /// The margin of the limits, or 10 % where none is demanded.
 [[nodiscard]] ComparisonOptions comparison_options(const Plan& plan);
-/// The named accuracy with the tolerance of the plan.
+/// The named accuracy with the tolerance of the plan; half of the tolerance is for the standard error of the direct
+/// estimate, except in a draft. "auto": everything from the tolerance.
 [[nodiscard]] Result<Accuracy> accuracy_of(const Plan& plan);
 
 }  // namespace todbench

@@ -144,7 +144,7 @@ TargetPlan read_target(TomlReader reader, const std::filesystem::path& folder) {
 
 SimulationPlan read_simulation(TomlReader reader, int phases, const std::filesystem::path& folder) {
   SimulationPlan simulation;
-  const std::vector<std::string> levels{"draft", "normal", "reference"};
+  const std::vector<std::string> levels{"draft", "normal", "reference", "auto"};
   simulation.sensor = checked_reference<SensorSpec>(reader, "sensor", std::nullopt,
                                                     reader.text("sensor", simulation.sensor), folder, load_sensor);
   const Result<SensorSpec> sensor = load_sensor(simulation.sensor);
@@ -154,6 +154,13 @@ SimulationPlan read_simulation(TomlReader reader, int phases, const std::filesys
       reader.number("tolerance_percent", NumberRange::above_to(0, 50), simulation.tolerance_percent);
   simulation.microscan = static_cast<int>(reader.whole("microscan", 1, 4, own_microscan));
   simulation.phases = static_cast<int>(reader.whole("phases", 1, 100000, phases));
+  const std::vector<double> motion = reader.numbers("motion_mrad_s", NumberRange::between(-1e4, 1e4),
+                                                    {{simulation.motion.x_mrad_s, simulation.motion.y_mrad_s}});
+  if (motion.size() == 2) {
+    simulation.motion = {.x_mrad_s = motion[0], .y_mrad_s = motion[1]};
+  } else {
+    reader.reject("motion_mrad_s", "expected two numbers, right and down");
+  }
   simulation.skip = value_list(reader, "skip", all_effects, simulation.skip);
   simulation.force = value_list(reader, "force", all_effects, simulation.force);
   for (std::size_t i = 0; i < simulation.force.size(); ++i) {

@@ -111,6 +111,7 @@ void write_simulation(Lines& out, const SimulationPlan& simulation) {
   out.key("tolerance_percent", simulation.tolerance_percent);
   out.key("microscan", simulation.microscan);
   out.key("phases", simulation.phases);
+  out.key("motion_mrad_s", std::vector<double>{simulation.motion.x_mrad_s, simulation.motion.y_mrad_s});
   out.key("skip", simulation.skip);
   out.key("force", simulation.force);
 }
