@@ -5,9 +5,10 @@
 #include <cmath>
 
 #include "bench/report/report.h"
+#include "bench/run/comparison_forecast.h"
 #include "bench/run/experiment_inputs.h"
-#include "bench/run/recorded_bench.h"
 #include "bench/run/observed_source.h"
+#include "bench/run/recorded_bench.h"
 #include "bench/run/report_data.h"
 #include "sim_devices/prediction/contrast_response.h"
 #include "sim_devices/prediction/direct_estimate.h"
@@ -152,10 +153,9 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
   options.contrast_response = std::move(*response);
   OpenedBench bench =
       simulated_bench(model, inputs.plates, plan.target.distance_m, std::move(shown_delta_t_k), inputs.motion);
-  ListedSchedule schedule(
-      constant_stimuli(stimuli_options(plan, inputs.plates, inputs.sensor.ifov_mrad(), Side::simulated),
-                       RandomStream(plan.seed, "schedule.simulated")));
-  auto result = Recorder(folder, listener, stop).run(bench, observer, schedule, options, which);
+  const auto schedule = make_schedule(plan, inputs.plates, inputs.sensor.ifov_mrad(), Side::simulated,
+                                      RandomStream(plan.seed, "schedule.simulated"));
+  auto result = Recorder(folder, listener, stop).run(bench, observer, *schedule, options, which);
   if (!result) return fail("simulating", result.error());
   TwinRun run{.result = std::move(*result), .curve = {}, .wall_s = 0};
   auto curve = tod_curve(run.result.trials, fit_options(plan));
@@ -291,9 +291,9 @@ Result<MeasurementResult> run_measured(const Plan& plan, const ExperimentInputs&
   options.contrast_response = std::move(*response);
   options.now_ns = bench.now_ns;
   options.free_running = !bench.simulated;
-  ListedSchedule schedule(constant_stimuli(stimuli_options(plan, inputs.plates, plan.camera.ifov_mrad, Side::measured),
-                                           RandomStream(plan.seed, "schedule")));
-  return Recorder(folder, listener, std::move(stop)).run(bench, observer, schedule, options, SessionCurve::main);
+  const auto schedule =
+      make_schedule(plan, inputs.plates, plan.camera.ifov_mrad, Side::measured, RandomStream(plan.seed, "schedule"));
+  return Recorder(folder, listener, std::move(stop)).run(bench, observer, *schedule, options, SessionCurve::main);
 }
 
 }  // namespace
@@ -365,10 +365,15 @@ Result<ExperimentOutcome> measure_on_bench(const Plan& plan, const ExperimentInp
       return abandon(*folder, provenance, recording.error());
   }
 
+  std::string forecast;
+  if (const auto prediction = predict_plan(plan)) forecast = comparison_forecast(plan, *prediction).sentence;
+  if (!forecast.empty()) note(*folder, listener, forecast);
+
   const auto begin = Clock::now();
   phase(*folder, listener, "measuring " + info.model + " " + info.serial);
   auto result = run_measured(plan, inputs, bench, *folder, listener, stop);
   if (!result) return abandon(*folder, provenance, with_context("measuring", result.error()));
+  if (!forecast.empty()) result->notes.push_back(forecast);
   provenance.run = run_record(*result, seconds_since(begin));
   bench = {};
 

@@ -64,6 +64,20 @@ struct SimulationPlan {
   bool operator==(const SimulationPlan&) const = default;
 };
 
+enum class ScheduleKind {
+  constant,  ///< every combination of [target], in every phase
+  adaptive,  ///< what the answers so far leave open, until intervals are narrow enough (tod/adaptive_schedule.h)
+};
+[[nodiscard]] std::string_view to_string(ScheduleKind kind);
+
+/// [schedule]: of camera and twin.
+struct SchedulePlan {
+  ScheduleKind kind = ScheduleKind::constant;
+  double half_width_percent = 10;  ///< adaptive: wanted half-width of the 95 % interval of S75
+  int max_presentations = 1000;    ///< adaptive: hard cap over all contrasts
+  bool operator==(const SchedulePlan&) const = default;
+};
+
 /// [fit]
 struct FitPlan {
   PsychometricForm form = PsychometricForm::size;
@@ -121,6 +135,7 @@ struct Plan {
   TargetPlan target;
   std::string observer = "hvs-1";  ///< name or file; key `name` of [observer]
   SimulationPlan simulation;
+  SchedulePlan schedule;
   FitPlan fit;
   LimitsPlan limits;
   MeasurementPlan measurement;

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "bench/session/descriptions.h"
+#include "tod/adaptive_schedule.h"
 
 namespace todbench {
 
@@ -65,6 +66,20 @@ ConstantStimuliOptions stimuli_options(const Plan& plan, const std::vector<Targe
                           plan.target.shift_change_s};
   std::copy(std::begin(costs), std::end(costs), std::begin(options.change_cost_s));
   return options;
+}
+
+std::unique_ptr<TrialSchedule> make_schedule(const Plan& plan, const std::vector<TargetPlate>& plates, double ifov_mrad,
+                                             Side side, const RandomStream& stream) {
+  const ConstantStimuliOptions stimuli = stimuli_options(plan, plates, ifov_mrad, side);
+  if (plan.schedule.kind == ScheduleKind::constant)
+    return std::make_unique<ListedSchedule>(constant_stimuli(stimuli, stream));
+  return std::make_unique<AdaptiveSchedule>(AdaptiveOptions{.stimuli = stimuli,
+                                                            .plates = plates,
+                                                            .distance_m = plan.target.distance_m,
+                                                            .fit = fit_options(plan),
+                                                            .half_width_percent = plan.schedule.half_width_percent,
+                                                            .max_presentations = plan.schedule.max_presentations},
+                                            stream);
 }
 
 FitOptions fit_options(const Plan& plan) {

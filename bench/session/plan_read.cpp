@@ -172,6 +172,17 @@ SimulationPlan read_simulation(TomlReader reader, int phases, const std::filesys
   return simulation;
 }
 
+SchedulePlan read_schedule(TomlReader reader) {
+  constexpr std::array kinds{ScheduleKind::constant, ScheduleKind::adaptive};
+  SchedulePlan schedule;
+  schedule.kind = value_named(kinds, reader.choice("kind", names_of(kinds), std::string(to_string(schedule.kind))));
+  schedule.half_width_percent =
+      reader.number("half_width_percent", NumberRange::above_to(0, 100), schedule.half_width_percent);
+  schedule.max_presentations =
+      static_cast<int>(reader.whole("max_presentations", 1, 1000000, schedule.max_presentations));
+  return schedule;
+}
+
 FitPlan read_fit(TomlReader reader) {
   FitPlan fit;
   fit.form = value_named(forms, reader.choice("form", names_of(forms), std::string(to_string(fit.form))));
@@ -265,6 +276,7 @@ Result<Plan> parse_plan(const Resource& resource, const std::filesystem::path& f
   plan.observer = checked_reference<TemplateObserverSpec>(observer, "name", std::nullopt,
                                                           observer.text("name", plan.observer), folder, load_observer);
   plan.simulation = read_simulation(reader->section("simulation"), plan.target.phases, folder);
+  plan.schedule = read_schedule(reader->section("schedule"));
   plan.fit = read_fit(reader->section("fit"));
   plan.limits = read_limits(reader->section("limits"), plan.target.delta_t_k);
   plan.measurement = read_measurement(reader->section("measurement"));

@@ -151,6 +151,10 @@ void write_instrument(Lines& out, const InstrumentPlan& instrument) {
 
 }  // namespace
 
+std::string_view to_string(ScheduleKind kind) {
+  return kind == ScheduleKind::constant ? "constant" : "adaptive";
+}
+
 std::string_view to_string(TargetKind kind) {
   switch (kind) {
     case TargetKind::scpi:
@@ -177,6 +181,10 @@ std::string to_toml(const Plan& plan) {
   out.table("[observer]");
   out.key("name", plan.observer);
   write_simulation(out, plan.simulation);
+  out.table("[schedule]");
+  out.key("kind", to_string(plan.schedule.kind));
+  out.key("half_width_percent", plan.schedule.half_width_percent);
+  out.key("max_presentations", plan.schedule.max_presentations);
   out.table("[fit]");
   out.key("form", to_string(plan.fit.form));
   if (plan.fit.lapse) {
