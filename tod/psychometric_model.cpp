@@ -93,7 +93,9 @@ LogProbabilities log_probabilities(const Link& link, double u) {
   return {log_right(link, x), log_wrong(link, x, u)};
 }
 
-AnswerTerms answer_terms(const Link& link, double u) {
+AnswerTerms answer_terms(const Link& link, double far_u) {
+  // z = 1e130 is as hopeless as z = 1e304, and its square times any count and slope is a number.
+  const double u = std::min(far_u, 300.0);
   const Exponentials x = exponentials(link, u);
   const Shape s = shape_of(link, x);
   const double a = link.amplitude;

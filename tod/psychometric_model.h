@@ -42,7 +42,7 @@ struct LogTerm {
 struct AnswerTerms {
   LogTerm right, wrong;
 };
-/// At u. Always finite for u below 700.
+/// At u; beyond 300 as at 300, so that second derivatives times counts never overflow.
 [[nodiscard]] AnswerTerms answer_terms(const Link& link, double u);
 
 }  // namespace todbench

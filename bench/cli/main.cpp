@@ -110,6 +110,8 @@ int run(int argc, char** argv) {
   add_emulate_command(app, program);
   add_measure_command(app, program);
   add_simulate_command(app, program);
+  add_plan_command(app, program);
+  add_cost_command(app, program);
   add_record_command(app, program);
   add_replay_command(app, program);
   add_compare_command(app, program);

@@ -93,7 +93,11 @@ Result<Plan> simulation_plan(const SimulationOverrides& overrides, std::stop_tok
   if (overrides.seed) plan->seed = *overrides.seed;
   if (overrides.observer) plan->observer = absolute_reference(*overrides.observer, "");
   if (overrides.accuracy) plan->simulation.accuracy = *overrides.accuracy;
-  if (overrides.tolerance_percent) plan->simulation.tolerance_percent = *overrides.tolerance_percent;
+  if (overrides.tolerance_percent) {
+    plan->simulation.tolerance_percent = *overrides.tolerance_percent;
+    // A tolerance is all that needs to be said.
+    if (!overrides.accuracy) plan->simulation.accuracy = "auto";
+  }
   if (!overrides.delta_t_k.empty()) plan->target.delta_t_k = overrides.delta_t_k;
   if (auto applied = apply_sensor(overrides, plan->simulation); !applied) return tl::unexpected(applied.error());
   if (auto applied = apply_effects(overrides, plan->simulation); !applied) return tl::unexpected(applied.error());

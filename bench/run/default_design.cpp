@@ -18,13 +18,12 @@ Result<Plan> with_suitable_distance(Plan plan, std::stop_token stop) {
   auto spec = load_observer(plan.observer);
   if (!spec) return tl::unexpected(spec.error());
   TemplateObserver observer(*spec, triangle_alternatives());
-  const SensorPlan effects = full_plan(*sensor, plan.simulation.skip, plan.simulation.force);
+  const SensorPlan effects = full_plan(*sensor, plan.simulation.skip, plan.simulation.force, plan.simulation.motion);
   double log_sum = 0;
   int found = 0;
   for (const double contrast : plan.target.delta_t_k) {
-    const auto point =
-        direct_estimate(*sensor, effects, observer, {contrast},
-                        {.samples_per_pitch = sensor->microscan, .accuracy = Accuracy::draft(), .stop = stop});
+    const auto point = direct_estimate(*sensor, effects, observer, {contrast},
+                                       {.motion = plan.simulation.motion, .accuracy = Accuracy::draft(), .stop = stop});
     if (!point && point.error().code == ErrorCode::interrupted) return tl::unexpected(point.error());
     if (!point) continue;
     log_sum += std::log(point->front().s75_pitch * sensor->ifov_mrad());
@@ -44,7 +43,7 @@ Result<Plan> with_suitable_distance(Plan plan, std::stop_token stop) {
   // The plate may fill nine tenths of the picture.
   const double nearest_m = extent_mm / (0.9 * sensor->height * sensor->ifov_mrad());
   // Registration and contrast need triangles of five displayed samples and more.
-  const double farthest_m = largest * sensor->microscan / (5.0 * sensor->ifov_mrad());
+  const double farthest_m = largest * sensor->samples_per_pitch() / (5.0 * sensor->ifov_mrad());
   plan.target.distance_m = std::max(nearest_m, std::min(middle_mm / middle_mrad, farthest_m));
   return plan;
 }

@@ -141,8 +141,9 @@ CameraRegistry camera_registry() {
 }
 
 OpenedBench simulated_bench(std::shared_ptr<const SensorModel> model, const std::vector<TargetPlate>& plates,
-                            double distance_m, std::map<double, double> shown_delta_t_k) {
+                            double distance_m, std::map<double, double> shown_delta_t_k, SceneMotion motion) {
   PlateScene scene = empty_scene(distance_m);
+  scene.motion = motion;
   scene.background_k = model->spec().scene_temperature_k;
   const auto holder = std::make_shared<SceneHolder>(scene);
   auto target = scene_target(holder, plates);

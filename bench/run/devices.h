@@ -41,6 +41,6 @@ struct OpenedBench {
 /// a camera saw; set-points that are not in it are shown as they are.
 [[nodiscard]] OpenedBench simulated_bench(std::shared_ptr<const SensorModel> model,
                                           const std::vector<TargetPlate>& plates, double distance_m,
-                                          std::map<double, double> shown_delta_t_k);
+                                          std::map<double, double> shown_delta_t_k, SceneMotion motion = {});
 
 }  // namespace todbench

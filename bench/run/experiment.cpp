@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bench/report/report.h"
+#include "bench/run/comparison_forecast.h"
 #include "bench/run/experiment_inputs.h"
 #include "bench/run/observed_source.h"
 #include "bench/run/recorded_bench.h"
@@ -102,7 +103,7 @@ Result<std::map<std::string, double>> responses(const SensorModel& model, const 
   std::map<std::string, double> out;
   RegistrationOptions registration = options.registration;
   registration.expected_scale_px_per_mm =
-      1 / (plan.target.distance_m * model.spec().ifov_mrad() / model.spec().microscan);
+      1 / (plan.target.distance_m * model.spec().ifov_mrad() / model.spec().samples_per_pitch());
   for (const auto& plate : plates) {
     auto response =
         contrast_response(model, plate, plan.target.distance_m, options.min_reference_px, registration, stop);
@@ -130,7 +131,7 @@ DirectResults direct_results(const TodCurve& curve, const ExperimentInputs& inpu
                              std::stop_token stop) {
   TemplateObserver observer(inputs.observer, triangle_alternatives());
   const DirectEstimateOptions options{
-      .samples_per_pitch = inputs.sensor.microscan, .accuracy = inputs.accuracy, .seed = seed, .stop = std::move(stop)};
+      .motion = inputs.motion, .accuracy = inputs.accuracy, .seed = seed, .stop = std::move(stop)};
   std::vector<double> contrasts;
   for (const auto& point : curve.points) contrasts.push_back(point.delta_t_k);
   DirectResults results;
@@ -161,11 +162,11 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
   auto response = responses(*model, plan, inputs.plates, options, stop);
   if (!response) return tl::unexpected(response.error());
   options.contrast_response = std::move(*response);
-  OpenedBench bench = simulated_bench(model, inputs.plates, plan.target.distance_m, std::move(shown_delta_t_k));
-  ListedSchedule schedule(
-      constant_stimuli(stimuli_options(plan, inputs.plates, inputs.sensor.ifov_mrad(), Side::simulated),
-                       RandomStream(plan.seed, "schedule.simulated")));
-  auto result = Recorder(folder, listener, stop).run(bench, observer, schedule, options, which);
+  OpenedBench bench =
+      simulated_bench(model, inputs.plates, plan.target.distance_m, std::move(shown_delta_t_k), inputs.motion);
+  const auto schedule = make_schedule(plan, inputs.plates, inputs.sensor.ifov_mrad(), Side::simulated,
+                                      RandomStream(plan.seed, "schedule.simulated"));
+  auto result = Recorder(folder, listener, stop).run(bench, observer, *schedule, options, which);
   if (!result) return fail("simulating", result.error());
   TwinRun run{.result = std::move(*result), .curve = {}, .wall_s = 0};
   auto curve = tod_curve(run.result.trials, fit_options(plan));
@@ -301,9 +302,9 @@ Result<MeasurementResult> run_measured(const Plan& plan, const ExperimentInputs&
   options.contrast_response = std::move(*response);
   options.now_ns = bench.now_ns;
   options.free_running = !bench.simulated;
-  ListedSchedule schedule(constant_stimuli(stimuli_options(plan, inputs.plates, plan.camera.ifov_mrad, Side::measured),
-                                           RandomStream(plan.seed, "schedule")));
-  return Recorder(folder, listener, std::move(stop)).run(bench, observer, schedule, options, SessionCurve::main);
+  const auto schedule =
+      make_schedule(plan, inputs.plates, plan.camera.ifov_mrad, Side::measured, RandomStream(plan.seed, "schedule"));
+  return Recorder(folder, listener, std::move(stop)).run(bench, observer, *schedule, options, SessionCurve::main);
 }
 
 }  // namespace
@@ -320,6 +321,7 @@ Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOption
   if (!folder) return tl::unexpected(folder.error());
   if (listener.on_session) listener.on_session(folder->path());
 
+  for (const auto& warning : inputs->warnings) note(*folder, listener, warning);
   phase(*folder, listener, "simulating " + inputs->sensor.name);
   auto run = run_simulated(plan, *inputs, *folder, SessionCurve::main, {}, listener, stop);
   if (!run) return abandon(*folder, provenance, run.error());
@@ -368,15 +370,21 @@ Result<ExperimentOutcome> measure_on_bench(const Plan& plan, const ExperimentInp
   if (!folder) return tl::unexpected(folder.error());
   if (listener.on_session) listener.on_session(folder->path());
   for (const auto& warning : info.warnings) note(*folder, listener, warning);
+  for (const auto& warning : inputs.warnings) note(*folder, listener, warning);
   if (plan.measurement.record_frames) {
     if (auto recording = record_bench(bench, folder->path()); !recording)
       return abandon(*folder, provenance, recording.error());
   }
 
+  std::string forecast;
+  if (const auto prediction = predict_plan(plan)) forecast = comparison_forecast(plan, *prediction).sentence;
+  if (!forecast.empty()) note(*folder, listener, forecast);
+
   const auto begin = Clock::now();
   phase(*folder, listener, "measuring " + info.model + " " + info.serial);
   auto result = run_measured(plan, inputs, bench, *folder, listener, stop);
   if (!result) return abandon(*folder, provenance, with_context("measuring", result.error()));
+  if (!forecast.empty()) result->notes.push_back(forecast);
   provenance.run = run_record(*result, seconds_since(begin));
   bench = {};
 

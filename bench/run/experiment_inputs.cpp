@@ -30,6 +30,13 @@ Result<void> check_geometry(const MeasurementOptions& options, const ExperimentI
 
 }  // namespace
 
+Result<EffectPlan> planned_effects(const Plan& plan, const SensorSpec& sensor, TemplateObserver& observer) {
+  return plan_effects(sensor, observer, {.delta_t_k = plan.target.delta_t_k, .motion = plan.simulation.motion},
+                      {.tolerance_percent = plan.simulation.tolerance_percent,
+                       .skip = plan.simulation.skip,
+                       .force = plan.simulation.force});
+}
+
 Result<ExperimentInputs> read_inputs(const Plan& plan) {
   ExperimentInputs inputs;
   auto plates = plates_of(plan);
@@ -40,8 +47,18 @@ Result<ExperimentInputs> read_inputs(const Plan& plan) {
   inputs.observer = *observer;
   auto sensor = sensor_of(plan);
   if (!sensor) return tl::unexpected(sensor.error());
-  inputs.sensor = *sensor;
-  inputs.effects = full_plan(inputs.sensor, plan.simulation.skip, plan.simulation.force);
+  inputs.motion = plan.simulation.motion;
+  TemplateObserver planner(inputs.observer, triangle_alternatives());
+  auto effects = planned_effects(plan, *sensor, planner);
+  if (effects) {
+    inputs.effects = std::move(effects->plan);
+    inputs.warnings = std::move(effects->warnings);
+  } else {
+    // Without a threshold there is nothing that skipping could change by little.
+    inputs.effects = full_plan(*sensor, plan.simulation.skip, plan.simulation.force, inputs.motion);
+    inputs.warnings.push_back(effects.error().message);
+  }
+  inputs.sensor = as_planned(*sensor, inputs.effects);
   auto accuracy = accuracy_of(plan);
   if (!accuracy) return tl::unexpected(accuracy.error());
   inputs.accuracy = *accuracy;
@@ -50,8 +67,8 @@ Result<ExperimentInputs> read_inputs(const Plan& plan) {
 
 MeasurementOptions simulated_options(const Plan& plan, const ExperimentInputs& inputs) {
   MeasurementOptions options =
-      measurement_options(plan, inputs.plates, inputs.sensor.ifov_mrad() / inputs.sensor.microscan);
-  options.samples_per_pitch = inputs.sensor.microscan;
+      measurement_options(plan, inputs.plates, inputs.sensor.ifov_mrad() / inputs.sensor.samples_per_pitch());
+  options.samples_per_pitch = inputs.sensor.samples_per_pitch();
   options.frames_after_change = 0;
   options.nuc_interval_s = 0;
   options.free_running = false;
@@ -64,7 +81,7 @@ Result<void> check_measured_geometry(const Plan& plan, const ExperimentInputs& i
 }
 
 Result<void> check_simulated_geometry(const Plan& plan, const ExperimentInputs& inputs) {
-  const int samples = inputs.sensor.microscan;
+  const int samples = inputs.sensor.samples_per_pitch();
   return check_geometry(simulated_options(plan, inputs), inputs,
                         {inputs.sensor.width * samples, inputs.sensor.height * samples});
 }

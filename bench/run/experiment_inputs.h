@@ -6,6 +6,7 @@
 
 #include "bench/session/plan.h"
 #include "hvs/template_observer.h"
+#include "sim_devices/prediction/effect_planner.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"
 #include "tod/measurement.h"
@@ -16,10 +17,16 @@ namespace todbench {
 struct ExperimentInputs {
   std::vector<TargetPlate> plates;
   TemplateObserverSpec observer;
-  SensorSpec sensor;
-  SensorPlan effects;
+  SensorSpec sensor;   ///< as planned: parameters of skipped effects at their neutral values
+  SensorPlan effects;  ///< what the scene calls for within the tolerance, and why
+  SceneMotion motion{};
+  std::vector<std::string> warnings;  ///< of the planner, a sentence each
   Accuracy accuracy;
 };
+
+/// The planner's decisions for what a plan shows. Errors as plan_effects().
+[[nodiscard]] Result<EffectPlan> planned_effects(const Plan& plan, const SensorSpec& sensor,
+                                                 TemplateObserver& observer);
 
 /// Errors as the loaders of the parts.
 [[nodiscard]] Result<ExperimentInputs> read_inputs(const Plan& plan);

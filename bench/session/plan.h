@@ -56,12 +56,27 @@ struct TargetPlan {
 /// [simulation]: the twin.
 struct SimulationPlan {
   std::string sensor = "sc2000";    ///< name or file
-  std::string accuracy = "normal";  ///< draft, normal or reference
+  std::string accuracy = "normal";  ///< draft, normal, reference, or auto: from tolerance_percent alone
   double tolerance_percent = 1;     ///< of the 75 % acuity
   int microscan = 1;                ///< in place of the sensor's own, which a file need not repeat
-  int phases = 16;  ///< sub-pixel shifts per plate, mounting and contrast, in place of those of [target]
+  int phases = 16;       ///< sub-pixel shifts per plate, mounting and contrast, in place of those of [target]
+  SceneMotion motion{};  ///< of the target; matters where the sensor has a time constant
   std::vector<Effect> skip, force;
   bool operator==(const SimulationPlan&) const = default;
+};
+
+enum class ScheduleKind {
+  constant,  ///< every combination of [target], in every phase
+  adaptive,  ///< what the answers so far leave open, until intervals are narrow enough (tod/adaptive_schedule.h)
+};
+[[nodiscard]] std::string_view to_string(ScheduleKind kind);
+
+/// [schedule]: of camera and twin.
+struct SchedulePlan {
+  ScheduleKind kind = ScheduleKind::constant;
+  double half_width_percent = 10;  ///< adaptive: wanted half-width of the 95 % interval of S75
+  int max_presentations = 1000;    ///< adaptive: hard cap over all contrasts
+  bool operator==(const SchedulePlan&) const = default;
 };
 
 /// [fit]
@@ -121,6 +136,7 @@ struct Plan {
   TargetPlan target;
   std::string observer = "hvs-1";  ///< name or file; key `name` of [observer]
   SimulationPlan simulation;
+  SchedulePlan schedule;
   FitPlan fit;
   LimitsPlan limits;
   MeasurementPlan measurement;

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "bench/session/descriptions.h"
+#include "tod/adaptive_schedule.h"
 
 namespace todbench {
 
@@ -67,6 +68,20 @@ ConstantStimuliOptions stimuli_options(const Plan& plan, const std::vector<Targe
   return options;
 }
 
+std::unique_ptr<TrialSchedule> make_schedule(const Plan& plan, const std::vector<TargetPlate>& plates, double ifov_mrad,
+                                             Side side, const RandomStream& stream) {
+  const ConstantStimuliOptions stimuli = stimuli_options(plan, plates, ifov_mrad, side);
+  if (plan.schedule.kind == ScheduleKind::constant)
+    return std::make_unique<ListedSchedule>(constant_stimuli(stimuli, stream));
+  return std::make_unique<AdaptiveSchedule>(AdaptiveOptions{.stimuli = stimuli,
+                                                            .plates = plates,
+                                                            .distance_m = plan.target.distance_m,
+                                                            .fit = fit_options(plan),
+                                                            .half_width_percent = plan.schedule.half_width_percent,
+                                                            .max_presentations = plan.schedule.max_presentations},
+                                            stream);
+}
+
 FitOptions fit_options(const Plan& plan) {
   FitOptions options;
   options.form = plan.fit.form;
@@ -82,8 +97,13 @@ ComparisonOptions comparison_options(const Plan& plan) {
 }
 
 Result<Accuracy> accuracy_of(const Plan& plan) {
-  Result<Accuracy> accuracy = Accuracy::named(plan.simulation.accuracy);
-  if (accuracy) accuracy->acuity_tolerance_percent = plan.simulation.tolerance_percent;
+  const SimulationPlan& simulation = plan.simulation;
+  if (simulation.accuracy == "auto") return Accuracy::for_tolerance(simulation.tolerance_percent);
+  Result<Accuracy> accuracy = Accuracy::named(simulation.accuracy);
+  if (!accuracy) return accuracy;
+  // A draft is not asked for more than it can give; the others meet the tolerance.
+  if (simulation.accuracy != "draft") accuracy->standard_error_percent = simulation.tolerance_percent / 2;
+  accuracy->acuity_tolerance_percent = simulation.tolerance_percent;
   return accuracy;
 }
 

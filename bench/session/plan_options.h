@@ -1,6 +1,7 @@
 // What the plan says, in the terms of the parts that do it.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "bench/session/plan.h"
@@ -27,10 +28,14 @@ enum class Side {
 /// Every plate (by its own name) in every mounting at every contrast; phases as the side has them.
 [[nodiscard]] ConstantStimuliOptions stimuli_options(const Plan& plan, const std::vector<TargetPlate>& plates,
                                                      double ifov_mrad, Side side);
+/// What is shown, constant or adaptive as the plan says. `ifov_mrad` as for stimuli_options().
+[[nodiscard]] std::unique_ptr<TrialSchedule> make_schedule(const Plan& plan, const std::vector<TargetPlate>& plates,
+                                                           double ifov_mrad, Side side, const RandomStream& stream);
 [[nodiscard]] FitOptions fit_options(const Plan& plan);
 /// The margin of the limits, or 10 % where none is demanded.
 [[nodiscard]] ComparisonOptions comparison_options(const Plan& plan);
-/// The named accuracy with the tolerance of the plan.
+/// The named accuracy with the tolerance of the plan; half of the tolerance is for the standard error of the direct
+/// estimate, except in a draft. "auto": everything from the tolerance.
 [[nodiscard]] Result<Accuracy> accuracy_of(const Plan& plan);
 
 }  // namespace todbench

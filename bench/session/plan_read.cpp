@@ -145,7 +145,7 @@ TargetPlan read_target(TomlReader reader, const std::filesystem::path& folder) {
 
 SimulationPlan read_simulation(TomlReader reader, int phases, const std::filesystem::path& folder) {
   SimulationPlan simulation;
-  const std::vector<std::string> levels{"draft", "normal", "reference"};
+  const std::vector<std::string> levels{"draft", "normal", "reference", "auto"};
   simulation.sensor = checked_reference<SensorSpec>(reader, "sensor", std::nullopt,
                                                     reader.text("sensor", simulation.sensor), folder, load_sensor);
   const Result<SensorSpec> sensor = load_sensor(simulation.sensor);
@@ -155,6 +155,13 @@ SimulationPlan read_simulation(TomlReader reader, int phases, const std::filesys
       reader.number("tolerance_percent", NumberRange::above_to(0, 50), simulation.tolerance_percent);
   simulation.microscan = static_cast<int>(reader.whole("microscan", 1, 4, own_microscan));
   simulation.phases = static_cast<int>(reader.whole("phases", 1, 100000, phases));
+  const std::vector<double> motion = reader.numbers("motion_mrad_s", NumberRange::between(-1e4, 1e4),
+                                                    {{simulation.motion.x_mrad_s, simulation.motion.y_mrad_s}});
+  if (motion.size() == 2) {
+    simulation.motion = {.x_mrad_s = motion[0], .y_mrad_s = motion[1]};
+  } else {
+    reader.reject("motion_mrad_s", "expected two numbers, right and down");
+  }
   simulation.skip = value_list(reader, "skip", all_effects, simulation.skip);
   simulation.force = value_list(reader, "force", all_effects, simulation.force);
   for (std::size_t i = 0; i < simulation.force.size(); ++i) {
@@ -164,6 +171,17 @@ SimulationPlan read_simulation(TomlReader reader, int phases, const std::filesys
     }
   }
   return simulation;
+}
+
+SchedulePlan read_schedule(TomlReader reader) {
+  constexpr std::array kinds{ScheduleKind::constant, ScheduleKind::adaptive};
+  SchedulePlan schedule;
+  schedule.kind = value_named(kinds, reader.choice("kind", names_of(kinds), std::string(to_string(schedule.kind))));
+  schedule.half_width_percent =
+      reader.number("half_width_percent", NumberRange::above_to(0, 100), schedule.half_width_percent);
+  schedule.max_presentations =
+      static_cast<int>(reader.whole("max_presentations", 1, 1000000, schedule.max_presentations));
+  return schedule;
 }
 
 FitPlan read_fit(TomlReader reader) {
@@ -259,6 +277,7 @@ Result<Plan> parse_plan(const Resource& resource, const std::filesystem::path& f
   plan.observer = checked_reference<TemplateObserverSpec>(observer, "name", std::nullopt,
                                                           observer.text("name", plan.observer), folder, load_observer);
   plan.simulation = read_simulation(reader->section("simulation"), plan.target.phases, folder);
+  plan.schedule = read_schedule(reader->section("schedule"));
   plan.fit = read_fit(reader->section("fit"));
   plan.limits = read_limits(reader->section("limits"), plan.target.delta_t_k);
   plan.measurement = read_measurement(reader->section("measurement"));

@@ -112,6 +112,7 @@ void write_simulation(Lines& out, const SimulationPlan& simulation) {
   out.key("tolerance_percent", simulation.tolerance_percent);
   out.key("microscan", simulation.microscan);
   out.key("phases", simulation.phases);
+  out.key("motion_mrad_s", std::vector<double>{simulation.motion.x_mrad_s, simulation.motion.y_mrad_s});
   out.key("skip", simulation.skip);
   out.key("force", simulation.force);
 }
@@ -151,6 +152,10 @@ void write_instrument(Lines& out, const InstrumentPlan& instrument) {
 
 }  // namespace
 
+std::string_view to_string(ScheduleKind kind) {
+  return kind == ScheduleKind::constant ? "constant" : "adaptive";
+}
+
 std::string_view to_string(TargetKind kind) {
   switch (kind) {
     case TargetKind::scpi:
@@ -177,6 +182,10 @@ std::string to_toml(const Plan& plan) {
   out.table("[observer]");
   out.key("name", plan.observer);
   write_simulation(out, plan.simulation);
+  out.table("[schedule]");
+  out.key("kind", to_string(plan.schedule.kind));
+  out.key("half_width_percent", plan.schedule.half_width_percent);
+  out.key("max_presentations", plan.schedule.max_presentations);
   out.table("[fit]");
   out.key("form", to_string(plan.fit.form));
   if (plan.fit.lapse) {

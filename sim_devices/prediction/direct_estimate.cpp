@@ -209,7 +209,9 @@ Result<std::vector<DirectPoint>> direct_estimate(const SensorSpec& spec, const S
   TrialConditions conditions{.sensor = as_planned(spec, plan),
                              .motion = options.motion,
                              .samples_per_pitch = options.samples_per_pitch,
-                             .phases_per_axis = options.accuracy.phases_per_axis};
+                             .phases_per_axis = options.accuracy.phases_per_axis,
+                             .search_step_samples = observer.spec().search_step_samples,
+                             .orientations = options.orientations};
   if (options.samples_per_pitch == 0) conditions.samples_per_pitch = conditions.sensor.samples_per_pitch();
   if (conditions.sensor.super_resolution_frames == 0) conditions.sensor.microscan = conditions.samples_per_pitch;
   const SensorSpec sensor = conditions.sensor;

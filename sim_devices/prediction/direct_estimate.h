@@ -7,6 +7,7 @@
 
 #include "acquisition/core/accuracy.h"
 #include "hvs/template_observer.h"
+#include "sim_devices/prediction/size_trial.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"
 
@@ -26,6 +27,7 @@ struct DirectEstimateOptions {
   SceneMotion motion{};
   Accuracy accuracy;
   std::uint64_t seed = 1;
+  ShownOrientations orientations = ShownOrientations::as_needed;
   std::stop_token stop{};  ///< ends with `interrupted`, within a few hundredths of a second
 };
 

@@ -190,7 +190,7 @@ double share_budget(std::vector<Candidate> candidates, double tolerance_percent,
       decision.reason = formatted("changes the acuity by at most %.2g %%; %.2g %% of the %.3g %% tolerance are used up",
                                   candidate.percent, used, tolerance_percent);
     } else {
-      decision.reason = formatted("may change the acuity by %.2g %%, more than is left of the %.3g %% tolerance",
+      decision.reason = formatted("may change the acuity by %.3g %%, more than is left of the %.3g %% tolerance",
                                   candidate.percent, tolerance_percent);
     }
   }

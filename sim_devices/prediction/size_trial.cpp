@@ -36,7 +36,8 @@ SizeTrial::SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank
   has_coloured_ = sensor.fixed_pattern_k > 0 || lines;
   if (has_display(sensor)) display_taps_ = taps_of([&](double f) { return display_response(sensor, f); });
   // The sampling grid and everything else but motion and lines look the same from all four sides.
-  const bool alike = !lines && !(conditions_.motion.moving() && sensor.time_constant_ms > 0);
+  const bool alike = conditions_.orientations == ShownOrientations::as_needed && !lines &&
+                     !(conditions_.motion.moving() && sensor.time_constant_ms > 0);
   const int per_axis = std::max(1, conditions_.phases_per_axis / conditions_.samples_per_pitch);
   for (int truth = 0; truth < (alike ? 1 : bank_->alternatives()); ++truth) {
     const cv::Mat1d fine = chain.image(triangle(size_pitch, all_apexes[static_cast<std::size_t>(truth)]))

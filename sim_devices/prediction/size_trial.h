@@ -16,6 +16,12 @@ struct Proportion {
   double mean = 0, variance = 0;
 };
 
+/// Which of the alternatives are shown.
+enum class ShownOrientations {
+  as_needed,  ///< one stands for all four where nothing tells them apart
+  all,        ///< for comparisons draw by draw between conditions that need one and conditions that need all
+};
+
 /// What is the same for all sizes and contrasts.
 struct TrialConditions {
   SensorSpec sensor;  ///< as planned
@@ -23,6 +29,7 @@ struct TrialConditions {
   int samples_per_pitch = 1;
   int phases_per_axis = 8;  ///< per pitch
   double search_step_samples = 0.125;
+  ShownOrientations orientations = ShownOrientations::as_needed;
 };
 
 /// Noise of the white kind per sample, relative to the contrast.

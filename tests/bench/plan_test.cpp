@@ -47,6 +47,7 @@ Plan unusual_plan() {
   plan.simulation.phases = 64;
   plan.simulation.skip = {Effect::quantisation, Effect::aberration};
   plan.simulation.force = {Effect::detector};
+  plan.schedule = {.kind = ScheduleKind::adaptive, .half_width_percent = 7.5, .max_presentations = 321};
   plan.fit = {PsychometricForm::acuity, std::nullopt};
   plan.limits.acuity = {{-5, 0.4}, {1e-3, 0.1}};
   plan.limits.equivalence_margin_percent = 12.5;
@@ -245,6 +246,28 @@ TEST(PlanOptions, TwoPlatesOfOneNameAreRefused) {
 
   ASSERT_FALSE(plates);
   EXPECT_THAT(plates.error().message, HasSubstr("a second plate with the name 'tcat-a'"));
+}
+
+TEST(Plan, AsksForConstantStimuliUnlessItsScheduleIsAdaptive) {
+  const auto silent = parse("[target]\ndistance_m = 2\n");
+  const auto adaptive = parse(
+      "[target]\ndistance_m = 2\n[schedule]\nkind = \"adaptive\"\nhalf_width_percent = 5\nmax_presentations = 64\n");
+
+  ASSERT_TRUE(silent) << silent.error().message;
+  ASSERT_TRUE(adaptive) << adaptive.error().message;
+  EXPECT_EQ(silent->schedule.kind, ScheduleKind::constant);
+  EXPECT_EQ(adaptive->schedule.kind, ScheduleKind::adaptive);
+  EXPECT_EQ(adaptive->schedule.half_width_percent, 5);
+  EXPECT_EQ(adaptive->schedule.max_presentations, 64);
+}
+
+TEST(Plan, RefusesAScheduleThatIsUnknownOrCanShowNothing) {
+  for (const char* text : {"kind = \"staircase\"", "half_width_percent = 0", "max_presentations = 0", "trials = 5"}) {
+    const auto plan = parse("[target]\ndistance_m = 2\n[schedule]\n" + std::string(text) + "\n");
+
+    ASSERT_FALSE(plan) << text;
+    EXPECT_EQ(plan.error().code, ErrorCode::invalid_input);
+  }
 }
 
 }  // namespace

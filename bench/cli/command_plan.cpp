@@ -1,0 +1,73 @@
+// todbench plan
+#include <memory>
+
+#include "bench/cli/commands.h"
+#include "bench/cli/simulation_plan.h"
+#include "bench/run/prediction.h"
+#include "bench/session/verdict.h"
+
+namespace todbench {
+namespace {
+
+void print_plan(const Console& console, const PlanPrediction& prediction) {
+  std::vector<TableRow> effects;
+  for (const auto& d : prediction.effects.plan.decisions) {
+    effects.push_back({std::string(to_string(d.effect)), d.decision == Decision::simulate ? "simulate" : "skip",
+                       fixed(d.predicted_change_percent, 3), d.reason});
+  }
+  console.table({"effect", "decision", "change if skipped [%]", "reason"}, effects);
+  console.text("");
+  std::vector<TableRow> contrasts;
+  for (const auto& c : prediction.contrasts)
+    contrasts.push_back({fixed(c.delta_t_k, 3), fixed(c.s75_mrad, 3), fixed(c.uncertainty_percent, 1)});
+  console.table({"dT [K]", "expected S75 [mrad]", "95 % +- [%]"}, contrasts);
+  console.text("");
+  console.text("trials: " + std::to_string(prediction.figures.trials) +
+               "; uncertainty of S75 (95 %): " + fixed(prediction.figures.predicted_uncertainty_percent, 1) +
+               " %; time to simulate on one core: " + fixed(prediction.figures.predicted_s, 1) + " s");
+}
+
+int run_plan(Console& console, SimulationOverrides overrides, const Program& program) {
+  if (program.common.seed_given) overrides.seed = program.common.seed;
+  const auto plan = simulation_plan(overrides, program.stop->token());
+  if (!plan) return report_error(console, plan.error());
+  const auto prediction = predict_plan(*plan);
+  if (!prediction) return report_error(console, prediction.error());
+  if (console.json()) {
+    console.object(plan_json(prediction->effects.plan, prediction->figures));
+  } else {
+    print_plan(console, *prediction);
+  }
+  for (const auto& warning : prediction->warnings) console.note(warning);
+  // A plan that cannot find one of its thresholds is inconclusive before it starts.
+  return prediction->figures.predicted_uncertainty_percent ? 0 : exit_code(VerdictKind::inconclusive);
+}
+
+}  // namespace
+
+void add_plan_command(CLI::App& app, Program& program) {
+  auto* command = app.add_subcommand(
+      "plan", "which effects will be simulated or skipped and why, how many trials, predicted time and uncertainty");
+  auto o = std::make_shared<SimulationOverrides>();
+  command->add_option("PLAN.toml", o->plan, "name or file")->required();
+  command->add_option("--sensor", o->sensor, "name or file");
+  command->add_option("--observer", o->observer, "name or file");
+  command->add_option("--microscan", o->microscan, "samples per detector pitch and axis, 1 to 4")
+      ->check(whole_number(1, 4));
+  command->add_option("--delta-t-k", o->delta_t_k, "contrasts in kelvin, separated by commas")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(number_in(-500, 500));
+  command->add_option("--tolerance-percent", o->tolerance_percent, "what may be wrong in the 75 % acuity")
+      ->check(number_in(0.01, 50));
+  command->add_option("--accuracy", o->accuracy, "draft, normal, reference or auto");
+  command->add_option("--skip", o->skip, "effects not to simulate, separated by commas")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command->add_option("--force", o->force, "effects to simulate, separated by commas")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  finish_command(*command, program, [o, &program](Console& console) { return run_plan(console, *o, program); });
+}
+
+}  // namespace todbench

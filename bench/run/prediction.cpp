@@ -1,0 +1,144 @@
+#include "bench/run/prediction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "bench/session/descriptions.h"
+#include "bench/session/plan_options.h"
+#include "bench/session/text.h"
+#include "sim_devices/prediction/direct_estimate.h"
+#include "tod/planning.h"
+#include "tod/test_pattern.h"
+
+namespace todbench {
+namespace {
+
+// Weibull slope of the searching observer: dP/dlnS = (b/4) ln 3 at the threshold is 1.0 to 1.5, b 3.6 to 5.5.
+constexpr double expected_slope = 4;
+
+/// Trials per size at one contrast.
+std::vector<Level> levels_of(const Plan& plan, const std::vector<TargetPlate>& plates) {
+  std::map<double, double> totals;
+  for (const auto& plate : plates) {
+    for (const auto& t : plate.triangles)
+      totals[t.size_mm / plan.target.distance_m] +=
+          static_cast<double>(plan.target.mountings.size()) * plan.simulation.phases;
+  }
+  std::vector<Level> levels;
+  for (const auto& [size, total] : totals)
+    levels.push_back({.size = size, .correct = 0, .total = total, .cluster = -1});
+  return levels;
+}
+
+std::optional<double> uncertainty_percent(const Plan& plan, const std::vector<Level>& levels, double s75_mrad) {
+  const auto design = design_at(levels, plan.fit.form, s75_mrad, expected_slope, plan.fit.lapse.value_or(0.01));
+  const auto fit = expected_fit(design, fit_options(plan));
+  if (!fit) return std::nullopt;
+  return 100 * std::expm1(1.96 * fit->se_ln_threshold);
+}
+
+/// Draws that the direct estimate will need for its standard error: it is near (0.08 + 0.5 q) / sqrt(draws) of S75.
+double needed_draws(const Accuracy& accuracy, double q_eff) {
+  if (!(accuracy.standard_error_percent > 0)) return accuracy.noise_draws;
+  const double needed = std::pow((0.08 + 0.5 * q_eff) / (accuracy.standard_error_percent / 100), 2);
+  return std::max<double>(accuracy.noise_draws, needed);
+}
+
+/// Seconds on one core: frames by their pixels, triangles drawn once per place, answers by their templates.
+double simulation_seconds(const Plan& plan, const std::vector<TargetPlate>& plates, const SensorSpec& sensor) {
+  const double n2 = std::pow(sensor.samples_per_pitch(), 2);
+  const double pixels = sensor.width * sensor.height * n2;
+  double seconds = 0;
+  for (const auto& plate : plates) {
+    const double mountings = static_cast<double>(plan.target.mountings.size());
+    const double contrasts = static_cast<double>(plan.target.delta_t_k.size());
+    const double triangles = static_cast<double>(plate.triangles.size());
+    const double shown = mountings * contrasts * plan.simulation.phases;
+    const double extra =
+        mountings * (plan.measurement.registration_frames + contrasts * plan.measurement.contrast_frames);
+    seconds += (shown + extra) * pixels * 8e-9 * sensor.exposures_per_sample();
+    seconds += mountings * plan.simulation.phases * triangles * 4e-4 * n2;
+    seconds += shown * triangles * 1.2e-4 * n2;
+  }
+  return seconds;
+}
+
+Result<void> reachable(const Plan& plan, const Accuracy& accuracy, const EffectPlan& effects,
+                       const TemplateObserverSpec& observer, const SensorSpec& sensor) {
+  for (const auto& outlook : effects.outlooks) {
+    const double draws = needed_draws(accuracy, outlook.q_eff);
+    if (draws <= Accuracy::max_noise_draws) continue;
+    const double best = plan.simulation.tolerance_percent * std::sqrt(draws / Accuracy::max_noise_draws);
+    const double price = predicted_direct_seconds(observer, sensor, outlook.s75_pitch, Accuracy::max_noise_draws,
+                                                  accuracy.phases_per_axis);
+    return fail(ErrorCode::invalid_input, "a tolerance of " + number_text(plan.simulation.tolerance_percent) +
+                                              " % cannot be met at " + number_text(outlook.delta_t_k) +
+                                              " K: the most noise draws per size, " +
+                                              std::to_string(Accuracy::max_noise_draws) + ", reach about " +
+                                              number_text(std::ceil(best * 100) / 100) + " %, for about " +
+                                              number_text(std::ceil(price * 10) / 10) + " s per contrast");
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<PlanPrediction> predict_plan(const Plan& plan) {
+  auto plates = plates_of(plan);
+  if (!plates) return tl::unexpected(plates.error());
+  auto observer_spec = load_observer(plan.observer);
+  if (!observer_spec) return tl::unexpected(observer_spec.error());
+  auto sensor = sensor_of(plan);
+  if (!sensor) return tl::unexpected(sensor.error());
+  const auto accuracy = accuracy_of(plan);
+  if (!accuracy) return tl::unexpected(accuracy.error());
+  TemplateObserver observer(*observer_spec, triangle_alternatives());
+  auto effects = planned_effects(plan, *sensor, observer);
+  if (!effects) {
+    // No contrast has a threshold: nothing can be left out, nothing will be found.
+    EffectPlan none{.plan = full_plan(*sensor, plan.simulation.skip, plan.simulation.force, plan.simulation.motion),
+                    .skipped_change_percent = 0,
+                    .requested_change_percent = 0,
+                    .outlooks = {},
+                    .warnings = {effects.error().message}};
+    effects = std::move(none);
+  }
+  const SensorSpec simulated = as_planned(*sensor, effects->plan);
+  if (auto met = reachable(plan, *accuracy, *effects, *observer_spec, simulated); !met)
+    return tl::unexpected(met.error());
+
+  PlanPrediction out{.effects = *std::move(effects), .figures = {}, .contrasts = {}, .warnings = {}};
+  out.warnings = out.effects.warnings;
+  const auto levels = levels_of(plan, *plates);
+  double trials = 0;
+  for (const auto& level : levels) trials += level.total;
+  out.figures.trials =
+      static_cast<std::uint64_t>(std::llround(trials * static_cast<double>(plan.target.delta_t_k.size())));
+  double seconds = simulation_seconds(plan, *plates, simulated);
+  bool all_identified = true;
+  for (const double delta_t_k : plan.target.delta_t_k) {
+    ContrastPrediction point{.delta_t_k = delta_t_k, .s75_mrad = std::nullopt, .uncertainty_percent = std::nullopt};
+    for (const auto& outlook : out.effects.outlooks) {
+      if (outlook.delta_t_k != delta_t_k) continue;
+      point.s75_mrad = outlook.s75_pitch * sensor->ifov_mrad();
+      point.uncertainty_percent = uncertainty_percent(plan, levels, *point.s75_mrad);
+      seconds +=
+          predicted_direct_seconds(*observer_spec, simulated, outlook.s75_pitch,
+                                   static_cast<int>(needed_draws(*accuracy, outlook.q_eff)), accuracy->phases_per_axis);
+    }
+    if (point.uncertainty_percent) {
+      out.figures.predicted_uncertainty_percent =
+          std::max(out.figures.predicted_uncertainty_percent.value_or(0), *point.uncertainty_percent);
+    } else {
+      all_identified = false;
+      out.warnings.push_back("at " + number_text(delta_t_k) + " K the sizes of the plates identify no threshold");
+    }
+    out.contrasts.push_back(point);
+  }
+  if (!all_identified) out.figures.predicted_uncertainty_percent.reset();
+  out.figures.predicted_s = seconds;
+  return out;
+}
+
+}  // namespace todbench

@@ -1,0 +1,34 @@
+// What a plan will do, before it does it: effects, trials, uncertainty, time.
+#pragma once
+
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "bench/run/experiment_inputs.h"
+#include "bench/session/json_output.h"
+#include "bench/session/plan.h"
+
+namespace todbench {
+
+/// One contrast of a plan before it is measured.
+struct ContrastPrediction {
+  double delta_t_k = 0;
+  std::optional<double> s75_mrad;  ///< of the first tier; nothing: no threshold is expected
+  std::optional<double>
+      uncertainty_percent;  ///< half the 95 % interval of S75 from the trials; nothing: not identified
+};
+
+struct PlanPrediction {
+  EffectPlan effects;
+  PlanFigures figures;  ///< uncertainty: the largest over the contrasts; time: of the simulation on one core
+  std::vector<ContrastPrediction> contrasts;
+  std::vector<std::string> warnings;  ///< a sentence each
+};
+
+/// Nothing is simulated; costs some tens of milliseconds. Errors: as read_inputs() for what a plan names,
+/// `invalid_input` where the tolerance cannot be met within the hard caps (the message says what can and for what
+/// time). Contrasts without threshold have no uncertainty, and then the plan has none; a warning names them.
+[[nodiscard]] Result<PlanPrediction> predict_plan(const Plan& plan);
+
+}  // namespace todbench

@@ -1,0 +1,158 @@
+// The simulated sensor at the ends of its counts, without noise and drowned in it, and on two threads.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <thread>
+
+#include "sim_devices/prediction/direct_estimate.h"
+#include "sim_devices/sensor/sensor_model.h"
+#include "tod/test_pattern.h"
+
+namespace todbench {
+namespace {
+
+PlateScene scene_of_one(double delta_t_k, double background_k = 300) {
+  PlateScene scene;
+  scene.plate.name = "one";
+  scene.plate.triangles = {{.name = "only", .position_mm = {10, -20}, .size_mm = 40, .apex = Apex::right}};
+  scene.delta_t_k = delta_t_k;
+  scene.background_k = background_k;
+  return scene;
+}
+
+SensorModel model(const SensorSpec& spec, const std::vector<Effect>& skip = {}) {
+  return {spec, full_plan(spec, skip, {}), Accuracy::normal(), 1};
+}
+
+// Hard: a count is unsigned: what lies outside 0 ... 2^14 - 1 must stop at the end, not come round at the other. The
+// range of the default sensor is 250 K ... 413.83 K.
+TEST(SensorExtremes, FourteenBitCountsClipAtBothEndsAndNeverWrap) {
+  const SensorSpec spec;
+  const SensorModel sensor = model(spec);
+  for (const double contrast : {200.0, 1e4, 1e9}) {
+    const cv::Mat1w frame = sensor.expose(scene_of_one(contrast), 0);
+    double low = 0, high = 0;
+    cv::minMaxLoc(frame, &low, &high);
+    EXPECT_EQ(high, 16383) << contrast;
+    EXPECT_GT(low, 4000) << contrast;  // the surround, 5000 counts
+  }
+  for (const double contrast : {-200.0, -1e4, -1e9}) {
+    const cv::Mat1w frame = sensor.expose(scene_of_one(contrast), 0);
+    double low = 0, high = 0;
+    cv::minMaxLoc(frame, &low, &high);
+    EXPECT_EQ(low, 0) << contrast;
+    EXPECT_LT(high, 6000) << contrast;
+  }
+  for (const auto& [background, count] : {std::pair(1e6, 16383), std::pair(0.0, 0)}) {
+    const cv::Mat1w frame = sensor.expose(scene_of_one(1, background), 0);
+    EXPECT_EQ(cv::countNonZero(frame != count), 0) << background;
+  }
+}
+
+// Hard: values next to the last count. 16383 is 413.83 K exactly; half a count more still rounds to it.
+TEST(SensorExtremes, TheLastCountIsReachedByRoundingAndHeld) {
+  SensorSpec spec;
+  spec.netd_k = 0;
+  const SensorModel sensor = model(spec);
+  for (const auto& [background, count] :
+       {std::pair(413.824, 16382), std::pair(413.826, 16383), std::pair(413.834, 16383), std::pair(413.9, 16383),
+        std::pair(250.004, 0), std::pair(250.006, 1)}) {
+    const cv::Mat1w frame = sensor.expose(scene_of_one(0, background), 0);
+    EXPECT_EQ(cv::countNonZero(frame != count), 0) << background;
+  }
+}
+
+// Hard: a picture of 1 mK in single precision; it is kept above the surround, so that 300 K never enters it: float
+// resolution of 1 mK is 6e-11 K.
+TEST(SensorExtremes, APictureOfOneMillikelvinIsTheUnitPictureScaled) {
+  SensorSpec spec;
+  spec.netd_k = 0;
+  const SensorModel sensor = model(spec, {Effect::quantisation});
+  const auto unit = sensor.unit_signal(scene_of_one(1));
+
+  const cv::Mat1f picture = sensor.picture(scene_of_one(1e-3), 0);
+
+  double largest = 0;
+  for (int j = 0; j < picture.rows; ++j) {
+    for (int i = 0; i < picture.cols; ++i)
+      largest =
+          std::max(largest, std::abs(static_cast<double>(picture(j, i)) - 1e-3 * static_cast<double>((*unit)(j, i))));
+  }
+  EXPECT_LE(largest, 1.2e-10);
+}
+
+TEST(SensorExtremes, NoiseAThousandTimesTheSignalStaysFiniteAndHasItsSpread) {
+  SensorSpec spec;
+  spec.netd_k = 10;
+  const SensorModel sensor = model(spec, {Effect::quantisation});
+
+  const cv::Mat1f picture = sensor.picture(scene_of_one(0.01), 0);
+
+  cv::Scalar mean, sd;
+  cv::meanStdDev(picture, mean, sd);
+  const double n = static_cast<double>(picture.total());
+  EXPECT_NEAR(sd[0], 10, 4 * 10 / std::sqrt(2 * n));
+  EXPECT_NEAR(mean[0], 0, 4 * 10 / std::sqrt(n) + 0.01);
+}
+
+TemplateObserver observer_with(double internal_noise) {
+  TemplateObserverSpec spec;
+  spec.internal_noise = internal_noise;
+  return {spec, triangle_alternatives()};
+}
+
+// Hard: without any noise every answer is certain and proportions are steps; with noise a thousand times the contrast
+// no size below 40 pitches is seen. Either is a number or a refusal in words.
+TEST(SensorExtremes, DirectEstimatesWithoutNoiseAndDrownedInItAreNumbersOrRefusals) {
+  SensorSpec spec;
+  spec.netd_k = 0;
+  TemplateObserver silent = observer_with(0);
+  const SensorPlan plan = full_plan(spec, {Effect::quantisation}, {});
+  Accuracy accuracy = Accuracy::draft();
+  const auto certain = direct_estimate(spec, plan, silent, {1.0}, {.accuracy = accuracy});
+  if (certain) {
+    EXPECT_TRUE(std::isfinite((*certain)[0].s75_pitch) && (*certain)[0].s75_pitch > 0.2);
+    EXPECT_TRUE(std::isfinite((*certain)[0].standard_error_pitch));
+  } else {
+    EXPECT_EQ(certain.error().code, ErrorCode::invalid_input) << certain.error().message;
+  }
+
+  const SensorSpec noisy;
+  TemplateObserver usual = observer_with(0.07);
+  const auto drowned = direct_estimate(noisy, full_plan(noisy, {}, {}), usual, {7e-5}, {.accuracy = accuracy});
+
+  ASSERT_FALSE(drowned);
+  EXPECT_EQ(drowned.error().code, ErrorCode::invalid_input);
+  EXPECT_NE(drowned.error().message.find("no size"), std::string::npos) << drowned.error().message;
+}
+
+// Sums in a fixed order and random numbers by place: two threads that share model and observer find the bits of one.
+TEST(SensorExtremes, TwoThreadsFindTheBitsOfOne) {
+  const SensorSpec spec;
+  const SensorPlan plan = full_plan(spec, {}, {});
+  const auto estimate = [&](TemplateObserver& observer) {
+    return direct_estimate(spec, plan, observer, {1.93}, {.accuracy = Accuracy::draft()}).value()[0];
+  };
+  TemplateObserver alone = observer_with(0.07), shared = observer_with(0.07);
+  const DirectPoint expected = estimate(alone);
+  const SensorModel single = model(spec), both = model(spec);
+  const cv::Mat1w frame = single.expose(scene_of_one(1.93), 5);
+
+  DirectPoint first, second;
+  cv::Mat1w frame_first, frame_second;
+  {
+    std::jthread one([&] { first = estimate(shared), frame_first = both.expose(scene_of_one(1.93), 5); });
+    std::jthread two([&] { second = estimate(shared), frame_second = both.expose(scene_of_one(1.93), 5); });
+  }
+
+  for (const DirectPoint& found : {first, second}) {
+    EXPECT_EQ(found.s75_pitch, expected.s75_pitch);
+    EXPECT_EQ(found.standard_error_pitch, expected.standard_error_pitch);
+    EXPECT_EQ(found.proportion_correct, expected.proportion_correct);
+  }
+  EXPECT_EQ(cv::countNonZero(frame_first != frame), 0);
+  EXPECT_EQ(cv::countNonZero(frame_second != frame), 0);
+}
+
+}  // namespace
+}  // namespace todbench
