@@ -71,7 +71,8 @@ double expected_blur_px(const ExperimentInputs& inputs, const TargetPlate& plate
   scene.delta_t_k = 1;
   scene.distance_m = plan.target.distance_m;
   RegistrationOptions options = simulated_options(plan, inputs).registration;
-  options.expected_scale_px_per_mm = 1 / (plan.target.distance_m * inputs.sensor.ifov_mrad() / inputs.sensor.microscan);
+  options.expected_scale_px_per_mm =
+      1 / (plan.target.distance_m * inputs.sensor.ifov_mrad() / inputs.sensor.samples_per_pitch());
   cv::Mat1d picture;
   model.unit_signal(scene)->convertTo(picture, CV_64F);
   const auto found = register_plate(picture, plate, options);

@@ -81,8 +81,8 @@ Result<Contrast> contrast_of(CuedEstimate& cued, const SensorSpec& sensor, const
   if (!exponent) return tl::unexpected(exponent.error());
   out.outlook.s75_pitch = *size;
   // The searching observer loses faster than the one that knows the position: its S75 is up to 1.06 times larger at
-  // q = 0.3 and 1.12 at 0.7.
-  out.outlook.noise_exponent = 1.25 * *exponent + 0.05;
+  // q = 0.3 and 1.12 at 0.7. Half as much again and a tenth keep the bound above it.
+  out.outlook.noise_exponent = 1.5 * *exponent + 0.1;
   const auto d = [&](double factor) {
     return std::log(discriminability(sensor, everything, factor * *size, planning_wavelengths));
   };
@@ -146,11 +146,14 @@ std::optional<double> bound(Effect effect, const Contrast& c, const SensorSpec& 
       // Without it the noise is larger: the bound has the sign the other way.
       return noise_change(c, (sensor.frames_averaged - 1) * (c.noise.temporal + c.noise.lines));
     case Effect::dead_pixels:
-      // What replaces a pixel at an edge is off by a third of the contrast, in all of a detector's samples.
-      return noise_change(c, sensor.dead_pixel_share * n * n / 9.0);
+      // What replaces a pixel at an edge is off by a third of the contrast, in all of a detector's samples. At high
+      // contrast that is no small noise: a dead detector on the target or next to it may cost all that is above chance,
+      // 0.5 of the answers, and the proportion rises by 1 per ln S.
+      return std::max(noise_change(c, sensor.dead_pixel_share * n * n / 9.0),
+                      0.5 * sensor.dead_pixel_share * std::pow(1.5 * c.outlook.s75_pitch + 2, 2));
     case Effect::display:
-      // 1.1 % for a blur of 0.2 samples and as its square; 2.7 % for bilinear interpolation.
-      return 0.0125 * std::pow(sensor.display_blur_samples / 0.2, 2) +
+      // Twice what was found: 1.1 % for a blur of 0.2 samples and as its square; and 2.7 % for bilinear interpolation.
+      return 0.025 * std::pow(sensor.display_blur_samples / 0.2, 2) +
              (sensor.display == DisplayReconstruction::bilinear ? 0.027 : 0);
   }
   return std::nullopt;

@@ -106,6 +106,10 @@ void direct_estimate_three_contrasts(benchmark::State& state, Accuracy accuracy)
   }
 }
 BENCHMARK_CAPTURE(direct_estimate_three_contrasts, draft, Accuracy::draft())->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(direct_estimate_three_contrasts, tolerance_5_percent, Accuracy::for_tolerance(5))
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(direct_estimate_three_contrasts, tolerance_1_percent, Accuracy::for_tolerance(1))
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(direct_estimate_three_contrasts, normal, Accuracy::normal())->Unit(benchmark::kMillisecond);
 
 }  // namespace
