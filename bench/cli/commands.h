@@ -45,6 +45,8 @@ void add_measure_command(CLI::App& app, Program& program);
 void add_simulate_command(CLI::App& app, Program& program);
 void add_compare_command(CLI::App& app, Program& program);
 void add_report_command(CLI::App& app, Program& program);
+void add_noise_command(CLI::App& app, Program& program);
 void add_range_command(CLI::App& app, Program& program);
+void add_reproduce_command(CLI::App& app, Program& program);
 
 }  // namespace todbench
