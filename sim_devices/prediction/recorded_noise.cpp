@@ -111,7 +111,8 @@ Result<RecordedNoise> recorded_noise(std::span<const cv::Mat1f> frames, int bloc
     add_residuals(frames.subspan(static_cast<std::size_t>(b) * size, size), b, noise);
   }
   find_usable(noise);
-  if (!(noise.temporal_noise > 0))
+  // Below a millionth of the level it is the rounding of the mean.
+  if (!(noise.temporal_noise > 1e-6 * cv::norm(frames[0], cv::NORM_INF)))
     return fail(ErrorCode::invalid_input, "the recording holds no noise: all frames are the same");
   find_correlations(noise);
   auto components = mean_components(without_moving_scene(frames, noise, block_frames), block_frames, noise.blocks);
