@@ -13,6 +13,7 @@
 #include "acquisition/core/frame_source.h"
 #include "acquisition/core/integrity_gate.h"
 #include "hvs/observer.h"
+#include "tod/frame_taker.h"
 #include "tod/registration.h"
 #include "tod/schedule.h"
 #include "tod/target.h"
@@ -36,17 +37,12 @@ struct MeasurementOptions {
   double nuc_wait_s = 1;             ///< frames within this time after a correction are not measured
   double max_rejected_share = 0.05;  ///< beyond it, after 100 frames, the run ends with `integrity`
   std::chrono::milliseconds frame_timeout{2000};
+  /// The clock of Frame::host_time_ns; a recorded measurement brings its own.
+  std::function<std::int64_t()> now_ns = monotonic_ns;
   IntegrityOptions integrity;
   RegistrationOptions registration;  ///< expected scale is filled in from distance and IFOV
   std::uint64_t seed = 1;
-};
-
-/// What the run says while it goes on. Called from the measuring thread; a slow listener slows the measurement, it
-/// never loses trials.
-struct MeasurementListener {
-  std::function<void(const Trial&)> on_trial;
-  std::function<void(std::size_t done, std::size_t planned)> on_progress;
-  std::function<void(const std::string& sentence)> on_note;
+  bool free_running = true;  ///< the camera exposes whether its frames are taken or not: they are taken in a pause too
 };
 
 /// Registration and contrast of one set-up (plate and mounting), for the report.
@@ -54,6 +50,20 @@ struct SetUpRecord {
   std::string plate;
   Mounting mounting = Mounting::identity;
   Registration registration;
+};
+
+/// What the run says while it goes on. Called from the measuring thread; a slow listener slows the measurement, it
+/// never loses trials.
+struct MeasurementListener {
+  std::function<void(const Trial&)> on_trial;
+  /// After on_trial: what the observer saw; lent for the call.
+  std::function<void(const Trial&, const Patch&)> on_patch;
+  std::function<void(const SetUpRecord&)> on_set_up;
+  /// Asked before every presentation and again while it says true; may take a tenth of a second to answer.
+  std::function<bool()> paused;
+  std::function<void(std::size_t done, std::size_t planned)> on_progress;
+  std::function<void(const std::string& sentence)> on_note;
+  std::function<void(const RejectedFrame&)> on_rejected{};  ///< every frame that was not used, with the reason
 };
 
 struct MeasurementResult {

@@ -109,6 +109,8 @@ int run(int argc, char** argv) {
   add_emulate_command(app, program);
   add_measure_command(app, program);
   add_simulate_command(app, program);
+  add_record_command(app, program);
+  add_replay_command(app, program);
   add_compare_command(app, program);
   add_report_command(app, program);
   add_fit_command(app, program);

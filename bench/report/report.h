@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "acquisition/core/frame_source.h"
+#include "bench/report/svg_plot.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"
 #include "tod/comparison.h"
@@ -86,6 +87,11 @@ struct ReportData {
 
 /// fail > interrupted > inconclusive > pass; not_judged without limits.
 [[nodiscard]] ReportVerdict report_verdict(const ReportData& data);
+
+/// The TOD curve of the report, then one psychometric function per contrast: what stands in the page as figures, in its
+/// order.
+[[nodiscard]] Plot tod_plot(const ReportData& data);
+[[nodiscard]] std::vector<Plot> psychometric_plots(const ReportData& data);
 
 /// The page: HTML 5 that is also well-formed XML, style and figures inside, no script, nothing from outside. A pure
 /// function.

@@ -42,8 +42,8 @@ std::string simulated_name(const ReportData& data) {
 }
 
 /// Limits on acuity, at the contrast the camera saw where it was measured: there the point to compare with is drawn.
-std::vector<AcuityLimit> acuity_limits(const ReportData& data) {
-  std::vector<AcuityLimit> limits;
+std::vector<DrawnLimit> acuity_limits(const ReportData& data) {
+  std::vector<DrawnLimit> limits;
   for (const LimitLine& line : data.limits) {
     if (!line.limit || !line.acuity_at_delta_t_k || line.side != LimitLine::Side::at_least) continue;
     const TodPoint* point = data.measured ? point_at(*data.measured, *line.acuity_at_delta_t_k) : nullptr;
@@ -200,11 +200,25 @@ Markup limits_section(const ReportData& data) {
   return section("Limits", table(rows) + paragraph(cell(one_sided_note), "note"));
 }
 
+Plot tod_plot(const ReportData& data) {
+  const std::vector<DrawnLimit> limits = acuity_limits(data);
+  return tod_figure({measured_name(data), pointer(data.measured)}, {simulated_name(data), pointer(data.simulated)},
+                    limits);
+}
+
+std::vector<Plot> psychometric_plots(const ReportData& data) {
+  std::vector<Plot> plots;
+  for (const double contrast : all_contrasts(data)) {
+    plots.push_back(psychometric_figure("psychometric-" + std::to_string(plots.size() + 1),
+                                        {"measured", point_of(data.measured, contrast)},
+                                        {"simulated", point_of(data.simulated, contrast)}, data.fit.form));
+  }
+  return plots;
+}
+
 Markup curve_section(const ReportData& data) {
   if (!data.measured && !data.simulated) return section("TOD curve", paragraph(missing("no results")));
-  const std::vector<AcuityLimit> limits = acuity_limits(data);
-  const Plot plot = tod_figure({measured_name(data), pointer(data.measured)},
-                               {simulated_name(data), pointer(data.simulated)}, limits);
+  const Plot plot = tod_plot(data);
   Markup content = figure(
       svg_plot(plot),
       "TOD curve: acuity (linear) against contrast (logarithmic), at the effective contrast, which the camera saw. "
@@ -229,14 +243,10 @@ Markup curve_section(const ReportData& data) {
 
 Markup psychometric_section(const ReportData& data) {
   Markup figures;
-  int number = 0;
-  for (const double contrast : all_contrasts(data)) {
-    const TodPoint* measured = point_of(data.measured, contrast);
-    const TodPoint* simulated = point_of(data.simulated, contrast);
-    const Plot plot = psychometric_figure("psychometric-" + std::to_string(++number), {"measured", measured},
-                                          {"simulated", simulated}, data.fit.form);
-    figures += figure(svg_plot(plot), "Set contrast ΔT = " + stated(contrast) + " K");
-  }
+  const std::vector<Plot> plots = psychometric_plots(data);
+  const std::vector<double> contrasts = all_contrasts(data);
+  for (std::size_t i = 0; i < plots.size(); ++i)
+    figures += figure(svg_plot(plots[i]), "Set contrast ΔT = " + stated(contrasts[i]) + " K");
   if (figures.empty()) return {};
   const Markup explanation = cell(
       "Points: proportion correct with Wilson 95 % intervals, every trial taken as independent. Lines: fitted "

@@ -46,12 +46,12 @@ PlotSeries tod_series(const NamedCurve& curve, PlotTone tone, double sign) {
   return series;
 }
 
-PlotSeries limit_series(std::span<const AcuityLimit> limits) {
+PlotSeries limit_series(std::span<const DrawnLimit> limits) {
   PlotSeries series;
   series.label = "limit (least acuity)";
   series.tone = PlotTone::muted;
   series.marker = PlotMarker::bar;
-  for (const AcuityLimit& limit : limits)
+  for (const DrawnLimit& limit : limits)
     series.points.push_back({limit.least_acuity_per_mrad, std::abs(limit.delta_t_k), {}, {}});
   return series;
 }
@@ -147,7 +147,7 @@ const TodPoint* point_at(const TodCurve& curve, double set_delta_t_k) {
   return nullptr;
 }
 
-Plot tod_figure(const NamedCurve& first, const NamedCurve& second, std::span<const AcuityLimit> limits) {
+Plot tod_figure(const NamedCurve& first, const NamedCurve& second, std::span<const DrawnLimit> limits) {
   Plot plot;
   plot.id = "tod";
   plot.title = "TOD curve";
@@ -176,6 +176,22 @@ Plot tod_figure(const NamedCurve& first, const NamedCurve& second, std::span<con
   }
   plot.x.high = acuities.empty() ? 1 : acuities.high * 1.12;
   set_logarithmic_range(plot.y, contrasts, 1.8);
+  return plot;
+}
+
+Plot with_acuity_axis(Plot plot, AxisScale scale) {
+  plot.x.scale = scale;
+  plot.x.low = 0;
+  if (scale == AxisScale::linear) return plot;
+  Range acuities;
+  for (const PlotSeries& series : plot.series) {
+    for (const PlotPoint& point : series.points) {
+      acuities.include(point.x);
+      acuities.include(point.x_interval.low);
+      acuities.include(point.x_interval.high);
+    }
+  }
+  set_logarithmic_range(plot.x, acuities, 1.25);
   return plot;
 }
 

@@ -30,14 +30,16 @@ struct NamedCurve {
 };
 
 /// The least acuity that a limit asks for at a contrast.
-struct AcuityLimit {
+struct DrawnLimit {
   double delta_t_k = 0;
   double least_acuity_per_mrad = 0;
 };
 
 /// Acuity 1/S75 (linear, x) against contrast (logarithmic, y): the TOD convention. 95 % intervals are horizontal.
 /// Contrasts of either sign are drawn by their magnitude, negative ones as a series of their own.
-[[nodiscard]] Plot tod_figure(const NamedCurve& first, const NamedCurve& second, std::span<const AcuityLimit> limits);
+[[nodiscard]] Plot tod_figure(const NamedCurve& first, const NamedCurve& second, std::span<const DrawnLimit> limits);
+/// The same figure with its acuity axis linear, as is the convention, or logarithmic.
+[[nodiscard]] Plot with_acuity_axis(Plot tod_figure, AxisScale scale);
 
 /// Proportion correct with Wilson intervals against size, fitted functions, 75 % and 25 % lines and the 95 % intervals
 /// of the thresholds. A null point is left out. `id` is unique on the page.

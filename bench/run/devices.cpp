@@ -11,6 +11,9 @@
 #ifdef TODBENCH_WITH_ARAVIS
 #include "acquisition/aravis/aravis_backend.h"
 #endif
+#ifdef TODBENCH_WITH_V4L2
+#include "acquisition/v4l2/v4l2_backend.h"
+#endif
 
 namespace todbench {
 namespace {
@@ -76,10 +79,12 @@ TargetCapabilities times_of(const TargetPlan& plan) {
   return times;
 }
 
-Result<std::unique_ptr<Target>> open_target(const Plan& plan, std::stop_token stop) {
+Result<std::unique_ptr<Target>> open_target(const Plan& plan, std::stop_token stop,
+                                            const OperatorDialogue& ask_operator) {
   if (plan.target.kind == TargetKind::prompt) {
     PromptTargetOptions options;
     options.times = times_of(plan.target);
+    if (ask_operator) return dialogue_target(ask_operator, options);
     return prompt_target(std::cerr, descriptor_lines(0), options);
   }
   ScpiTargetOptions options;
@@ -107,6 +112,9 @@ CameraRegistry camera_registry() {
   registry.add(aravis_backend());
   registry.add(aravis_backend({.transport = AravisTransport::usb3_vision}));
 #endif
+#ifdef TODBENCH_WITH_V4L2
+  registry.add(v4l2_backend());
+#endif
   registry.add(recording_backend());
   registry.add(std::make_unique<SimulatedBackend>());
   return registry;
@@ -123,7 +131,8 @@ OpenedBench simulated_bench(std::shared_ptr<const SensorModel> model, const std:
   return {.camera = simulated_source(std::move(model), holder, "1"), .target = std::move(target), .simulated = true};
 }
 
-Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>& plates, std::stop_token stop) {
+Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>& plates, std::stop_token stop,
+                               const OperatorDialogue& ask_operator) {
   if (plan.target.kind == TargetKind::scene) {
     if (!plan.camera.id.starts_with(simulated_scheme)) {
       return fail(ErrorCode::invalid_input,
@@ -144,7 +153,7 @@ Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>&
   if (auto written = write_settings(*bench.camera, plan.camera.settings); !written) {
     return fail("camera " + plan.camera.id, written.error());
   }
-  auto target = open_target(plan, stop);
+  auto target = open_target(plan, stop, ask_operator);
   if (!target) return fail("opening the target", target.error());
   bench.target = std::move(*target);
   return bench;

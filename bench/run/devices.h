@@ -1,31 +1,37 @@
 // From the words of a plan to opened devices.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <stop_token>
 
 #include "acquisition/core/camera_registry.h"
+#include "bench/run/operator_target.h"
 #include "bench/session/plan.h"
 #include "sim_devices/sensor/simulated_camera.h"
+#include "tod/frame_taker.h"
 #include "tod/target.h"
 
 namespace todbench {
 
-/// Every back end of this build: GigE Vision, USB3 Vision, recordings, simulated sensors.
+/// Every back end of this build: GigE Vision, USB3 Vision, V4L2, recordings, simulated sensors.
 [[nodiscard]] CameraRegistry camera_registry();
 
 /// A camera and what changes the target before it.
 struct OpenedBench {
   std::unique_ptr<FrameSource> camera;
   std::unique_ptr<Target> target;
-  bool simulated = false;  ///< the camera is a sensor model, its clock that of the model
+  bool simulated = false;                               ///< the camera is a sensor model, its clock that of the model
+  std::function<std::int64_t()> now_ns = monotonic_ns;  ///< the clock of the camera's host times
 };
 
 /// Opens what the plan names and writes its settings into the camera. Errors: `not_found`, `invalid_input` (a target
 /// that cannot work with this camera, a setting that is refused), `interrupted`.
+/// `ask_operator` answers for a target of kind prompt; none: the terminal.
 [[nodiscard]] Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>& plates,
-                                             std::stop_token stop);
+                                             std::stop_token stop, const OperatorDialogue& ask_operator = {});
 
 /// A simulated sensor behind a scene. `shown_delta_t_k`: set-point -> contrast really shown, so that a twin shows what
 /// a camera saw; set-points that are not in it are shown as they are.

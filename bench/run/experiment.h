@@ -10,6 +10,8 @@
 #include <string_view>
 
 #include "bench/run/devices.h"
+#include "bench/run/experiment_inputs.h"
+#include "bench/run/pause.h"
 #include "bench/session/json_output.h"
 #include "bench/session/plan.h"
 #include "bench/session/plan_options.h"
@@ -20,9 +22,21 @@ namespace todbench {
 
 /// What goes on, for a terminal or a window. Called from the thread of the run.
 struct ExperimentListener {
-  std::function<void(std::string_view phase)> on_phase;
-  std::function<void(std::size_t done, std::size_t planned)> on_progress;
-  std::function<void(std::string_view sentence)> on_note;
+  std::function<void(std::string_view phase)> on_phase{};
+  std::function<void(std::size_t done, std::size_t planned)> on_progress{};
+  std::function<void(std::string_view sentence)> on_note{};
+  /// The folder exists and holds the plan.
+  std::function<void(const std::filesystem::path& folder)> on_session{};
+  std::function<void(const SourceInfo&)> on_open{};
+  /// Every frame of the camera as it arrives, good or bad; not those of the twin.
+  std::function<void(const Frame&)> on_frame{};
+  std::function<void(SessionCurve, const SetUpRecord&)> on_set_up{};
+  /// A trial that is on disk, and the patch that was judged, lent for the call.
+  std::function<void(SessionCurve, const Trial&, const Patch&)> on_trial{};
+  /// Lets a run rest between two presentations; null: it never does. Outlives the run.
+  const Pause* pause = nullptr;
+  /// Answers a request to a target of kind prompt; none: the terminal.
+  OperatorDialogue ask_operator{};
 };
 
 struct ExperimentOptions {
@@ -46,6 +60,11 @@ struct ExperimentOutcome {
 /// without a folder when a device cannot be opened, with a folder marked interrupted after that.
 [[nodiscard]] Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions& options,
                                                      const ExperimentListener& listener, std::stop_token stop);
+
+/// measure_plan() on a bench that is open already.
+[[nodiscard]] Result<ExperimentOutcome> measure_on_bench(const Plan& plan, const ExperimentInputs& inputs,
+                                                         OpenedBench bench, const ExperimentOptions& options,
+                                                         const ExperimentListener& listener, std::stop_token stop);
 
 /// The same with the simulated sensor in place of the camera, and its direct estimate.
 [[nodiscard]] Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOptions& options,

@@ -54,6 +54,7 @@ MeasurementOptions simulated_options(const Plan& plan, const ExperimentInputs& i
   options.samples_per_pitch = inputs.sensor.microscan;
   options.frames_after_change = 0;
   options.nuc_interval_s = 0;
+  options.free_running = false;
   options.integrity.reject_frozen = inputs.effects.simulates(Effect::temporal_noise) && inputs.sensor.netd_k > 0;
   return options;
 }

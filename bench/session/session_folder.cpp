@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <set>
@@ -125,6 +126,17 @@ Result<void> read_all_trials(const std::filesystem::path& folder, Session& sessi
 }
 
 }  // namespace
+
+std::string session_folder_name(const std::string& plan_name) {
+  std::string stamp;
+  for (const char c : utc_now()) {
+    if (c != '-' && c != ':') stamp += c;
+  }
+  std::string clean;
+  for (const char c : plan_name)
+    clean += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' ? c : '_';
+  return "session-" + stamp + "-" + clean;
+}
 
 Result<SessionFolder> SessionFolder::create(const std::filesystem::path& folder, ExistingFolder existing) {
   if (existing == ExistingFolder::number) return create_numbered(folder);

@@ -24,6 +24,9 @@ enum class ExistingFolder {
   number,     ///< takes a new folder beside it, with -2, -3, ... behind the name
 };
 
+/// "session-20260131T123456Z-NAME" with the time of now; a second one within the same second needs a number.
+[[nodiscard]] std::string session_folder_name(const std::string& plan_name);
+
 /// Which of the two curves of a session: the one that the session is about, or its simulated twin.
 enum class SessionCurve { main, twin };
 

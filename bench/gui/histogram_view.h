@@ -1,0 +1,27 @@
+// Counts per bin as bars.
+#pragma once
+
+#include <QWidget>
+#include <vector>
+
+namespace todbench {
+
+class HistogramView final : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit HistogramView(QWidget* parent = nullptr);
+  /// Bins between two ends, which stand below in `unit`.
+  void show_bins(std::vector<int> bins, const QString& low, const QString& high);
+  [[nodiscard]] QSize sizeHint() const override { return {200, 90}; }
+  [[nodiscard]] QSize minimumSizeHint() const override { return {120, 70}; }
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+
+ private:
+  std::vector<int> bins_;
+  QString low_, high_;
+};
+
+}  // namespace todbench

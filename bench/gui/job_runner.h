@@ -1,0 +1,46 @@
+// One thread that does one job after the other.
+#pragma once
+
+#include <QObject>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <thread>
+
+namespace todbench {
+
+/// A new job asks the running one to stop and begins when it has ended; a job that waits is dropped for a newer one.
+/// Methods are called from the thread that owns the object and return at once; jobs run on the runner's own thread.
+class JobRunner final : public QObject {
+  Q_OBJECT
+
+ public:
+  using Job = std::function<void(std::stop_token)>;
+  explicit JobRunner(QObject* parent = nullptr);
+  /// Stops the running job and waits for its end.
+  ~JobRunner() override;
+
+  void start(Job job);
+  /// What became of a job that had not begun.
+  enum class Waiting { none, dropped };
+  /// Asks the running job to stop and drops the waiting one.
+  Waiting stop();
+  /// Stops and waits for the end of the running job; nothing runs after it.
+  void shut_down();
+  /// A job runs or waits.
+  [[nodiscard]] bool busy() const;
+
+ private:
+  void run(const std::stop_token& end);
+
+  mutable std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::optional<Job> waiting_;
+  std::optional<std::stop_source> running_;
+  std::jthread thread_;  // last: runs with everything above
+};
+
+}  // namespace todbench

@@ -1,0 +1,23 @@
+// The few widgets that every view is made of.
+#pragma once
+
+#include <QLabel>
+#include <QLayout>
+#include <QPushButton>
+#include <QTableWidget>
+
+namespace todbench {
+
+/// A heading.
+[[nodiscard]] QLabel* title_label(const QString& text);
+/// Small grey text that wraps.
+[[nodiscard]] QLabel* hint_label(const QString& text = {});
+/// The button that does what the view is for.
+[[nodiscard]] QPushButton* primary_button(const QString& text, const QString& object_name);
+[[nodiscard]] QPushButton* plain_button(const QString& text, const QString& object_name);
+/// A read-only table with a header row.
+[[nodiscard]] QTableWidget* plain_table(const QStringList& header, const QString& object_name);
+/// Replaces the rows of a table.
+void fill_table(QTableWidget& table, const QList<QStringList>& rows);
+
+}  // namespace todbench

@@ -1,0 +1,47 @@
+// Frames on their way from whatever takes them to the live picture: the latest one and the counters of all.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "acquisition/core/frame_source.h"
+#include "acquisition/core/integrity_gate.h"
+
+namespace todbench {
+
+/// What has come since the feed was opened.
+struct FrameCounters {
+  std::uint64_t good = 0, lost = 0;
+  std::map<std::string, std::uint64_t> rejected;  ///< by reason
+  double rate_hz = 0;                             ///< over the last second; 0: not known yet
+};
+
+struct LiveFrame {
+  Frame frame;
+  FrameCounters counters;
+};
+
+/// Written by the thread that takes frames, read by the window. Thread-safe.
+class LiveFeed {
+ public:
+  /// A camera begins: counters start at zero.
+  void open(const SourceInfo& info);
+  void put(const Frame& frame);
+  /// The latest frame that has not been taken, or nothing.
+  [[nodiscard]] std::optional<LiveFrame> take();
+  /// Of the camera that was opened last.
+  [[nodiscard]] std::optional<SourceInfo> info() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::optional<SourceInfo> info_;
+  std::optional<IntegrityGate> gate_;
+  std::deque<std::int64_t> arrivals_ns_;
+  std::optional<LiveFrame> latest_;
+};
+
+}  // namespace todbench

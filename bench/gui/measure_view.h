@@ -1,0 +1,55 @@
+// Measure: progress, the curves as they grow, the answers as they come.
+#pragma once
+
+#include <QWidget>
+#include <vector>
+
+class QLabel;
+class QProgressBar;
+class QPushButton;
+class QTableWidget;
+class QCheckBox;
+class QFrame;
+
+namespace todbench {
+
+class MeasurePresenter;
+class PictureView;
+class PlotView;
+class Workbench;
+
+class MeasureView final : public QWidget {
+  Q_OBJECT
+
+ public:
+  MeasureView(Workbench& bench, MeasurePresenter& presenter, QWidget* parent = nullptr);
+
+ protected:
+  void showEvent(QShowEvent* event) override;
+
+ private:
+  [[nodiscard]] QWidget* log_panel();
+  void show_all();
+  void show_curves();
+  void show_state();
+  void show_log();
+  void show_judged();
+  void make_plots();
+
+  Workbench& bench_;
+  MeasurePresenter& presenter_;
+  QPushButton *start_, *pause_, *abort_, *answer_;
+  QProgressBar* progress_;
+  QLabel *phase_, *left_, *request_, *judged_text_;
+  QFrame* operator_;
+  QWidget* functions_;
+  std::vector<PlotView*> function_plots_;
+  std::vector<double> contrasts_;
+  PlotView* tod_;
+  QCheckBox* log_log_;
+  QTableWidget* log_;
+  PictureView* judged_;
+  std::vector<double> shown_key_;
+};
+
+}  // namespace todbench

@@ -1,0 +1,45 @@
+// Where a run waits for a hand: the request goes to the window, the answer comes back.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <utility>
+
+#include "acquisition/core/result.h"
+
+namespace todbench {
+
+/// Asked by the run, answered by the window. Thread-safe.
+class OperatorDesk {
+ public:
+  /// Waits for answer(); `interrupted` as soon as stop is requested.
+  [[nodiscard]] Result<std::string> wait(const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    if (!answered_.wait(lock, stop, [this] { return answer_.has_value(); }))
+      return fail(ErrorCode::interrupted, "stopped while waiting for the operator");
+    return *std::exchange(answer_, std::nullopt);
+  }
+  /// An earlier answer is forgotten: to be called before the request is shown.
+  void clear() {
+    const std::lock_guard lock(mutex_);
+    answer_.reset();
+  }
+  void answer(std::string line) {
+    {
+      const std::lock_guard lock(mutex_);
+      answer_ = std::move(line);
+    }
+    answered_.notify_all();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable_any answered_;
+  std::optional<std::string> answer_;
+};
+
+}  // namespace todbench

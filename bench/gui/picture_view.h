@@ -1,0 +1,66 @@
+// A picture with pixels that can be counted: zoom, marks and outlines over it, the pixel under the cursor.
+#pragma once
+
+#include <QImage>
+#include <QPolygonF>
+#include <QWidget>
+#include <vector>
+
+namespace todbench {
+
+/// Something drawn over a picture, in its pixels (pixel centres at integers).
+struct PictureOutline {
+  QPolygonF points;
+  QColor colour;
+  Qt::PenStyle pen = Qt::SolidLine;
+};
+
+class PictureView final : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit PictureView(QWidget* parent = nullptr);
+  void set_image(const QImage& image);
+  [[nodiscard]] const QImage& image() const { return image_; }
+  void set_outlines(std::vector<PictureOutline> outlines);
+  [[nodiscard]] const std::vector<PictureOutline>& outlines() const { return outlines_; }
+  /// Pixels with a ring round them.
+  void set_rings(std::vector<QPoint> rings);
+  /// What stands in place of a picture.
+  void set_placeholder(const QString& text);
+
+  /// Screen pixels per picture pixel; 0: as large as fits.
+  void set_zoom(double zoom);
+  [[nodiscard]] double zoom() const { return zoom_; }
+  /// The picture pixel at a place of the widget, also outside the picture.
+  [[nodiscard]] QPoint pixel_at(const QPointF& place) const;
+
+  [[nodiscard]] QSize sizeHint() const override { return {480, 360}; }
+  [[nodiscard]] QSize minimumSizeHint() const override { return {120, 90}; }
+
+ signals:
+  void hovered(int column, int row);
+  void zoom_changed(double zoom);
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+  void mouseMoveEvent(QMouseEvent* event) override;
+  void mousePressEvent(QMouseEvent* event) override;
+  void wheelEvent(QWheelEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
+
+ private:
+  [[nodiscard]] double scale() const;
+  [[nodiscard]] QPointF origin() const;
+  void zoom_by(double factor, const QPointF& about);
+
+  QImage image_;
+  std::vector<PictureOutline> outlines_;
+  std::vector<QPoint> rings_;
+  QString placeholder_;
+  double zoom_ = 0;
+  QPointF shift_;  ///< of the middle, in screen pixels
+  QPointF dragged_from_;
+};
+
+}  // namespace todbench

@@ -1,0 +1,359 @@
+#include "bench/gui/plan_view.h"
+
+#include <QFileDialog>
+#include <QFontDatabase>
+#include <QFormLayout>
+#include <QHBoxLayout>
+#include <QLineEdit>
+#include <QPlainTextEdit>
+#include <QScrollArea>
+#include <QSignalBlocker>
+#include <QSlider>
+#include <QTabWidget>
+#include <cmath>
+
+#include "bench/gui/layout_pieces.h"
+#include "bench/gui/plan_presenter.h"
+
+namespace todbench {
+namespace {
+
+// The slider is logarithmic: 0.5 % to 20 %.
+constexpr double least_tolerance = 0.5, largest_tolerance = 20;
+constexpr int slider_steps = 100;
+
+double tolerance_of(int position) {
+  return least_tolerance * std::pow(largest_tolerance / least_tolerance, static_cast<double>(position) / slider_steps);
+}
+int position_of(double tolerance) {
+  return static_cast<int>(std::lround(slider_steps * std::log(tolerance / least_tolerance) /
+                                      std::log(largest_tolerance / least_tolerance)));
+}
+
+QString number_text(double value) {
+  return QString::number(value, 'g', 8);
+}
+
+QString numbers_text(const std::vector<double>& values) {
+  QStringList texts;
+  for (const double value : values) texts << number_text(value);
+  return texts.join(", ");
+}
+
+QString duration_text(double seconds) {
+  const int whole = static_cast<int>(std::lround(seconds));
+  if (whole < 120) return QString("%1 s").arg(whole);
+  if (whole < 7200) return QString("%1 min").arg(whole / 60);
+  return QString("%1 h %2 min").arg(whole / 3600).arg(whole % 3600 / 60);
+}
+
+QString text_of(std::string_view text) {
+  return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
+}
+
+QString not_a_number(const QString& text) {
+  return "'" + text + "' is not a number";
+}
+
+/// Numbers separated by commas.
+QString read_numbers(const QString& text, std::vector<double>& into) {
+  std::vector<double> values;
+  for (const QString& part : text.split(',', Qt::SkipEmptyParts)) {
+    bool good = false;
+    values.push_back(part.trimmed().toDouble(&good));
+    if (!good) return not_a_number(part.trimmed());
+  }
+  into = values;
+  return {};
+}
+
+std::vector<std::string> words_of(const QString& text) {
+  std::vector<std::string> words;
+  for (const QString& part : text.split(',', Qt::SkipEmptyParts)) words.push_back(part.trimmed().toStdString());
+  return words;
+}
+
+QString acuity_limits_text(const LimitsPlan& limits) {
+  QStringList texts;
+  for (const auto& limit : limits.acuity)
+    texts << number_text(limit.delta_t_k) + ": " + number_text(limit.least_acuity_per_mrad);
+  return texts.join(", ");
+}
+
+QString read_acuity_limits(const QString& text, LimitsPlan& limits) {
+  std::vector<AcuityLimit> out;
+  for (const QString& part : text.split(',', Qt::SkipEmptyParts)) {
+    const QStringList sides = part.split(':');
+    bool first = false, second = false;
+    AcuityLimit limit;
+    if (sides.size() == 2) {
+      limit.delta_t_k = sides[0].toDouble(&first);
+      limit.least_acuity_per_mrad = sides[1].toDouble(&second);
+    }
+    if (!first || !second) return "'" + part.trimmed() + "' is not 'contrast: least acuity'";
+    out.push_back(limit);
+  }
+  limits.acuity = out;
+  return {};
+}
+
+}  // namespace
+
+PlanView::PlanView(PlanPresenter& presenter, QWidget* parent) : QWidget(parent), presenter_(presenter) {
+  auto* layout = new QHBoxLayout(this);
+  auto* left = new QVBoxLayout;
+  tabs_ = new QTabWidget;
+  tabs_->setObjectName("planTabs");
+  tabs_->addTab(form_page(), "Form");
+  tabs_->addTab(toml_page(), "TOML");
+  left->addWidget(tabs_, 1);
+  problem_ = new QLabel;
+  problem_->setObjectName("planProblem");
+  problem_->setWordWrap(true);
+  left->addWidget(problem_);
+  auto* buttons = new QHBoxLayout;
+  auto* open = plain_button("Open…", "openPlan");
+  auto* save = plain_button("Save as…", "savePlan");
+  auto* demo = plain_button("Demonstration plan", "demoPlan");
+  for (QPushButton* button : {open, save, demo}) buttons->addWidget(button);
+  buttons->addStretch();
+  left->addLayout(buttons);
+  layout->addLayout(left, 1);
+  layout->addWidget(outlook_panel(), 1);
+  connect(open, &QPushButton::clicked, this, [this] {
+    const QString file = QFileDialog::getOpenFileName(this, "Open a plan", {}, "Plans (*.toml)");
+    if (!file.isEmpty()) complain(presenter_.load(file));
+  });
+  connect(save, &QPushButton::clicked, this, [this] {
+    const QString file = QFileDialog::getSaveFileName(this, "Save the plan", "plan.toml", "Plans (*.toml)");
+    if (!file.isEmpty()) complain(presenter_.save(file));
+  });
+  connect(demo, &QPushButton::clicked, this, [this] { complain(presenter_.load("demo")); });
+  connect(&presenter_, &PlanPresenter::updated, this, [this] {
+    show_plan();
+    show_outlook();
+  });
+  show_plan();
+  show_outlook();
+}
+
+QWidget* PlanView::form_page() {
+  auto* content = new QWidget;
+  auto* form = new QFormLayout(content);
+  form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
+  add_fields(*form);
+  auto* scroll = new QScrollArea;
+  scroll->setWidgetResizable(true);
+  scroll->setFrameShape(QFrame::NoFrame);
+  scroll->setWidget(content);
+  return scroll;
+}
+
+void PlanView::add_field(QFormLayout& form, const QString& label, const QString& object_name, Field field) {
+  field.edit = new QLineEdit;
+  field.edit->setObjectName(object_name);
+  form.addRow(label, field.edit);
+  const std::size_t index = fields_.size();
+  connect(field.edit, &QLineEdit::editingFinished, this, [this, index] { enter(fields_[index]); });
+  fields_.push_back(std::move(field));
+}
+
+void PlanView::add_number(QFormLayout& form, const QString& label, const QString& object_name,
+                          std::function<double&(Plan&)> place) {
+  add_field(form, label, object_name,
+            {nullptr,
+             [place](const Plan& plan) {
+               Plan copy = plan;
+               return number_text(place(copy));
+             },
+             [place](Plan& plan, const QString& text) {
+               bool good = false;
+               const double value = text.toDouble(&good);
+               if (good) place(plan) = value;
+               return good ? QString() : not_a_number(text);
+             }});
+}
+
+void PlanView::add_text(QFormLayout& form, const QString& label, const QString& object_name,
+                        std::function<std::string&(Plan&)> place) {
+  add_field(form, label, object_name,
+            {nullptr,
+             [place](const Plan& plan) {
+               Plan copy = plan;
+               return QString::fromStdString(place(copy));
+             },
+             [place](Plan& plan, const QString& text) {
+               place(plan) = text.toStdString();
+               return QString();
+             }});
+}
+
+void PlanView::add_fields(QFormLayout& form) {
+  add_text(form, "Name", "planName", [](Plan& p) -> std::string& { return p.name; });
+  add_text(form, "Operator", "planOperator", [](Plan& p) -> std::string& { return p.operator_name; });
+  add_text(form, "Place", "planPlace", [](Plan& p) -> std::string& { return p.place; });
+  add_text(form, "Unit under test", "planUnit", [](Plan& p) -> std::string& { return p.unit; });
+  add_text(form, "Camera", "planCamera", [](Plan& p) -> std::string& { return p.camera.id; });
+  add_number(form, "IFOV of a pixel (mrad)", "planIfov", [](Plan& p) -> double& { return p.camera.ifov_mrad; });
+  add_number(form, "Correct camera every (s), 0: never", "planNuc",
+             [](Plan& p) -> double& { return p.camera.nuc_interval_s; });
+  add_number(form, "Distance to plate (m)", "planDistance", [](Plan& p) -> double& { return p.target.distance_m; });
+  add_field(form, "Plates", "planPlates",
+            {nullptr,
+             [](const Plan& p) {
+               QStringList names;
+               for (const auto& plate : p.target.plates) names << QString::fromStdString(plate);
+               return names.join(", ");
+             },
+             [](Plan& p, const QString& text) {
+               p.target.plates = words_of(text);
+               return QString();
+             }});
+  add_field(form, "Contrasts ΔT (K)", "planContrasts",
+            {nullptr, [](const Plan& p) { return numbers_text(p.target.delta_t_k); },
+             [](Plan& p, const QString& text) { return read_numbers(text, p.target.delta_t_k); }});
+  add_field(form, "Mountings", "planMountings",
+            {nullptr,
+             [](const Plan& p) {
+               QStringList names;
+               for (const auto mounting : p.target.mountings) names << text_of(to_string(mounting));
+               return names.join(", ");
+             },
+             [](Plan& p, const QString& text) {
+               std::vector<Mounting> mountings;
+               for (const auto& word : words_of(text)) {
+                 const auto mounting = mounting_from(word);
+                 if (!mounting) return "'" + QString::fromStdString(word) + "' is no mounting";
+                 mountings.push_back(*mounting);
+               }
+               p.target.mountings = mountings;
+               return QString();
+             }});
+  add_field(form, "Phases (sub-pixel shifts)", "planPhases",
+            {nullptr, [](const Plan& p) { return QString::number(p.target.phases); },
+             [](Plan& p, const QString& text) {
+               bool good = false;
+               const int value = text.toInt(&good);
+               if (good) p.target.phases = value;
+               return good ? QString() : not_a_number(text);
+             }});
+  add_text(form, "Observer", "planObserver", [](Plan& p) -> std::string& { return p.observer; });
+  add_text(form, "Simulated sensor", "planSensor", [](Plan& p) -> std::string& { return p.simulation.sensor; });
+  add_text(form, "Accuracy: draft, normal, reference", "planAccuracy",
+           [](Plan& p) -> std::string& { return p.simulation.accuracy; });
+  add_field(form, "Limits, ΔT (K): least acuity (1/mrad)", "planLimits",
+            {nullptr, [](const Plan& p) { return acuity_limits_text(p.limits); },
+             [](Plan& p, const QString& text) { return read_acuity_limits(text, p.limits); }});
+  add_field(form, "Equivalence margin (%), empty: none", "planMargin",
+            {nullptr,
+             [](const Plan& p) {
+               return p.limits.equivalence_margin_percent ? number_text(*p.limits.equivalence_margin_percent)
+                                                          : QString();
+             },
+             [](Plan& p, const QString& text) {
+               bool good = false;
+               const double value = text.toDouble(&good);
+               if (text.isEmpty()) p.limits.equivalence_margin_percent.reset();
+               if (good) p.limits.equivalence_margin_percent = value;
+               return good || text.isEmpty() ? QString() : not_a_number(text);
+             }});
+  add_text(form, "Notes", "planNotes", [](Plan& p) -> std::string& { return p.notes; });
+}
+
+QWidget* PlanView::toml_page() {
+  auto* page = new QWidget;
+  auto* layout = new QVBoxLayout(page);
+  toml_ = new QPlainTextEdit;
+  toml_->setObjectName("planToml");
+  toml_->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
+  toml_->setTabChangesFocus(true);
+  layout->addWidget(toml_, 1);
+  auto* apply = primary_button("Use this plan", "applyToml");
+  layout->addWidget(apply, 0, Qt::AlignLeft);
+  connect(apply, &QPushButton::clicked, this, [this] { complain(presenter_.apply_toml(toml_->toPlainText())); });
+  return page;
+}
+
+QWidget* PlanView::outlook_panel() {
+  auto* panel = new QWidget;
+  auto* layout = new QVBoxLayout(panel);
+  layout->addWidget(title_label("Accuracy against time"));
+  auto* line = new QHBoxLayout;
+  tolerance_ = new QSlider(Qt::Horizontal);
+  tolerance_->setObjectName("toleranceSlider");
+  tolerance_->setRange(0, slider_steps);
+  tolerance_->setAccessibleName("Tolerance of the 75 % size");
+  tolerance_text_ = new QLabel;
+  line->addWidget(new QLabel("Tolerance of S75"));
+  line->addWidget(tolerance_, 1);
+  line->addWidget(tolerance_text_);
+  layout->addLayout(line);
+  cost_ = new QLabel;
+  cost_->setObjectName("planCost");
+  cost_->setWordWrap(true);
+  layout->addWidget(cost_);
+  misfit_ = new QLabel;
+  misfit_->setObjectName("planMisfit");
+  misfit_->setWordWrap(true);
+  layout->addWidget(misfit_);
+  contrasts_ = plain_table({"ΔT (K)", "Expected S75 (mrad)", "95 % uncertainty (± %)"}, "planOutlook");
+  contrasts_->setMaximumHeight(170);
+  for (int column = 0; column < 2; ++column) contrasts_->setColumnWidth(column, 150);
+  layout->addWidget(contrasts_);
+  layout->addWidget(title_label("Effects of the simulated sensor"));
+  effects_ = plain_table({"Effect", "Decision", "Reason"}, "planEffects");
+  effects_->setColumnWidth(0, 130);
+  layout->addWidget(effects_, 1);
+  connect(tolerance_, &QSlider::valueChanged, this,
+          [this](int position) { complain(presenter_.set_tolerance_percent(tolerance_of(position))); });
+  return panel;
+}
+
+void PlanView::enter(const Field& field) {
+  Plan plan = presenter_.plan();
+  if (field.edit->text() == field.shown(plan)) return;
+  const QString wrong = field.entered(plan, field.edit->text().trimmed());
+  complain(wrong.isEmpty() ? presenter_.apply(plan) : wrong);
+}
+
+void PlanView::complain(const QString& sentence) {
+  problem_->setText(sentence.isEmpty() ? QString() : "✗ " + sentence);
+}
+
+void PlanView::show_plan() {
+  const Plan& plan = presenter_.plan();
+  for (const auto& field : fields_) {
+    if (!field.edit->hasFocus() || !field.edit->isModified()) field.edit->setText(field.shown(plan));
+  }
+  if (const QString text = presenter_.toml(); text != toml_->toPlainText()) toml_->setPlainText(text);
+  const QSignalBlocker quiet(tolerance_);
+  tolerance_->setValue(position_of(plan.simulation.tolerance_percent));
+  tolerance_text_->setText(QString("± %1 %").arg(plan.simulation.tolerance_percent, 0, 'g', 3));
+}
+
+void PlanView::show_outlook() {
+  const PlanOutlook& seen = presenter_.outlook();
+  const auto uncertainty = seen.uncertainty_percent();
+  cost_->setText(QString("%1 presentations, %2 answers, about %3 on the bench; uncertainty %4")
+                     .arg(seen.presentations)
+                     .arg(seen.trials)
+                     .arg(duration_text(seen.duration_s))
+                     .arg(uncertainty                   ? QString("± %1 %").arg(*uncertainty, 0, 'f', 1)
+                          : presenter_.expected_known() ? QString("not known: a contrast has no threshold")
+                                                        : QString("is being computed …")));
+  misfit_->setText(presenter_.misfit().isEmpty() ? QString() : "✗ " + presenter_.misfit());
+  QList<QStringList> rows;
+  for (const auto& c : seen.contrasts) {
+    rows << QStringList{number_text(c.delta_t_k), c.s75_mrad ? QString::number(*c.s75_mrad, 'f', 3) : "–",
+                        c.uncertainty_percent ? QString::number(*c.uncertainty_percent, 'f', 1) : "–"};
+  }
+  fill_table(*contrasts_, rows);
+  rows.clear();
+  for (const auto& d : presenter_.effects().decisions) {
+    rows << QStringList{text_of(to_string(d.effect)).replace('_', ' '),
+                        d.decision == Decision::simulate ? "simulated" : "skipped", QString::fromStdString(d.reason)};
+  }
+  fill_table(*effects_, rows);
+}
+
+}  // namespace todbench

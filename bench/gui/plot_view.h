@@ -1,0 +1,40 @@
+// A plot of the report in the window: the same values, with zoom and the theme's colours.
+#pragma once
+
+#include <qcustomplot.h>
+
+#include "bench/gui/plot_painter.h"
+#include "bench/report/svg_plot.h"
+
+namespace todbench {
+
+/// Drag and wheel move and zoom, a double click shows everything again.
+class PlotView final : public QCustomPlot {
+  Q_OBJECT
+
+ public:
+  explicit PlotView(QWidget* parent = nullptr);
+  /// Shows a plot; the view stays where the user has zoomed to while the axes' scales stay.
+  void show_plot(const Plot& plot);
+  [[nodiscard]] const Plot& shown() const { return plot_; }
+  /// Points of a series as they are drawn; none for an unknown label.
+  [[nodiscard]] QVector<QPointF> points(const QString& label) const;
+
+  [[nodiscard]] QSize minimumSizeHint() const override { return {160, 120}; }
+  [[nodiscard]] QSize sizeHint() const override { return {360, 260}; }
+
+ protected:
+  void changeEvent(QEvent* event) override;
+  void mouseDoubleClickEvent(QMouseEvent* event) override;
+
+ private:
+  void draw();
+  void set_axis(QCPAxis& axis, const PlotAxis& description, bool keep_range);
+  void add_series(const PlotSeries& series);
+  void add_intervals(const PlotSeries& series, const QColor& colour);
+
+  Plot plot_;
+  bool zoomed_ = false;
+};
+
+}  // namespace todbench

@@ -1,0 +1,46 @@
+// Compare and report: sessions, their curves, their verdict.
+#pragma once
+
+#include <QWidget>
+
+class QCheckBox;
+class QComboBox;
+class QLabel;
+class QPushButton;
+class QTableWidget;
+
+namespace todbench {
+
+class PlotView;
+class SessionPresenter;
+
+class ReportView final : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit ReportView(SessionPresenter& presenter, QWidget* parent = nullptr);
+
+ signals:
+  /// The plan of the session that is open is to be measured again.
+  void again();
+
+ protected:
+  void showEvent(QShowEvent* event) override;
+
+ private:
+  [[nodiscard]] QWidget* browser();
+  [[nodiscard]] QWidget* session_panel();
+  void list_sessions();
+  void show_session();
+  void show_comparison();
+  void show_plot();
+
+  SessionPresenter& presenter_;
+  QTableWidget *sessions_, *ratios_, *limits_;
+  QLabel *title_, *verdict_, *files_;
+  QPushButton *compare_, *export_, *again_, *page_;
+  QCheckBox* log_log_;
+  PlotView* plot_;
+};
+
+}  // namespace todbench

@@ -1,0 +1,90 @@
+#include "bench/gui/screenshots.h"
+
+#include <QApplication>
+#include <QElapsedTimer>
+#include <QEventLoop>
+#include <QTimer>
+#include <cstdio>
+#include <functional>
+
+namespace todbench {
+namespace {
+
+/// Runs the event loop until something is so; false after two minutes.
+bool wait_until(const std::function<bool()>& so) {
+  QElapsedTimer waited;
+  waited.start();
+  while (!so() && waited.elapsed() < 120'000) {
+    QApplication::processEvents(QEventLoop::AllEvents, 20);
+    QEventLoop loop;
+    QTimer::singleShot(10, &loop, &QEventLoop::quit);
+    loop.exec();
+  }
+  return so();
+}
+
+bool save(MainWindow& window, const std::filesystem::path& folder, const char* name) {
+  QApplication::processEvents();
+  QApplication::processEvents();
+  const auto file = folder / (std::string(name) + ".png");
+  const bool saved = window.grab().save(QString::fromStdString(file.string()));
+  if (saved) std::printf("%s\n", file.string().c_str());
+  return saved;
+}
+
+/// Half of the answers of a contrast, so that curves have something to show.
+Plan short_plan(Plan plan) {
+  plan.target.phases = 4;
+  plan.simulation.phases = 4;
+  plan.target.mountings = {Mounting::identity, Mounting::rotated_180};
+  return plan;
+}
+
+bool answer_as_a_person(MainWindow& window) {
+  HumanPresenter& human = window.human();
+  if (!human.begin(window.measure().trials(), window.bench().plan(), window.measure().folder(), {}).isEmpty())
+    return false;
+  for (int i = 0; i < 40; ++i) human.answer(all_apexes[static_cast<std::size_t>(i) % 4]);
+  return true;
+}
+
+}  // namespace
+
+int take_screenshots(MainWindow& window, const std::filesystem::path& folder) {
+  std::error_code problem;
+  std::filesystem::create_directories(folder, problem);
+  window.bench().set_plan(short_plan(window.bench().plan()));
+  window.show();
+  bool good = true;
+  window.look().start();
+  good &= wait_until([&] { return window.look().latest() && window.look().latest()->counters.good > 60; });
+  good &= save(window, folder, "look");
+  window.show_view(View::align);
+  window.align().start();
+  good &= wait_until([&] { return window.align().looks() >= 3; });
+  good &= save(window, folder, "align");
+  window.bench().stop();
+  window.show_view(View::plan);
+  good &= wait_until([&] { return window.plan().expected_known(); });
+  good &= save(window, folder, "plan");
+  window.show_view(View::measure);
+  window.measure().start();
+  good &= wait_until([&] { return window.measure().twin() && window.measure().twin()->points.size() > 1; });
+  good &= save(window, folder, "measure");
+  good &= wait_until([&] { return window.measure().state() == RunState::idle; });
+  good &= wait_until([&] { return window.sessions().current().has_value(); });
+  window.show_view(View::human);
+  good &= answer_as_a_person(window);
+  good &= save(window, folder, "human");
+  window.human().abort();
+  window.show_view(View::chain);
+  good &= wait_until([&] { return !window.chain().pictures().empty(); });
+  good &= save(window, folder, "chain");
+  window.show_view(View::report);
+  good &= wait_until([&] { return window.sessions().current() && !window.sessions().sessions().empty(); });
+  good &= save(window, folder, "report");
+  if (!good) std::fprintf(stderr, "todbench-gui: not every view came to what its picture shows\n");
+  return good ? 0 : 7;
+}
+
+}  // namespace todbench

@@ -1,0 +1,21 @@
+// Light and dark.
+#pragma once
+
+#include <QPalette>
+#include <QString>
+
+#include "bench/gui/plot_painter.h"
+
+namespace todbench {
+
+enum class Theme { light, dark };
+[[nodiscard]] QPalette palette_of(Theme theme);
+[[nodiscard]] PlotColours plot_colours_of(Theme theme);
+/// What the desktop prefers, as its palette tells.
+[[nodiscard]] Theme desktop_theme();
+/// The theme that a palette belongs to.
+[[nodiscard]] Theme theme_of(const QPalette& palette);
+/// Style sheet of the few things that the palette does not reach.
+[[nodiscard]] QString style_sheet(Theme theme);
+
+}  // namespace todbench

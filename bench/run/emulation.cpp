@@ -1,0 +1,104 @@
+#include "bench/run/emulation.h"
+
+#include <optional>
+#include <string_view>
+
+#include "bench/session/descriptions.h"
+#ifdef TODBENCH_WITH_EMULATED_VIDEO
+#include "sim_devices/lab/v4l2_laboratory.h"
+#endif
+
+namespace todbench {
+namespace {
+
+constexpr std::string_view gige = "gige";
+
+#ifdef TODBENCH_WITH_EMULATED_VIDEO
+std::optional<VideoCameraKind> video_kind(const std::string& camera) {
+  if (camera == "v4l2") return VideoCameraKind::lepton;
+  if (camera == "v4l2-yuyv") return VideoCameraKind::temperature_rows;
+  return std::nullopt;
+}
+#endif
+
+}  // namespace
+
+std::vector<std::string> emulated_cameras() {
+#ifdef TODBENCH_WITH_EMULATED_VIDEO
+  return {std::string(gige), "v4l2", "v4l2-yuyv"};
+#else
+  return {std::string(gige)};
+#endif
+}
+
+void enter_emulation(const std::string& camera) {
+#ifdef TODBENCH_WITH_EMULATED_VIDEO
+  if (video_kind(camera)) MockSystem::enter();
+#else
+  (void)camera;
+#endif
+}
+
+EmulationArguments emulation_for(const Plan& plan) {
+  EmulationArguments arguments;
+  arguments.sensor = plan.simulation.sensor;
+  arguments.plates = plan.target.plates;
+  arguments.distance_m = plan.target.distance_m;
+  arguments.black_body_port = 0;
+  arguments.stage_port = 0;
+  arguments.seed = plan.seed + 1;  // a camera of its own, not the twin's noise
+  return arguments;
+}
+
+#ifdef TODBENCH_WITH_ARAVIS
+Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& arguments) {
+  LaboratoryOptions options;
+  auto sensor = load_sensor(arguments.sensor);
+  if (!sensor) return tl::unexpected(sensor.error());
+  options.sensor = *sensor;
+#ifdef TODBENCH_WITH_EMULATED_VIDEO
+  if (const auto kind = video_kind(arguments.camera)) {
+    options.sensor = with_counts_of(*kind, *sensor);
+    VideoCameraConfig camera;
+    camera.kind = *kind;
+    camera.model = "Emulated " + sensor->name;
+    camera.serial = arguments.serial;
+    options.connect = connect_v4l2(MockSystem::create(), camera);
+  }
+#endif
+  options.plan = full_plan(options.sensor, {}, {});
+  for (const auto& name : arguments.plates) {
+    auto plate = load_plate(name);
+    if (!plate) return tl::unexpected(plate.error());
+    options.plates.push_back(std::move(*plate));
+  }
+  options.distance_m = arguments.distance_m;
+  options.seed = arguments.seed;
+  options.camera.interface_address = arguments.interface_address;
+  options.camera.serial = arguments.serial;
+  options.camera.model = "Emulated " + sensor->name;
+  options.black_body.server.address = arguments.interface_address;
+  options.black_body.server.port = arguments.black_body_port;
+  options.black_body.time_constant_s = 0.05;
+  options.black_body.stable_dwell_s = 0.05;
+  options.stage.server.address = arguments.interface_address;
+  options.stage.server.port = arguments.stage_port;
+  options.stage.speed_mm_per_s = 200;
+  options.stage.settle_s = 0.02;
+  options.stage.plate_change_s = 0.1;
+  options.stage.mounting_change_s = 0.1;
+  return Laboratory::start(std::move(options));
+}
+
+Plan with_laboratory(Plan plan, const Laboratory& laboratory) {
+  // The address of the camera is enough on GigE; anything else is known by its serial number.
+  plan.camera.id =
+      laboratory.camera_id().starts_with("gige:") ? "gige:" + laboratory.camera_address() : laboratory.camera_id();
+  plan.target.kind = TargetKind::scpi;
+  plan.target.black_body = laboratory.black_body_endpoint();
+  plan.target.stage = laboratory.stage_endpoint();
+  return plan;
+}
+#endif
+
+}  // namespace todbench

@@ -1,0 +1,48 @@
+// The emulated laboratory as `emulate`, `demo` and the window start it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "acquisition/core/result.h"
+#include "bench/session/plan.h"
+#ifdef TODBENCH_WITH_ARAVIS
+#include "sim_devices/lab/laboratory.h"
+#endif
+
+namespace todbench {
+
+/// The cameras that can be emulated in this build, by the names of `--camera`: "gige", "v4l2" (Y16 with telemetry, as a
+/// Lepton sends it), "v4l2-yuyv" (temperatures below a picture, as a Tiny1 does).
+[[nodiscard]] std::vector<std::string> emulated_cameras();
+
+/// Makes this process one that can look at an emulated device node: starts the program again under the preload library
+/// where `camera` needs it. Call it before anything else is done.
+void enter_emulation(const std::string& camera);
+
+struct EmulationArguments {
+  std::string camera = "gige";    ///< one of emulated_cameras()
+  std::string sensor = "sc2000";  ///< name or file
+  std::string interface_address = "127.0.0.1";
+  std::string serial = "TB0001";
+  std::vector<std::string> plates{"tcat-a", "tcat-b"};
+  double distance_m = 2;
+  std::uint16_t black_body_port = 5025, stage_port = 5026;  ///< 0: the system chooses
+  std::uint64_t seed = 1;
+  bool operator==(const EmulationArguments&) const = default;
+};
+
+/// The laboratory that a plan is measured in: its sensor, plates and distance, on ports that the system chooses.
+[[nodiscard]] EmulationArguments emulation_for(const Plan& plan);
+
+#ifdef TODBENCH_WITH_ARAVIS
+/// Starts camera, black body and plate stage. Their settling is that of a bench in fast motion: 50 ms time constant,
+/// 0.1 s per plate.
+[[nodiscard]] Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& arguments);
+
+/// The plan with the camera and instruments of a laboratory.
+[[nodiscard]] Plan with_laboratory(Plan plan, const Laboratory& laboratory);
+#endif
+
+}  // namespace todbench

@@ -1,0 +1,30 @@
+// A person's answers to the frames of a session, beside those of the model observer.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "acquisition/core/result.h"
+#include "bench/session/plan.h"
+#include "tod/tod_curve.h"
+#include "tod/trial.h"
+
+namespace todbench {
+
+/// Answers and the curve fitted to them. The trials have the format of the model's, with the person's answer and scores
+/// of 0.
+struct HumanRecord {
+  std::vector<Trial> trials;
+  TodCurve curve;
+};
+
+/// Fits the answers as the plan fits those of the model. `invalid_input` when there are none.
+[[nodiscard]] Result<HumanRecord> human_record(std::vector<Trial> answers, const Plan& plan);
+/// Writes trials_human.csv and fits_human.json into a finished session and lists them in its manifest, in place of
+/// earlier ones. `io`; `invalid_input` for a folder without a manifest.
+[[nodiscard]] Result<void> write_human(const std::filesystem::path& session, const HumanRecord& record);
+/// Nothing when no person has answered. `invalid_input` with file and line or key.
+[[nodiscard]] Result<std::optional<HumanRecord>> read_human(const std::filesystem::path& session);
+
+}  // namespace todbench
