@@ -119,7 +119,9 @@ int run(int argc, char** argv) {
   add_fit_command(app, program);
   add_render_command(app, program);
   add_mtf_command(app, program);
+  add_noise_command(app, program);
   add_range_command(app, program);
+  add_reproduce_command(app, program);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

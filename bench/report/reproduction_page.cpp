@@ -1,0 +1,172 @@
+#include "bench/report/reproduction_page.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/report/number_format.h"
+#include "bench/report/report_pieces.h"
+#include "bench/report/svg_plot.h"
+
+namespace todbench {
+namespace {
+
+bool percentage(const ReproducedFigure& figure) {
+  return figure.unit == "%";
+}
+
+Markup ours(const ReproducedFigure& figure) {
+  if (!figure.value) return missing("not found");
+  const int decimals = percentage(figure) ? 0 : std::min(1, decimals_for(figure.value, figure.ci95));
+  std::string text = shown(*figure.value, decimals);
+  if (figure.unit == "%" && figure.quantity.find("Correct at") == std::string::npos && *figure.value > 0)
+    text.insert(0, 1, '+');
+  if (figure.ci95.low && figure.ci95.high)
+    text += " [" + shown(*figure.ci95.low, decimals) + ", " + shown(*figure.ci95.high, decimals) + "]";
+  return unbroken(text + " " + figure.unit);
+}
+
+Markup figures_section(const Reproduction& reproduction) {
+  MarkupTable rows;
+  rows.header = {"Quantity", "Published", "Here, 95 %", "Difference", "Why"};
+  for (const auto& figure : reproduction.figures) {
+    rows.rows.push_back({escaped(figure.quantity), text_or_missing(figure.published, "left open in the paper"),
+                         ours(figure), escaped(difference_in_words(figure)), escaped(figure.remark)});
+  }
+  return section("Published beside ours", table(rows));
+}
+
+Plot curve_plot(const Reproduction& reproduction, const std::string& id, const std::string& title,
+                const std::vector<std::string>& sensors) {
+  Plot plot;
+  plot.id = id;
+  plot.title = title;
+  plot.description = "Acuity against contrast, both logarithmic, for each sensor and observer.";
+  plot.x = {.label = "Acuity 1/S75 (1/mrad)", .scale = AxisScale::logarithmic, .low = 0.15, .high = 1.1, .ticks = {}};
+  plot.y = {.label = "Contrast (K)", .scale = AxisScale::logarithmic, .low = 0.1, .high = 30, .ticks = {}};
+  const PlotTone tones[] = {PlotTone::first, PlotTone::second, PlotTone::third};
+  for (const auto& t : reproduction.thresholds) {
+    const auto sensor = std::find(sensors.begin(), sensors.end(), t.sensor);
+    if (sensor == sensors.end()) continue;
+    const std::string label = t.sensor + ", " + t.observer;
+    auto series = std::find_if(plot.series.begin(), plot.series.end(), [&](const auto& s) { return s.label == label; });
+    if (series == plot.series.end()) {
+      const bool hvs = t.observer.starts_with("hvs");
+      PlotSeries added;
+      added.label = label;
+      added.tone = tones[(sensor - sensors.begin()) % 3];
+      added.marker = hvs ? PlotMarker::disc : PlotMarker::square;
+      added.line = hvs ? PlotLine::solid : PlotLine::dashed;
+      series = plot.series.insert(plot.series.end(), added);
+    }
+    PlotPoint point;
+    point.x = t.acuity_per_mrad;
+    point.x_interval = t.ci95;
+    point.y = t.delta_t_k;
+    series->points.push_back(point);
+  }
+  return plot;
+}
+
+Plot range_plot(const Reproduction& reproduction) {
+  Plot plot;
+  plot.id = "ranges";
+  plot.title = "Probability of identification against range";
+  plot.description = "Identification falls with range; the microscan sensor reaches farther.";
+  plot.x = {.label = "Range (m)", .low = 0, .high = 1400, .ticks = {}};
+  plot.y = {.label = "Fraction correct", .low = 0, .high = 1, .ticks = {}};
+  plot.references.push_back({0.75, "75 %"});
+  const PlotTone tones[] = {PlotTone::first, PlotTone::second, PlotTone::third, PlotTone::muted};
+  std::size_t index = 0;
+  for (const auto& range : reproduction.ranges) {
+    if (!range.observer.starts_with("hvs")) continue;  // as in the paper; four curves can be told apart
+    PlotSeries series;
+    series.label = range.sensor + ", " + range.observer;
+    series.tone = tones[index++ % 4];
+    series.marker = PlotMarker::none;
+    series.line = range.sensor.starts_with("emulated") ? PlotLine::dashed : PlotLine::solid;
+    for (const auto& point : range.prediction.curve) {
+      if (point.range_m > 1400) break;
+      PlotPoint shown_point;
+      shown_point.x = point.range_m;
+      shown_point.y = point.probability;
+      series.points.push_back(shown_point);
+    }
+    plot.series.push_back(series);
+  }
+  return plot;
+}
+
+Markup thresholds_section(const Reproduction& reproduction) {
+  MarkupTable rows;
+  rows.header = {"Sensor", "Observer", "Contrast [K]", "Acuity [1/mrad], 95 %", "Found by"};
+  for (const auto& t : reproduction.thresholds) {
+    rows.rows.push_back({escaped(t.sensor), escaped(t.observer), escaped(stated(t.delta_t_k)),
+                         unbroken(with_interval(t.acuity_per_mrad, t.ci95)), escaped(t.method)});
+  }
+  return section("All thresholds", table(rows));
+}
+
+Markup ranges_section(const Reproduction& reproduction) {
+  MarkupTable rows;
+  rows.header = {"Sensor", "Observer", "75 % range [m], 95 %", "Remark"};
+  for (const auto& r : reproduction.ranges) {
+    rows.rows.push_back({escaped(r.sensor), escaped(r.observer),
+                         unbroken(with_interval(r.prediction.r75_m, r.prediction.r75_ci95_m)),
+                         escaped(r.prediction.reason)});
+  }
+  return section("Ranges", figure(svg_plot(range_plot(reproduction)),
+                                  "Fraction of correct identifications of a small craft against range, from the TOD "
+                                  "curves.") +
+                               table(rows));
+}
+
+Markup list_of(const std::vector<std::string>& sentences) {
+  Markup items;
+  for (const auto& sentence : sentences) items += element("li", escaped(sentence));
+  return element("ul", items);
+}
+
+Markup settings_section(const Reproduction& reproduction) {
+  std::vector<NamedValue> values;
+  for (const auto& [name, value] : reproduction.settings) values.push_back({name, escaped(value)});
+  return section("Settings", table_of_values("", values));
+}
+
+}  // namespace
+
+std::string difference_in_words(const ReproducedFigure& figure) {
+  if (!figure.published_value || !figure.value) return "";
+  const double difference = *figure.value - *figure.published_value;
+  if (percentage(figure)) return shown(difference, 0) + " points";
+  return shown(100 * difference / *figure.published_value, 0) + " %";
+}
+
+std::string render_reproduction(const Reproduction& reproduction) {
+  const Markup head =
+      literal(
+          "<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n") +
+      element("title", escaped(reproduction.title)) +
+      element("style", literal(report_style(reproduction.title) + plot_style()));
+  Markup body = element(
+      "header", element("h1", escaped(reproduction.title)) + paragraph(escaped(reproduction.source), "subtitle"));
+  body += figures_section(reproduction);
+  const auto observers =
+      curve_plot(reproduction, "observers", "Observers on the simulated sensors", {"SC2000", "SC2000 + microscan"});
+  const auto sensors = curve_plot(reproduction, "cameras", "Emulated camera beside the simulation",
+                                  {"SC2000", "emulated camera, still", "emulated camera + DSR2"});
+  body += section("TOD curves", figure(svg_plot(observers),
+                                       "Both observers on the simulated sensor, without and with 2 x 2 microscan "
+                                       "(Figure 10 of the paper).") +
+                                    figure(svg_plot(sensors),
+                                           "The emulated camera, single pictures and super-resolved, beside the "
+                                           "simulated sensor (Figure 9 of the paper)."));
+  body += ranges_section(reproduction) + thresholds_section(reproduction);
+  body += section("What the paper does not state", list_of(reproduction.assumptions)) + settings_section(reproduction);
+  return "<!DOCTYPE html>\n" +
+         element("html", element("head", head) + element("body", element("main", body)),
+                 "lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\"")
+             .text +
+         "\n";
+}
+
+}  // namespace todbench

@@ -1,0 +1,54 @@
+// A published experiment beside our own figures: one self-contained page made from values.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "acquisition/core/result.h"
+#include "bench/report/markup.h"
+#include "tod/range_prediction.h"
+
+namespace todbench {
+
+/// One threshold of one sensor and observer.
+struct ReproducedThreshold {
+  std::string sensor, observer;
+  double delta_t_k = 0;
+  std::optional<double> acuity_per_mrad;
+  Interval ci95;
+  std::string method;  ///< how it was found
+};
+
+/// One published figure with ours. Texts are plain.
+struct ReproducedFigure {
+  std::string quantity, unit;
+  std::string published;                  ///< as the paper states it; empty: the paper leaves it open
+  std::optional<double> published_value;  ///< in `unit`, where the statement is a number
+  std::optional<double> value;
+  Interval ci95;
+  std::string remark;  ///< why it differs, or what it depends on
+};
+
+/// One identification curve.
+struct ReproducedRange {
+  std::string sensor, observer;
+  RangePrediction prediction;
+};
+
+struct Reproduction {
+  std::string title, source;
+  std::vector<ReproducedFigure> figures;
+  std::vector<ReproducedThreshold> thresholds;
+  std::vector<ReproducedRange> ranges;
+  std::vector<std::string> assumptions;  ///< what the paper does not state, and what was taken instead
+  std::vector<std::pair<std::string, std::string>> settings;
+};
+
+/// Ours against the published number: a difference in units of `unit` for percentages, else in per cent of it.
+[[nodiscard]] std::string difference_in_words(const ReproducedFigure& figure);
+
+/// HTML 5 that is also well-formed XML, style and figures inside, nothing from outside. A pure function.
+[[nodiscard]] std::string render_reproduction(const Reproduction& reproduction);
+
+}  // namespace todbench

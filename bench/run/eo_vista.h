@@ -1,0 +1,25 @@
+// The experiment of the EO-VISTA paper (Bijl, Hogervorst and Vos), sections 4.1 and 4.2, with this program's sensor and
+// observers.
+#pragma once
+
+#include <cstdint>
+#include <stop_token>
+
+#include "acquisition/core/accuracy.h"
+#include "bench/report/reproduction_page.h"
+
+namespace todbench {
+
+struct EoVistaOptions {
+  Accuracy accuracy;
+  int presentations = 24;  ///< pictures of the emulated camera at each contrast; 40 answers each
+  int dsr_frames = 16;     ///< averaged by DSR2
+  std::uint64_t seed = 1;
+  std::stop_token stop{};
+};
+
+/// Runs on as many threads as there are processors, at most five; the result does not depend on their number. Errors:
+/// `interrupted`, and whatever a part of it has.
+[[nodiscard]] Result<Reproduction> reproduce_eo_vista(const EoVistaOptions& options);
+
+}  // namespace todbench

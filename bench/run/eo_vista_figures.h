@@ -1,0 +1,36 @@
+// What the EO-VISTA paper found, beside thresholds found here.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "bench/report/reproduction_page.h"
+
+namespace todbench {
+
+/// Contrasts of the paper, in kelvin.
+inline constexpr std::array eo_vista_contrasts_k{16.9, 1.93, 0.23};
+
+/// Names of sensors and observers in a reproduction.
+namespace eo_vista {
+inline constexpr const char* normal = "SC2000";
+inline constexpr const char* microscan = "SC2000 + microscan";
+inline constexpr const char* still = "emulated camera, still";
+inline constexpr const char* dsr2 = "emulated camera + DSR2";
+inline constexpr const char* hvs = "hvs-1";
+inline constexpr const char* human = "human-like-1";
+}  // namespace eo_vista
+
+/// Every figure of sections 4.1 and 4.2, from the thresholds of all sensors and observers and the ranges of `hvs`.
+[[nodiscard]] std::vector<ReproducedFigure> eo_vista_figures(const std::vector<ReproducedThreshold>& thresholds,
+                                                             const std::vector<ReproducedRange>& ranges);
+
+/// The ratio a / b of two acuities and its 95 % interval, their errors independent and taken on the logarithmic scale.
+struct AcuityRatio {
+  std::optional<double> value;
+  Interval ci95;
+};
+[[nodiscard]] AcuityRatio acuity_ratio(const ReproducedThreshold& a, const ReproducedThreshold& b);
+
+}  // namespace todbench

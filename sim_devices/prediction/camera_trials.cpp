@@ -1,0 +1,241 @@
+#include "sim_devices/prediction/camera_trials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "sim_devices/sensor/sensor_model.h"
+#include "sim_devices/sensor/super_resolution.h"
+#include "tod/patch_windows.h"
+
+namespace todbench {
+namespace {
+
+constexpr double distance_m = 1;  ///< at which a millimetre is a milliradian
+constexpr int factor = 2;
+constexpr double largest_shift_px = 1.5;  ///< frames displaced by half a pitch at most are found this near
+
+constexpr double mark_pitch = 10;       ///< size of the registration marks
+constexpr double mark_cell_pitch = 22;  ///< their bounding box and room for blur
+
+/// Four orientations of every size, two sizes in a row, in cells so wide that no window sees a neighbour; above and
+/// below them large triangles of the same contrast, for the registration what the edges of a plate are.
+TargetPlate plate_of(const CameraTrialOptions& options, double ifov_mrad) {
+  TargetPlate plate;
+  plate.name = "camera trials";
+  const double largest = *std::max_element(options.sizes_pitch.begin(), options.sizes_pitch.end());
+  // Half a window (1.05 S + 2, rounded up, and the search), half a triangle (0.88 S) and its blur.
+  const double cell_mm = (2 * largest + 8) * ifov_mrad;
+  const auto rows = (options.sizes_pitch.size() + 1) / 2;
+  const double half_height_mm = 0.5 * static_cast<double>(rows) * cell_mm;
+  for (std::size_t t = 0; t < 4 * options.sizes_pitch.size(); ++t) {
+    PlateTriangle triangle;
+    triangle.name = std::to_string(t);
+    triangle.position_mm = {(static_cast<double>(t % 8) - 3.5) * cell_mm,
+                            (static_cast<double>(t / 8) + 0.5) * cell_mm - half_height_mm};
+    triangle.size_mm = options.sizes_pitch[t / 4] * ifov_mrad;
+    triangle.apex = static_cast<Apex>((t + t / 4) % 4);
+    plate.triangles.push_back(triangle);
+  }
+  const double mark_mm = mark_cell_pitch * ifov_mrad;
+  plate.width_mm = std::max(8 * cell_mm, 2 * mark_mm);
+  plate.height_mm = 2 * (half_height_mm + mark_mm);
+  for (int m = 0; m < 4; ++m) {
+    PlateTriangle mark;
+    mark.name = "mark " + std::to_string(m);
+    mark.position_mm = {(m % 2 - 0.5) * 0.5 * plate.width_mm, (m < 2 ? -1 : 1) * (half_height_mm + 0.5 * mark_mm)};
+    mark.size_mm = mark_pitch * ifov_mrad;
+    mark.apex = static_cast<Apex>(m);
+    plate.triangles.push_back(mark);
+  }
+  return plate;
+}
+
+/// The part of the camera that the plate fills: pixels that no window looks at cost time only.
+SensorSpec cropped(SensorSpec sensor, const TargetPlate& plate) {
+  const auto pixels = [&](double mm) { return static_cast<int>(std::ceil(mm / sensor.ifov_mrad())) + 8; };
+  sensor.width = std::max(32, pixels(plate.width_mm));
+  sensor.height = std::max(32, pixels(plate.height_mm));
+  return sensor;
+}
+
+cv::Mat1f kelvin_of(const cv::Mat1w& counts, const SensorSpec& sensor, double background_k) {
+  cv::Mat1f kelvin;
+  counts.convertTo(kelvin, CV_32F, sensor.kelvin_per_count, sensor.offset_k - background_k);
+  return kelvin;
+}
+
+/// The frames of one presentation with what is known about them.
+struct Presentation {
+  std::vector<cv::Mat1f> frames;
+  std::vector<cv::Point2d> displacements_px;  ///< against the first
+  PlateScene scene;                           ///< of the first
+};
+
+Presentation expose(const SensorModel& model, const TargetPlate& plate, const CameraTrialOptions& options, int index) {
+  const RandomStream phases = RandomStream(options.seed, "camera_trials.phase").sub(static_cast<std::uint64_t>(index));
+  Presentation shown;
+  shown.scene.plate = plate;
+  shown.scene.delta_t_k = options.delta_t_k;
+  shown.scene.distance_m = distance_m;
+  shown.scene.centre_px = {phases.uniform(0) - 0.5, phases.uniform(1) - 0.5};
+  // Additive recurrence with the plastic number: displacements fill the pixel evenly for any number of frames.
+  const double g = 1.3247179572447460;
+  for (int k = 0; k < options.frames; ++k) {
+    const auto part = [&](double step) { return std::remainder(k * step, 1.0); };
+    const cv::Point2d displacement(part(1 / g), part(1 / (g * g)));
+    PlateScene scene = shown.scene;
+    scene.centre_px += displacement;
+    const auto frame =
+        static_cast<std::uint64_t>(index) * static_cast<std::uint64_t>(options.frames) + static_cast<std::uint64_t>(k);
+    shown.frames.push_back(kelvin_of(model.expose(scene, frame), model.spec(), scene.background_k));
+    shown.displacements_px.push_back(displacement);
+  }
+  return shown;
+}
+
+/// The frames of a presentation whose displacement was found. The others are left out, as a camera would.
+struct Registered {
+  std::vector<cv::Mat1f> frames;
+  std::vector<cv::Point2d> shifts_px;
+  double squared_errors = 0;  ///< found minus true displacement, mean of both axes
+};
+
+Registered register_frames(const Presentation& shown) {
+  Registered registered;
+  registered.frames.push_back(shown.frames.front());
+  registered.shifts_px.emplace_back(0, 0);
+  for (std::size_t k = 1; k < shown.frames.size(); ++k) {
+    const auto shift = frame_shift(shown.frames.front(), shown.frames[k]);
+    if (!shift || std::hypot(shift->x, shift->y) > largest_shift_px) continue;
+    const cv::Point2d error = *shift - shown.displacements_px[k];
+    registered.squared_errors += error.dot(error) / 2;
+    registered.frames.push_back(shown.frames[k]);
+    registered.shifts_px.push_back(*shift);
+  }
+  return registered;
+}
+
+/// A picture to be judged: where a pixel of the camera is in it, and how finely it is sampled.
+struct Picture {
+  cv::Mat1f kelvin;
+  cv::Point2d first_px;
+  int samples_per_pitch = 1;
+  double noise_k = 0;
+};
+
+/// One observer, prepared for every size on both sampling grids.
+class Judge {
+ public:
+  static Result<Judge> prepare(TemplateObserver& observer, const CameraTrialOptions& options) {
+    Judge judge;
+    for (const int samples : {1, factor}) {
+      for (const double size : options.sizes_pitch) {
+        auto prepared = observer.prepare(size * samples, samples);
+        if (!prepared) return tl::unexpected(prepared.error());
+        judge.prepared_[samples == 1 ? 0 : 1].push_back(*prepared);
+      }
+    }
+    return judge;
+  }
+
+  /// One level per size.
+  [[nodiscard]] std::vector<Level> answers(const Picture& picture, const PlateScene& scene, double ifov_mrad,
+                                           cv::Size sensor, const RandomStream& noise, int cluster) const {
+    const auto& sizes = prepared_[picture.samples_per_pitch == 1 ? 0 : 1];
+    std::vector<Level> levels(sizes.size());
+    for (std::size_t t = 0; t < 4 * sizes.size(); ++t) {  // the marks follow
+      const PlateTriangle& triangle = scene.plate.triangles[t];
+      const PreparedObserver& observer = *sizes[t / 4];
+      const cv::Point2d place = scene_pixel(scene, triangle.position_mm, ifov_mrad, sensor);
+      const PatchWindow window =
+          patch_window((place - picture.first_px) * picture.samples_per_pitch, observer.window_samples());
+      Patch patch;
+      picture.kelvin(window.pixels).convertTo(patch.kelvin, CV_64F);
+      patch.phase = window.phase;
+      patch.noise_k = picture.noise_k;
+      const Choice choice = observer.choose(patch, scene.delta_t_k, noise.sub(t));
+      Level& level = levels[t / 4];
+      level.size = triangle.size_mm;
+      level.correct += choice.alternative == static_cast<int>(triangle.apex) ? 1 : 0;
+      level.total += 1;
+      level.cluster = cluster;
+    }
+    return levels;
+  }
+
+ private:
+  std::array<std::vector<std::shared_ptr<const PreparedObserver>>, 2> prepared_;
+};
+
+double noise_of(const SensorSpec& sensor, double frames) {
+  return std::hypot(sensor.netd_k, sensor.kelvin_per_count / std::sqrt(12.0)) / std::sqrt(frames);
+}
+
+Result<void> check(const CameraTrialOptions& options) {
+  if (options.sizes_pitch.empty() || options.presentations < 2 || options.frames < factor * factor)
+    return fail(ErrorCode::invalid_input, "camera trials need sizes, two presentations and four frames");
+  for (const double size : options.sizes_pitch) {
+    if (!(size > 0.1 && size < 40))
+      return fail(ErrorCode::invalid_input, "camera trials need sizes of 0.1 to 40 pitches");
+  }
+  if (!(std::abs(options.delta_t_k) > 0)) return fail(ErrorCode::invalid_input, "a contrast of 0 K has no threshold");
+  return {};
+}
+
+}  // namespace
+
+Result<CameraTrialRecord> camera_trials(const SensorSpec& sensor, const std::vector<TemplateObserver*>& observers,
+                                        const CameraTrialOptions& options) {
+  if (auto checked = check(options); !checked) return tl::unexpected(checked.error());
+  if (sensor.microscan != 1)
+    return fail(ErrorCode::invalid_input, "super-resolution is for a camera without microscan");
+  const TargetPlate plate = plate_of(options, sensor.ifov_mrad());
+  const SensorSpec camera = cropped(sensor, plate);
+  const SensorModel model(camera, full_plan(camera, {}, {}), options.accuracy, options.seed);
+  std::vector<Judge> judges;
+  for (TemplateObserver* observer : observers) {
+    auto judge = Judge::prepare(*observer, options);
+    if (!judge) return tl::unexpected(judge.error());
+    judges.push_back(std::move(*judge));
+  }
+  CameraTrialRecord record;
+  record.observers.resize(observers.size());
+  const RandomStream internal(options.seed, "camera_trials.internal");
+  double squares = 0, placement = 0, samples = 0;
+  std::size_t used = 0;
+  for (int p = 0; p < options.presentations; ++p) {
+    if (options.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+    const Presentation shown = expose(model, plate, options, p);
+    const auto registered = register_frames(shown);
+    const auto fine = super_resolve(registered.frames, registered.shifts_px, factor);
+    if (!fine) return fail("super-resolution of the emulated camera", fine.error());
+    squares += registered.squared_errors;
+    used += registered.frames.size();
+    placement += fine->placement_rms_px * fine->placement_rms_px;
+    // A sample's noise variance is that of a frame over the frames in it; the mean variance is what counts.
+    double inverse = 0;
+    for (const int count : fine->frames_per_cell) inverse += 1.0 / count;
+    const double averaged = static_cast<double>(fine->frames_per_cell.total()) / inverse;
+    samples += averaged;
+    const Picture still{shown.frames.front(), {0, 0}, 1, noise_of(camera, 1)};
+    const Picture resolved{fine->picture, fine->first_px, factor, noise_of(camera, averaged)};
+    for (std::size_t o = 0; o < judges.size(); ++o) {
+      const RandomStream trial = internal.sub(static_cast<std::uint64_t>(p) * 16 + o);
+      const auto add = [&](std::vector<Level>& levels, const Picture& picture, std::uint64_t stream) {
+        const auto more =
+            judges[o].answers(picture, shown.scene, camera.ifov_mrad(), model.size(), trial.sub(stream), p);
+        levels.insert(levels.end(), more.begin(), more.end());
+      };
+      add(record.observers[o].still, still, 0);
+      add(record.observers[o].super_resolved, resolved, 1);
+    }
+  }
+  record.registration_rms_px = std::sqrt(squares / static_cast<double>(used));
+  record.frames_registered = static_cast<double>(used) / options.presentations;
+  record.placement_rms_px = std::sqrt(placement / options.presentations);
+  record.frames_per_sample = samples / options.presentations;
+  return record;
+}
+
+}  // namespace todbench
