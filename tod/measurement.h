@@ -42,12 +42,7 @@ struct MeasurementOptions {
   bool free_running = true;  ///< the camera exposes whether its frames are taken or not: they are taken in a pause too
 };
 
-/// Registration and contrast of one set-up (plate and mounting), for the report.
-struct SetUpRecord {
-  std::string plate;
-  Mounting mounting = Mounting::identity;
-  Registration registration;
-};
+struct SetUpRecord;
 
 /// What the run says while it goes on. Called from the measuring thread; a slow listener slows the measurement, it
 /// never loses trials.
@@ -60,6 +55,13 @@ struct MeasurementListener {
   std::function<bool()> paused;
   std::function<void(std::size_t done, std::size_t planned)> on_progress;
   std::function<void(const std::string& sentence)> on_note;
+};
+
+/// Registration and contrast of one set-up (plate and mounting), for the report.
+struct SetUpRecord {
+  std::string plate;
+  Mounting mounting = Mounting::identity;
+  Registration registration;
 };
 
 struct MeasurementResult {

@@ -31,7 +31,7 @@ QIcon badge(DeviceHealth health) {
       painter.drawEllipse(3, 3, 10, 10);
       break;
     case DeviceHealth::in_use:
-      painter.setPen(QPen(QColor(0, 114, 178), 3));
+      painter.setPen(QPen(QColor(230, 159, 0), 3));
       painter.drawEllipse(4, 4, 8, 8);
       break;
     case DeviceHealth::lost:
@@ -83,6 +83,7 @@ QWidget* LookView::device_panel() {
   devices_->setObjectName("deviceTree");
   devices_->setHeaderHidden(true);
   devices_->setRootIsDecorated(false);
+  devices_->setIndentation(10);
   devices_->setAccessibleName("Cameras");
   layout->addWidget(devices_, 1);
   camera_ = hint_label();

@@ -16,6 +16,9 @@ struct ExpectedThreshold {
   double delta_t_k = 0;
   std::optional<double> s75_mrad;  ///< nothing: no size has a threshold at this contrast
   double slope = 2.5;              ///< Weibull
+  /// Of ln S75 for one presentation of every plate of the plan; it falls with the root of their number. Nothing where
+  /// the sizes on the plates do not determine it.
+  std::optional<double> se_ln_once;
 };
 
 /// By the direct estimate at draft accuracy: a second or so. Errors: as the loaders; `interrupted`.
@@ -37,8 +40,7 @@ struct PlanOutlook {
   [[nodiscard]] std::optional<double> uncertainty_percent() const;
 };
 
-/// Cheap enough to follow a slider. Uncertainty from the expected information of a Weibull function (chance 1/4) at the
-/// sizes on the plates, trials independent but for the inflation `variance_inflation` that clustered trials show.
+/// Cheap enough to follow a slider. Uncertainty of expected_fit(), widened by what clustered trials typically add.
 [[nodiscard]] PlanOutlook outlook(const Plan& plan, const std::vector<TargetPlate>& plates,
                                   const std::vector<ExpectedThreshold>& expected, double frame_rate_hz);
 

@@ -194,7 +194,7 @@ void PlotView::draw() {
   legend->setBorderPen(QPen(colours.grid));
   const bool tod = plot_.y.scale == AxisScale::logarithmic;
   axisRect()->insetLayout()->setInsetAlignment(
-      0, (tod ? Qt::AlignLeft : Qt::AlignRight) | (tod ? Qt::AlignTop : Qt::AlignBottom));
+      0, (tod ? Qt::AlignRight : Qt::AlignLeft) | (tod ? Qt::AlignBottom : Qt::AlignTop));
   replot(QCustomPlot::rpQueuedReplot);
 }
 
