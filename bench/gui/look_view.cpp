@@ -66,6 +66,8 @@ LookView::LookView(Workbench& bench, LookPresenter& presenter, QWidget* parent)
   layout->addLayout(middle, 1);
   layout->addWidget(display_panel());
   connect(&bench_, &Workbench::devices_changed, this, &LookView::list_devices);
+  // Queued: the tree may be what the device was selected with.
+  connect(&bench_, &Workbench::device_selected, this, &LookView::list_devices, Qt::QueuedConnection);
   connect(&bench_, &Workbench::activity_changed, this, &LookView::show_activity);
   connect(&presenter_, &LookPresenter::updated, this, &LookView::show_frame);
   connect(picture_, &PictureView::hovered, this, &LookView::show_reading);
