@@ -119,6 +119,15 @@ void TemplateBank::project(std::span<const float> patch, std::span<float> scores
     project_block(values_.data() + b * block * count, patch.data(), count, scores.data() + b * block);
 }
 
+void TemplateBank::add_sample(std::size_t sample, float amount, std::span<float> scores) const {
+  const auto count = static_cast<std::size_t>(window_) * static_cast<std::size_t>(window_);
+  CV_Assert(sample < count && scores.size() == padded_templates());
+  for (std::size_t b = 0; b < blocks_; ++b) {
+    const float* column = values_.data() + (b * count + sample) * block;
+    for (std::size_t t = 0; t < block; ++t) scores[b * block + t] += amount * column[t];
+  }
+}
+
 cv::Mat1f TemplateBank::image(int alternative, int place) const {
   const auto count = static_cast<std::size_t>(window_) * static_cast<std::size_t>(window_);
   const auto t = static_cast<std::size_t>(alternative * places_ + place);

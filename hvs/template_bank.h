@@ -35,6 +35,9 @@ class TemplateBank {
   /// Scores of all templates for a patch of window_samples()^2 values, row by row. `scores` has padded_templates()
   /// elements. Each score is one sum over samples in a fixed order: the same bits on every instruction set.
   void project(std::span<const float> patch, std::span<float> scores) const;
+  /// Adds `amount` times every template's value at one sample of the patch to the scores: the change of project() when
+  /// that sample changes by `amount`.
+  void add_sample(std::size_t sample, float amount, std::span<float> scores) const;
   /// One template as an image, for tests and pictures.
   [[nodiscard]] cv::Mat1f image(int alternative, int place) const;
 

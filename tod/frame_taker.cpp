@@ -1,32 +1,36 @@
 #include "tod/frame_taker.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace todbench {
 namespace {
-
-std::int64_t monotonic_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 /// The share of rejected frames means nothing before this many.
 constexpr std::uint64_t frames_before_share_counts = 100;
 
 }  // namespace
 
+std::int64_t monotonic_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
 FrameTaker::FrameTaker(FrameSource& source, FrameTakerOptions options)
-    : source_(source), options_(options), gate_(options.integrity) {}
+    : source_(source), options_(std::move(options)), gate_(options_.integrity) {}
 
 void FrameTaker::scene_changed() {
-  valid_from_ns_ = monotonic_ns();
+  valid_from_ns_ = options_.now_ns();
+  watch_.scene_changed();
   to_discard_ = options_.frames_after_change;
 }
 
 Result<void> FrameTaker::correct_nonuniformity() {
   auto done = source_.correct_nonuniformity();
   if (!done) return fail("correcting the camera's non-uniformity", done.error());
-  nuc_ns_ = monotonic_ns();
+  nuc_ns_ = options_.now_ns();
+  watch_.scene_changed();
   return {};
 }
 
@@ -35,11 +39,12 @@ double FrameTaker::since_nuc_s(const Frame& frame) const {
 }
 
 Result<void> FrameTaker::check_share() const {
-  // Frames kept out because of a commanded correction are nobody's fault; exposures that never came are.
+  // Frames kept out because of a correction are nobody's fault; exposures that never came are. A frame behind a gap is
+  // kept out once for all that are missing before it.
   std::uint64_t bad = gate_.lost();
   std::string reasons = gate_.lost() > 0 ? std::to_string(gate_.lost()) + " lost" : "";
   for (const auto& [reason, count] : gate_.rejected_by_reason()) {
-    if (reason == Rejection::nonuniformity_correction) continue;
+    if (reason == Rejection::nonuniformity_correction || reason == Rejection::gapped) continue;
     bad += count;
     reasons += (reasons.empty() ? "" : ", ") + std::to_string(count) + " " + std::string(to_string(reason));
   }
@@ -49,6 +54,34 @@ Result<void> FrameTaker::check_share() const {
     return {};
   return fail(ErrorCode::integrity,
               std::to_string(bad) + " of " + std::to_string(all) + " frames are unusable (" + reasons + ")");
+}
+
+void FrameTaker::note_told_correction(const Frame& frame) {
+  if (frame.correction == CorrectionState::running) nuc_ns_ = frame.host_time_ns;
+  if (frame.since_correction_s < 0) return;
+  const std::int64_t told = frame.host_time_ns - static_cast<std::int64_t>(frame.since_correction_s * 1e9);
+  nuc_ns_ = std::max(nuc_ns_.value_or(told), told);
+}
+
+std::optional<CorrectionSign> FrameTaker::see_correction(const Frame& frame, std::optional<Rejection> rejection) {
+  // A camera that says when it corrects is believed; frames without noise tell nothing.
+  if (!options_.integrity.reject_frozen || frame.correction != CorrectionState::unknown) return std::nullopt;
+  if (rejection == Rejection::frozen) return watch_.see_frozen();
+  if (rejection && rejection != Rejection::gapped) return std::nullopt;
+  if (frame.host_time_ns < valid_from_ns_ || to_discard_ > 0) return std::nullopt;
+  return watch_.see(frame);
+}
+
+std::optional<RejectedFrame> FrameTaker::judge(const Frame& frame) {
+  const auto rejection = gate_.judge(frame);
+  note_told_correction(frame);
+  const auto seen = see_correction(frame, rejection);
+  if (seen) nuc_ns_ = frame.host_time_ns;
+  if (rejection) return RejectedFrame{.sequence = frame.sequence, .reason = *rejection, .seen = seen};
+  const bool settling = nuc_ns_ && since_nuc_s(frame) < options_.nuc_wait_s;
+  if (!settling && !seen && frame.correction != CorrectionState::running) return std::nullopt;
+  gate_.reject_accepted(Rejection::nonuniformity_correction);
+  return RejectedFrame{.sequence = frame.sequence, .reason = Rejection::nonuniformity_correction, .seen = seen};
 }
 
 Result<Frame> FrameTaker::next(std::stop_token stop) {
@@ -64,13 +97,10 @@ Result<Frame> FrameTaker::next(std::stop_token stop) {
       return frame;
     }
     ++seen_;
-    const auto rejection = gate_.judge(*frame);
-    if (!rejection && nuc_ns_ && since_nuc_s(*frame) < options_.nuc_wait_s) {
-      gate_.reject(Rejection::nonuniformity_correction);
-      continue;
-    }
+    const auto rejected = judge(*frame);
+    if (rejected && options_.on_rejected) options_.on_rejected(*rejected);
     if (auto healthy = check_share(); !healthy) return tl::unexpected(healthy.error());
-    if (rejection || frame->host_time_ns < valid_from_ns_) continue;
+    if (rejected || frame->host_time_ns < valid_from_ns_) continue;
     if (to_discard_ > 0) {
       --to_discard_;
       continue;

@@ -2,15 +2,27 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <stop_token>
 #include <string>
 
+#include "acquisition/core/correction_watch.h"
 #include "acquisition/core/frame_source.h"
 #include "acquisition/core/integrity_gate.h"
 
 namespace todbench {
+
+/// A frame that was not used, and why.
+struct RejectedFrame {
+  std::uint64_t sequence = 0;
+  Rejection reason = Rejection::incomplete;
+  std::optional<CorrectionSign> seen{};  ///< the picture in which a correction was seen
+};
+
+/// CLOCK_MONOTONIC in nanoseconds, the clock of Frame::host_time_ns.
+[[nodiscard]] std::int64_t monotonic_ns();
 
 struct FrameTakerOptions {
   IntegrityOptions integrity;
@@ -18,6 +30,9 @@ struct FrameTakerOptions {
   double nuc_wait_s = 1;
   double max_rejected_share = 0.05;
   std::chrono::milliseconds frame_timeout{2000};
+  /// The clock of Frame::host_time_ns; a recorded measurement brings its own.
+  std::function<std::int64_t()> now_ns = monotonic_ns;
+  std::function<void(const RejectedFrame&)> on_rejected{};  ///< told of every one; may be empty
 };
 
 /// An average of successive frames in kelvin, with the temporal noise seen in it.
@@ -47,15 +62,21 @@ class FrameTaker {
   [[nodiscard]] std::uint64_t used() const { return used_; }
   [[nodiscard]] std::uint64_t lost() const { return gate_.lost(); }
   [[nodiscard]] std::map<std::string, std::uint64_t> rejected() const;
-  /// Seconds between the last correction and a frame; negative when none is known.
+  /// Seconds between the last correction (commanded, told by the camera, or seen in the picture) and a frame; negative
+  /// when none is known.
   [[nodiscard]] double since_nuc_s(const Frame& frame) const;
 
  private:
   [[nodiscard]] Result<void> check_share() const;
+  /// The gate, then what is known of corrections.
+  [[nodiscard]] std::optional<RejectedFrame> judge(const Frame& frame);
+  void note_told_correction(const Frame& frame);
+  [[nodiscard]] std::optional<CorrectionSign> see_correction(const Frame& frame, std::optional<Rejection> rejection);
 
   FrameSource& source_;
   FrameTakerOptions options_;
   IntegrityGate gate_;
+  CorrectionWatch watch_{CorrectionWatchOptions{}};
   std::int64_t valid_from_ns_ = 0;      ///< host time of the last change of scene
   int to_discard_ = 0;                  ///< exposures still in flight after the change
   std::optional<std::int64_t> nuc_ns_;  ///< host time of the last correction

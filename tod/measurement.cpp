@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <span>
 #include <tuple>
 
 #include "tod/frame_taker.h"
@@ -54,7 +55,7 @@ class Run {
         options_(options),
         listener_(listener),
         stop_(std::move(stop)),
-        taker_(source, taker_options(options, source.info())),
+        taker_(source, taker_options(options, listener, source.info())),
         answers_(options.seed, "observer") {
     options_.registration.expected_scale_px_per_mm = 1 / (options.distance_m * options.ifov_mrad);
     for (const auto& plate : options.plates) plates_.push_back({plate, {}, {}});
@@ -70,10 +71,12 @@ class Run {
     if (auto corrected = correct_when_due(); !corrected) return tl::unexpected(corrected.error());
     std::optional<Error> ended_by;
     while (const auto state = schedule_.next()) {
+      const std::size_t before = result_.trials.size();
       if (auto shown = show(*state); !shown) {
         ended_by = shown.error();
         break;
       }
+      schedule_.observe(std::span(result_.trials).subspan(before));
       if (listener_.on_progress) listener_.on_progress(static_cast<std::size_t>(presentation_), schedule_.planned());
     }
     source_.stop();
@@ -88,12 +91,15 @@ class Run {
  private:
   using SetUp = std::tuple<std::string, Mounting>;
 
-  static FrameTakerOptions taker_options(const MeasurementOptions& options, const SourceInfo& info) {
+  static FrameTakerOptions taker_options(const MeasurementOptions& options, const MeasurementListener& listener,
+                                         const SourceInfo& info) {
     FrameTakerOptions out{.integrity = options.integrity,
                           .frames_after_change = options.frames_after_change,
                           .nuc_wait_s = options.nuc_wait_s,
                           .max_rejected_share = options.max_rejected_share,
-                          .frame_timeout = options.frame_timeout};
+                          .frame_timeout = options.frame_timeout,
+                          .now_ns = options.now_ns,
+                          .on_rejected = listener.on_rejected};
     out.integrity.width = info.width;
     out.integrity.height = info.height;
     return out;
@@ -106,9 +112,9 @@ class Run {
 
   Result<void> correct_when_due() {
     if (options_.nuc_interval_s <= 0) return {};
-    const auto now = std::chrono::steady_clock::now();
-    if (last_nuc_ && std::chrono::duration<double>(now - *last_nuc_).count() < options_.nuc_interval_s) return {};
-    last_nuc_ = now;
+    const std::int64_t now_ns = options_.now_ns();
+    if (last_nuc_ns_ && static_cast<double>(now_ns - *last_nuc_ns_) * 1e-9 < options_.nuc_interval_s) return {};
+    last_nuc_ns_ = now_ns;
     return taker_.correct_nonuniformity();
   }
 
@@ -281,10 +287,10 @@ class Run {
   std::map<SetUp, Registration> registered_;  ///< at shift 0
   std::optional<SetUp> current_set_up_;
   std::optional<double> current_contrast_;
-  Registration base_;           ///< of the current set-up, at shift 0
-  double contrast_k_ = 0;       ///< of the current set-up and set-point
-  double scale_px_per_mm_ = 0;  ///< of the first registration: one scale for the whole run
-  std::optional<std::chrono::steady_clock::time_point> last_nuc_;
+  Registration base_;                        ///< of the current set-up, at shift 0
+  double contrast_k_ = 0;                    ///< of the current set-up and set-point
+  double scale_px_per_mm_ = 0;               ///< of the first registration: one scale for the whole run
+  std::optional<std::int64_t> last_nuc_ns_;  ///< when the last one was commanded
   std::int64_t presentation_ = 0;
   MeasurementResult result_;
 };

@@ -13,6 +13,7 @@
 #include "acquisition/core/frame_source.h"
 #include "acquisition/core/integrity_gate.h"
 #include "hvs/observer.h"
+#include "tod/frame_taker.h"
 #include "tod/registration.h"
 #include "tod/schedule.h"
 #include "tod/target.h"
@@ -36,6 +37,8 @@ struct MeasurementOptions {
   double nuc_wait_s = 1;             ///< frames within this time after a correction are not measured
   double max_rejected_share = 0.05;  ///< beyond it, after 100 frames, the run ends with `integrity`
   std::chrono::milliseconds frame_timeout{2000};
+  /// The clock of Frame::host_time_ns; a recorded measurement brings its own.
+  std::function<std::int64_t()> now_ns = monotonic_ns;
   IntegrityOptions integrity;
   RegistrationOptions registration;  ///< expected scale is filled in from distance and IFOV
   std::uint64_t seed = 1;
@@ -55,6 +58,7 @@ struct MeasurementListener {
   std::function<bool()> paused;
   std::function<void(std::size_t done, std::size_t planned)> on_progress;
   std::function<void(const std::string& sentence)> on_note;
+  std::function<void(const RejectedFrame&)> on_rejected{};  ///< every frame that was not used, with the reason
 };
 
 /// Registration and contrast of one set-up (plate and mounting), for the report.

@@ -84,6 +84,8 @@ class Nesting {
 
 }  // namespace
 
+void TrialSchedule::observe(std::span<const Trial> /*trials*/) {}
+
 std::vector<cv::Point2d> spread_phases(int count, const RandomStream& stream) {
   const double step_x = 1 / plastic_number;
   const double step_y = 1 / (plastic_number * plastic_number);

@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "acquisition/core/rng.h"
 #include "tod/target.h"
+#include "tod/trial.h"
 
 namespace todbench {
 
@@ -17,8 +19,10 @@ class TrialSchedule {
   virtual ~TrialSchedule() = default;
   /// The next state, or nothing when enough has been shown.
   [[nodiscard]] virtual std::optional<TargetState> next() = 0;
-  /// Presentations in all, for progress and time left.
+  /// Presentations in all, for progress and time left; the most there can be where answers decide.
   [[nodiscard]] virtual std::size_t planned() const = 0;
+  /// The answers to the state that next() gave last. Schedules that do not adapt ignore them.
+  virtual void observe(std::span<const Trial> trials);
 };
 
 /// The method of constant stimuli on plates: every plate in every mounting at every contrast in every phase.

@@ -5,6 +5,7 @@
 #include <cctype>
 
 #include "acquisition/aravis/aravis_source.h"
+#include "acquisition/aravis/description_url.h"
 #include "acquisition/aravis/genicam_features.h"
 #include "acquisition/aravis/glib_ptr.h"
 #include "acquisition/aravis/gvcp_client.h"
@@ -23,6 +24,8 @@ constexpr BootstrapText bootstrap_vendor{0x0048, 32};
 constexpr BootstrapText bootstrap_model{0x0068, 32};
 constexpr BootstrapText bootstrap_version{0x0088, 32};
 constexpr BootstrapText bootstrap_serial{0x00D8, 16};
+constexpr std::uint32_t first_url = 0x0200, second_url = 0x0400;
+constexpr std::uint16_t url_bytes = 512;
 
 std::string bootstrap_text(ArvDevice* device, BootstrapText field) {
   std::string text(field.size, '\0');
@@ -61,6 +64,18 @@ bool controlled_by_another(const std::string& address) {
   if (!is_ipv4(address)) return false;
   const auto privilege = gvcp_read_register(address, gvcp_control_privilege_register, 500ms);
   return privilege && *privilege != 0;
+}
+
+/// Before the camera is opened, because opening believes what the camera states. A camera that cannot be asked is left
+/// to the opening.
+Result<void> check_description(const std::string& address) {
+  if (!is_ipv4(address)) return {};
+  for (const std::uint32_t where : {first_url, second_url}) {
+    const auto url = gvcp_read_text(address, where, url_bytes, 500ms);
+    if (!url || url->empty()) continue;
+    if (auto valid = check_description_url(*url); !valid) return valid;
+  }
+  return {};
 }
 
 class AravisBackend : public CameraBackend {
@@ -115,6 +130,7 @@ Result<std::string> AravisBackend::aravis_name(const std::string& id) {
     const auto answer = gvcp_read_register(name, gvcp_version_register, 500ms);
     if (!answer) return fail(ErrorCode::not_found, answer.error().message);
     if (controlled_by_another(name)) return fail(ErrorCode::not_found, "busy: another program controls " + id);
+    if (const auto valid = check_description(name); !valid) return tl::unexpected(valid.error());
     return name;
   }
   arv_interface_update_device_list(interface());
@@ -126,6 +142,7 @@ Result<std::string> AravisBackend::aravis_name(const std::string& id) {
       if (controlled_by_another(entry(i).address)) {
         return fail(ErrorCode::not_found, "busy: another program controls " + id);
       }
+      if (const auto valid = check_description(entry(i).address); !valid) return tl::unexpected(valid.error());
       return text_or_empty(arv_interface_get_device_id(interface(), i));
     }
     seen += (seen.empty() ? "" : ", ") + candidate;

@@ -17,7 +17,7 @@ enum class AravisTransport {
 
 /// Whether lost packets are asked for again.
 enum class PacketResend {
-  automatic,  ///< always, except on loopback, where the only cameras are emulated ones that cannot resend
+  automatic,  ///< where the camera's capability register says that it can
   never,      ///< a frame with a hole is delivered as incomplete when the next frame begins
   always,     ///< a frame with a hole is delayed by up to 0.1 s
 };
@@ -39,10 +39,11 @@ struct AravisOptions {
 [[nodiscard]] std::string camera_id(std::string_view scheme, std::string_view vendor, std::string_view serial);
 
 /// Lists by discovery (1 s on a network) and opens "gige:VENDOR-SERIAL", or "gige:192.168.1.10" where broadcasts do not
-/// pass; the source then tells the true identity. Opening sets linear temperature, switches noise reduction, sharpening
-/// and compression off and reads everything back. Opening fails with `not_found` when the camera is absent, busy
-/// (another program controls it, or crashed less than its heartbeat of about 3 s ago) or offers no 10 ... 16 bit
-/// monochrome format.
+/// pass; the source then tells the true identity. Opening makes the choices of the camera's family (linear temperature,
+/// full depth, filters off; camera_families.h), looks at its test ramp where it has one and reads everything back. The
+/// first commanded non-uniformity correction also ends the automatic ones. Opening fails with `not_found` when the
+/// camera is absent, busy (another program controls it, or crashed less than its heartbeat of about 3 s ago) or offers
+/// no 10 ... 16 bit monochrome format.
 ///
 /// The sources' stop() returns within milliseconds while the camera answers and within 0.4 s when it has vanished; only
 /// a get or set that is just waiting for a vanished camera delays it, by up to 2.5 s (five attempts of 0.5 s inside

@@ -8,6 +8,7 @@
 #include "acquisition/aravis/genicam_features.h"
 #include "acquisition/aravis/gvcp_client.h"
 #include "acquisition/aravis/socket_buffer.h"
+#include "acquisition/aravis/test_ramp.h"
 
 namespace todbench {
 namespace {
@@ -20,6 +21,9 @@ constexpr int loopback_packet_bytes = 8000;
 constexpr auto ping_patience = 400ms;
 /// Longer than a non-uniformity correction that interrupts the stream (0.5 s) is silent.
 constexpr auto silence_before_ping = 2s;
+/// A test pattern is in the picture some frames after it was chosen.
+constexpr int ramp_frames = 10;
+constexpr auto ramp_patience = 1s;
 /// Two unanswered pings and this much silence make a camera lost.
 constexpr auto silence_before_lost = 3s;
 
@@ -34,6 +38,13 @@ FrameIdKind frame_id_kind(ArvDevice* device, AravisTransport transport) {
   return extended == "On" || extended == "true" ? FrameIdKind::wide : FrameIdKind::gvsp16;
 }
 
+/// GVCP capability register of the GigE Vision standard: bit 29 in its numbering says that packets can be had again.
+bool says_it_can_resend(ArvDevice* device) {
+  if (!ARV_IS_GV_DEVICE(device)) return false;
+  guint32 capability = 0;
+  return arv_device_read_register(device, 0x0934, &capability, nullptr) != 0 && (capability & 0x4U) != 0;
+}
+
 std::shared_ptr<ArvStream> shared(ArvStream* stream) {
   return {stream, GObjectUnref()};
 }
@@ -46,7 +57,8 @@ AravisSource::AravisSource(GObjectPtr<ArvCamera> camera, AravisOptions options, 
       options_(std::move(options)),
       info_(std::move(info)),
       device_address_(std::move(device_address)),
-      loopback_(device_address_.starts_with("127.")) {
+      loopback_(device_address_.starts_with("127.")),
+      can_resend_(says_it_can_resend(arv_camera_get_device(camera_.get()))) {
   auto* shared_events = new std::shared_ptr<Events>(events_);
   control_lost_handler_ = g_signal_connect_data(
       arv_camera_get_device(camera_.get()), "control-lost", G_CALLBACK(&AravisSource::on_control_lost), shared_events,
@@ -73,7 +85,9 @@ Result<std::unique_ptr<FrameSource>> AravisSource::create(GObjectPtr<ArvCamera> 
   // A client that crashed may have left the camera streaming to nowhere, with its parameters locked. Refusal is
   // harmless.
   arv_camera_stop_acquisition(source->camera_.get(), nullptr);
-  auto warnings = prepare_camera(source->camera_.get(), source->options_.pixel_format);
+  source->family_ = family_of(arv_camera_get_device(source->camera_.get()), source->info_);
+  source->bytes_swapped_ = source->family_.high_byte_first;
+  auto warnings = prepare_camera(source->camera_.get(), source->family_, source->options_.pixel_format);
   if (!warnings) return tl::unexpected(warnings.error());
   source->setup_warnings_ = std::move(*warnings);
   source->configure_transport();
@@ -82,7 +96,37 @@ Result<std::unique_ptr<FrameSource>> AravisSource::create(GObjectPtr<ArvCamera> 
   // A stream is opened once here so that info() tells about the socket buffer before the first run.
   const auto stream = source->create_stream();
   if (!stream) return tl::unexpected(stream.error());
+  if (const auto checked = source->check_byte_order(); !checked) return tl::unexpected(checked.error());
   return std::unique_ptr<FrameSource>(std::move(source));
+}
+
+Result<void> AravisSource::check_byte_order() {
+  ArvDevice* device = arv_camera_get_device(camera_.get());
+  if (family_.test_pattern.empty()) return {};
+  const auto patterns = enumeration_entries(device, family_.test_pattern);
+  if (std::find(patterns.begin(), patterns.end(), family_.test_ramp) == patterns.end()) return {};
+  if (auto set = set_feature(device, family_.test_pattern, family_.test_ramp); !set) {
+    if (set.error().code == ErrorCode::disconnected) return set;
+    setup_warnings_.push_back("The camera refuses its test ramp, so the order of its bytes is not checked.");
+    publish_socket_buffer();
+    return {};
+  }
+  RampVerdict verdict = RampVerdict::no_ramp;
+  if (auto started = start(); !started) return started;
+  for (int i = 0; i < ramp_frames && verdict == RampVerdict::no_ramp; ++i) {
+    const auto frame = next(ramp_patience);
+    if (!frame) break;
+    if (frame->status == FrameStatus::complete) verdict = judge_test_ramp(frame->counts);
+  }
+  stop();
+  if (auto off = set_feature(device, family_.test_pattern, "Off"); !off) return off;
+  if (verdict == RampVerdict::swapped) {
+    bytes_swapped_ = !bytes_swapped_;
+    setup_warnings_.push_back("The test ramp arrives with its bytes swapped; they are put in order.");
+  } else if (verdict == RampVerdict::no_ramp) {
+    setup_warnings_.push_back("The test ramp did not arrive as one, so the order of bytes is not checked.");
+  }
+  return refresh();
 }
 
 void AravisSource::configure_transport() {
@@ -108,14 +152,16 @@ Result<void> AravisSource::refresh() {
   auto format = read_stream_format(camera_.get());
   if (!format) return tl::unexpected(format.error());
   format_ = std::move(*format);
-  scale_ = std::make_shared<const RadiometricScale>(read_scale(device));
+  if (bytes_swapped_) format_.big_endian = !format_.big_endian;
+  scale_ = std::make_shared<const RadiometricScale>(read_scale(device, family_));
   info_.width = format_.width;
   info_.height = format_.height;
   info_.pixel_format = format_.name;
   info_.significant_bits = format_.significant_bits;
-  info_.frame_rate_hz = read_frame_rate(camera_.get());
+  info_.frame_rate_hz = read_frame_rate(camera_.get(), family_);
   info_.scale = *scale_;
   info_.settings = read_settings(device);
+  info_.settings["CameraFamily"] = family_.name;
   publish_socket_buffer();
   return {};
 }
@@ -130,7 +176,7 @@ Result<std::shared_ptr<ArvStream>> AravisSource::create_stream() {
   auto stream = shared(raw);
   if (ARV_IS_GV_STREAM(raw)) {
     const bool resend = options_.packet_resend == PacketResend::always ||
-                        (options_.packet_resend == PacketResend::automatic && !loopback_);
+                        (options_.packet_resend == PacketResend::automatic && can_resend_);
     g_object_set(raw, "packet-resend", resend ? ARV_GV_STREAM_PACKET_RESEND_ALWAYS : ARV_GV_STREAM_PACKET_RESEND_NEVER,
                  nullptr);
     check_socket_buffer(raw);
@@ -360,9 +406,19 @@ Result<void> AravisSource::correct_nonuniformity() {
   const std::lock_guard control(control_);
   if (is_lost()) return tl::unexpected(disconnected());
   ArvDevice* device = arv_camera_get_device(camera_.get());
-  const auto commands = nonuniformity_commands(device);
+  const auto commands = nonuniformity_commands(device, family_);
   if (commands.empty()) {
     return fail(ErrorCode::invalid_input, "camera " + info_.id + " has no command to correct its non-uniformity");
+  }
+  if (!corrections_taken_over_) {
+    const auto warning = take_over_corrections(device, family_);
+    if (!warning) {
+      mark_lost();
+      return tl::unexpected(warning.error());
+    }
+    corrections_taken_over_ = true;
+    if (*warning) setup_warnings_.push_back(**warning);
+    if (auto read = refresh(); !read) return read;
   }
   auto done = set_feature(device, commands.front(), "1");
   if (!done && done.error().code == ErrorCode::disconnected) mark_lost();

@@ -50,6 +50,7 @@ class AravisSource : public FrameSource {
   static void on_control_lost(ArvDevice* device, void* events);
 
   [[nodiscard]] Result<void> refresh();
+  [[nodiscard]] Result<void> check_byte_order();
   [[nodiscard]] Result<std::shared_ptr<ArvStream>> create_stream();
   void configure_transport();
   void check_socket_buffer(ArvStream* stream);
@@ -65,8 +66,12 @@ class AravisSource : public FrameSource {
   SourceInfo info_;
   std::string device_address_;
   bool loopback_ = false;
+  bool can_resend_ = false;
   std::vector<std::string> setup_warnings_;
   std::string socket_buffer_bytes_, socket_buffer_warning_;
+  CameraFamily family_;
+  bool bytes_swapped_ = false;  ///< against what the camera says of their order
+  bool corrections_taken_over_ = false;
   StreamFormat format_;
   std::shared_ptr<const RadiometricScale> scale_;
   FrameSequence sequence_{FrameIdKind::gvsp16};

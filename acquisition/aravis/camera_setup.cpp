@@ -23,23 +23,10 @@ struct MonoFormat {
 constexpr std::array<MonoFormat, 4> mono_formats{
     {{"Mono14", 0x01100025, 14}, {"Mono16", 0x01100007, 16}, {"Mono12", 0x01100005, 12}, {"Mono10", 0x01100003, 10}}};
 
-/// A feature and the entries that suit a measurement, best first; the first one offered is set.
-struct Preference {
-  const char* feature;
-  std::array<const char*, 2> entries;
-};
-
-constexpr std::array<Preference, 9> preferences{{
-    {"CMOSBitDepth", {"bit14bit", ""}},
-    {"DigitalOutput", {"bit14bit", ""}},
-    {"IRFormat", {"TemperatureLinear10mK", "TemperatureLinear100mK"}},
-    {"TemperatureLinearMode", {"On", ""}},
-    {"TemperatureLinearResolution", {"High", ""}},
-    {"NoiseReduction", {"Off", ""}},
-    {"SensorDDEMode", {"Off", "Manual"}},
-    {"ImageCompressionMode", {"Off", ""}},
-    {"GevSCPSBigEndian", {"false", ""}},
-}};
+/// Larger than any thermal camera's picture; a camera that states more would have this program reserve memory without
+/// bound.
+constexpr int most_pixels_per_side = 16384;
+constexpr std::size_t most_payload_bytes = 64U << 20U;
 
 constexpr std::array recorded_features{
     "PixelFormat",
@@ -98,11 +85,6 @@ constexpr std::array recorded_features{
     "GevSCPSBigEndian",
 };
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
 /// Bits that a Mono16 pixel really carries: what the camera says about its converter or its largest count, else 16.
 int bits_in_mono16(ArvDevice* device) {
   for (const char* feature : {"CMOSBitDepth", "DigitalOutput"}) {
@@ -139,12 +121,11 @@ Result<void> choose_pixel_format(ArvDevice* device, const std::string& wanted) {
 }
 
 /// Sets the best offered entry of one preference; text of the warning when the camera refuses all.
-Result<std::optional<std::string>> apply(ArvDevice* device, const Preference& preference) {
-  const std::string feature = preference.feature;
+Result<std::optional<std::string>> apply(ArvDevice* device, const FeatureChoice& preference) {
+  const std::string& feature = preference.feature;
   if (!has_feature(device, feature)) return std::nullopt;
   std::optional<std::string> warning;
-  for (const std::string entry : preference.entries) {
-    if (entry.empty()) continue;
+  for (const auto& entry : preference.entries) {
     const auto entries = enumeration_entries(device, feature);
     if (!entries.empty() && std::find(entries.begin(), entries.end(), entry) == entries.end()) continue;
     const auto done = set_feature(device, feature, entry);
@@ -161,35 +142,37 @@ std::optional<double> number(ArvDevice* device, const char* feature) {
   return value ? std::optional(*value) : std::nullopt;
 }
 
-std::optional<double> linear_step(ArvDevice* device) {
-  if (const auto step = number(device, "TemperatureLinearScale"); step && *step > 0) return step;
-  if (has_feature(device, "IRFormat")) {
-    const auto format = get_feature(device, "IRFormat").value_or("");
-    if (format == "TemperatureLinear10mK") return 0.01;
-    if (format == "TemperatureLinear100mK") return 0.1;
-    return std::nullopt;
+/// The line of the family's table that the camera's present settings are.
+const LinearMode* present_linear_scale(ArvDevice* device, const CameraFamily& family) {
+  for (const auto& line : family.linear) {
+    if (has_feature(device, line.mode) && get_feature(device, line.mode).value_or("") == line.mode_entry &&
+        get_feature(device, line.step).value_or("") == line.step_entry) {
+      return &line;
+    }
   }
-  if (get_feature(device, "TemperatureLinearMode").value_or("") != "On") return std::nullopt;
-  const auto resolution = get_feature(device, "TemperatureLinearResolution").value_or("");
-  if (resolution == "High") return 0.04;
-  if (resolution == "Low") return 0.4;
-  return std::nullopt;
+  return nullptr;
 }
 
-/// True when the counts are proportional to temperature now.
-bool temperature_linear(ArvDevice* device) {
-  if (has_feature(device, "IRFormat")) {
-    return get_feature(device, "IRFormat").value_or("").starts_with("TemperatureLinear");
-  }
-  return get_feature(device, "TemperatureLinearMode").value_or("") == "On";
+/// True when the counts are proportional to temperature now, whatever the step.
+bool temperature_linear(ArvDevice* device, const CameraFamily& family) {
+  return std::any_of(family.linear.begin(), family.linear.end(), [&](const LinearMode& line) {
+    return has_feature(device, line.mode) && get_feature(device, line.mode).value_or("") == line.mode_entry;
+  });
+}
+
+std::optional<double> linear_step(ArvDevice* device, const CameraFamily& family) {
+  if (const auto step = number(device, "TemperatureLinearScale"); step && *step > 0) return step;
+  const LinearMode* line = present_linear_scale(device, family);
+  return line != nullptr ? std::optional(line->kelvin_per_count) : std::nullopt;
 }
 
 }  // namespace
 
-Result<std::vector<std::string>> prepare_camera(ArvCamera* camera, const std::string& wanted) {
+Result<std::vector<std::string>> prepare_camera(ArvCamera* camera, const CameraFamily& family,
+                                                const std::string& wanted) {
   ArvDevice* device = arv_camera_get_device(camera);
   std::vector<std::string> warnings;
-  for (const auto& preference : preferences) {
+  for (const auto& preference : family.choices) {
     auto warning = apply(device, preference);
     if (!warning) return tl::unexpected(warning.error());
     if (*warning) warnings.push_back(**warning);
@@ -220,6 +203,12 @@ Result<StreamFormat> read_stream_format(ArvCamera* camera) {
   format.significant_bits = significant_bits(device, *known);
   format.payload_bytes = arv_camera_get_payload(camera, error.out());
   if (error) return error.failure(ErrorCode::not_found, "reading the payload size");
+  if (format.width > most_pixels_per_side || format.height > most_pixels_per_side ||
+      format.payload_bytes > most_payload_bytes) {
+    return fail(ErrorCode::not_found, "the camera states a picture of " + std::to_string(format.width) + " x " +
+                                          std::to_string(format.height) + " pixels in " +
+                                          std::to_string(format.payload_bytes) + " bytes: larger than is accepted");
+  }
   const auto pixels = static_cast<std::size_t>(format.width) * static_cast<std::size_t>(format.height);
   if (format.width <= 0 || format.height <= 0 || format.payload_bytes < 2 * pixels) {
     return fail(ErrorCode::not_found, "the camera states an impossible geometry of " + std::to_string(format.width) +
@@ -231,9 +220,9 @@ Result<StreamFormat> read_stream_format(ArvCamera* camera) {
   return format;
 }
 
-RadiometricScale read_scale(ArvDevice* device) {
-  if (temperature_linear(device)) {
-    const auto step = linear_step(device);
+RadiometricScale read_scale(ArvDevice* device, const CameraFamily& family) {
+  if (temperature_linear(device, family)) {
+    const auto step = linear_step(device, family);
     if (!step) return {};
     const double offset_k = number(device, "TemperatureLinearOffset").value_or(0);
     return RadiometricScale::linear({*step, offset_k}).value_or(RadiometricScale());
@@ -251,13 +240,11 @@ RadiometricScale read_scale(ArvDevice* device) {
   return {};
 }
 
-double read_frame_rate(ArvCamera* camera) {
+double read_frame_rate(ArvCamera* camera, const CameraFamily& family) {
   ArvDevice* device = arv_camera_get_device(camera);
-  for (const char* feature : {"AcquisitionFrameRate", "AcquisitionFrameRateAbs", "ResultingFrameRate"}) {
-    if (const auto rate = number(device, feature); rate && *rate > 0) return *rate;
-  }
-  // "PAL50HZ", "NTSC60HZ", "Rate50Hz": the number is the rate.
-  for (const char* feature : {"SensorVideoStandard", "IRFrameRate"}) {
+  for (const auto& feature : family.frame_rate) {
+    if (const auto rate = number(device, feature.c_str()); rate && *rate > 0) return *rate;
+    // "PAL50HZ", "NTSC60HZ", "Rate50Hz": the number is the rate.
     const auto entry = get_feature(device, feature);
     if (!entry) continue;
     const auto digit = std::find_if(entry->begin(), entry->end(), [](unsigned char c) { return std::isdigit(c); });
@@ -275,21 +262,39 @@ std::map<std::string, std::string> read_settings(ArvDevice* device) {
   return settings;
 }
 
-std::vector<std::string> nonuniformity_commands(ArvDevice* device) {
+std::vector<std::string> nonuniformity_commands(ArvDevice* device, const CameraFamily& family) {
   std::vector<std::string> commands;
-  for (const char* known : {"NUCAction", "FFCAction", "FFC", "NUC", "DoFFC", "DoNUC"}) {
-    if (ARV_IS_GC_COMMAND(arv_device_get_feature(device, known))) commands.emplace_back(known);
+  for (const auto& known : family.nuc_commands) {
+    if (ARV_IS_GC_COMMAND(arv_device_get_feature(device, known.c_str()))) commands.push_back(known);
   }
-  if (!commands.empty()) return commands;
-  // Other vendors' names: the shortest command that speaks of it is the plain one (NUCActionLong is the slow variant of
-  // NUCAction).
-  for (auto& name : command_names(device)) {
-    const std::string text = lower(name);
-    if (text.find("nuc") != std::string::npos || text.find("ffc") != std::string::npos) commands.push_back(name);
+  return commands.empty() ? correction_commands(command_names(device)) : commands;
+}
+
+Result<std::optional<std::string>> take_over_corrections(ArvDevice* device, const CameraFamily& family) {
+  std::vector<std::string> modes;
+  if (has_feature(device, family.nuc_mode)) {
+    modes.push_back(family.nuc_mode);
+  } else {
+    modes = correction_modes(enumeration_names(device));
   }
-  std::sort(commands.begin(), commands.end(),
-            [](const std::string& a, const std::string& b) { return a.size() < b.size(); });
-  return commands;
+  if (modes.empty()) return std::nullopt;
+  const auto entries = enumeration_entries(device, modes.front());
+  std::string entry;
+  for (const auto& known : family.nuc_commanded) {
+    if (entry.empty() && std::find(entries.begin(), entries.end(), known) != entries.end()) entry = known;
+  }
+  if (entry.empty()) entry = commanded_entry(entries);
+  if (entry.empty()) return "The camera cannot be kept from correcting its non-uniformity when it likes.";
+  if (get_feature(device, modes.front()).value_or("") == entry) return std::nullopt;
+  const auto done = set_feature(device, modes.front(), entry);
+  if (done) return std::nullopt;
+  if (done.error().code == ErrorCode::disconnected) return tl::unexpected(done.error());
+  return "The camera keeps correcting its non-uniformity when it likes: " + done.error().message + ".";
+}
+
+CameraFamily family_of(ArvDevice* device, const SourceInfo& info) {
+  return camera_family(info.vendor, info.model,
+                       [device](const std::string& feature) { return has_feature(device, feature); });
 }
 
 }  // namespace todbench

@@ -22,7 +22,9 @@ cv::Mat1w copied_pixels(const void* data, const StreamFormat& format) {
 FrameStatus status_of(ArvBuffer* buffer, const StreamFormat& format) {
   switch (arv_buffer_get_status(buffer)) {
     case ARV_BUFFER_STATUS_SUCCESS: {
-      const bool image = arv_buffer_get_payload_type(buffer) == ARV_BUFFER_PAYLOAD_TYPE_IMAGE;
+      const auto type = arv_buffer_get_payload_type(buffer);
+      // Chunks lie behind the image.
+      const bool image = type == ARV_BUFFER_PAYLOAD_TYPE_IMAGE || type == ARV_BUFFER_PAYLOAD_TYPE_EXTENDED_CHUNK_DATA;
       const bool as_negotiated = image && arv_buffer_get_image_width(buffer) == format.width &&
                                  arv_buffer_get_image_height(buffer) == format.height &&
                                  arv_buffer_get_image_pixel_format(buffer) == format.code;

@@ -108,15 +108,24 @@ Result<void> set_boolean(ArvDevice* device, const std::string& name, const std::
   return {};
 }
 
-void collect_commands(ArvGc* genicam, const char* category, std::set<std::string>& visited,
-                      std::vector<std::string>& commands) {
+/// Adds the names of nodes of one kind below a category.
+void collect(ArvGc* genicam, const char* category, Kind wanted, std::set<std::string>& visited,
+             std::vector<std::string>& names) {
   ArvGcNode* node = arv_gc_get_node(genicam, category);
   if (node == nullptr || !visited.insert(category).second) return;
-  if (ARV_IS_GC_COMMAND(node)) commands.emplace_back(category);
+  if (kind_of(node) == wanted) names.emplace_back(category);
   if (!ARV_IS_GC_CATEGORY(node)) return;
   for (const GSList* item = arv_gc_category_get_features(ARV_GC_CATEGORY(node)); item != nullptr; item = item->next) {
-    collect_commands(genicam, static_cast<const char*>(item->data), visited, commands);
+    collect(genicam, static_cast<const char*>(item->data), wanted, visited, names);
   }
+}
+
+std::vector<std::string> names_of(ArvDevice* device, Kind wanted) {
+  std::set<std::string> visited;
+  std::vector<std::string> names;
+  ArvGc* genicam = arv_device_get_genicam(device);
+  if (genicam != nullptr) collect(genicam, "Root", wanted, visited, names);
+  return names;
 }
 
 }  // namespace
@@ -198,11 +207,11 @@ std::vector<std::string> enumeration_entries(ArvDevice* device, const std::strin
 }
 
 std::vector<std::string> command_names(ArvDevice* device) {
-  std::set<std::string> visited;
-  std::vector<std::string> commands;
-  ArvGc* genicam = arv_device_get_genicam(device);
-  if (genicam != nullptr) collect_commands(genicam, "Root", visited, commands);
-  return commands;
+  return names_of(device, Kind::command);
+}
+
+std::vector<std::string> enumeration_names(ArvDevice* device) {
+  return names_of(device, Kind::enumeration);
 }
 
 }  // namespace todbench

@@ -25,7 +25,8 @@ namespace todbench {
 /// Entries of an enumeration that can be chosen now; empty when there is no such enumeration.
 [[nodiscard]] std::vector<std::string> enumeration_entries(ArvDevice* device, const std::string& name);
 
-/// Names of all commands in the camera's feature tree.
+/// Names of all commands and of all enumerations in the camera's feature tree.
 [[nodiscard]] std::vector<std::string> command_names(ArvDevice* device);
+[[nodiscard]] std::vector<std::string> enumeration_names(ArvDevice* device);
 
 }  // namespace todbench

@@ -10,12 +10,13 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <vector>
 
 namespace todbench {
 namespace {
 
 constexpr std::uint16_t read_register_command = 0x0080;
-constexpr std::uint16_t read_register_acknowledge = 0x0081;
+constexpr std::uint16_t read_memory_command = 0x0084;
 constexpr auto repeat_after = std::chrono::milliseconds(50);
 
 class UdpSocket {
@@ -32,20 +33,19 @@ class UdpSocket {
   int fd_;
 };
 
-std::array<std::uint8_t, 12> read_register_request(std::uint16_t request_id, std::uint32_t address) {
-  // key, flags (acknowledge required), command, payload length 4, request id, register address; big-endian
-  return {0x42,
-          0x01,
-          read_register_command >> 8,
-          read_register_command & 0xFF,
-          0x00,
-          0x04,
-          static_cast<std::uint8_t>(request_id >> 8),
-          static_cast<std::uint8_t>(request_id & 0xFF),
-          static_cast<std::uint8_t>(address >> 24),
-          static_cast<std::uint8_t>((address >> 16) & 0xFF),
-          static_cast<std::uint8_t>((address >> 8) & 0xFF),
-          static_cast<std::uint8_t>(address & 0xFF)};
+using Bytes = std::vector<std::uint8_t>;
+
+void append(Bytes& out, std::uint32_t value, int bytes) {
+  for (int shift = 8 * (bytes - 1); shift >= 0; shift -= 8) out.push_back(static_cast<std::uint8_t>(value >> shift));
+}
+
+Bytes request_of(std::uint16_t command, std::uint16_t request_id, const Bytes& payload) {
+  Bytes out{0x42, 0x01};  // key; acknowledge required
+  append(out, command, 2);
+  append(out, static_cast<std::uint32_t>(payload.size()), 2);
+  append(out, request_id, 2);
+  out.insert(out.end(), payload.begin(), payload.end());
+  return out;
 }
 
 std::uint16_t big_endian_16(const std::uint8_t* bytes) {
@@ -56,10 +56,9 @@ std::uint32_t big_endian_32(const std::uint8_t* bytes) {
   return std::uint32_t{bytes[0]} << 24 | std::uint32_t{bytes[1]} << 16 | std::uint32_t{bytes[2]} << 8 | bytes[3];
 }
 
-}  // namespace
-
-Result<std::uint32_t> gvcp_read_register(const std::string& ipv4, std::uint32_t address,
-                                         std::chrono::milliseconds patience) {
+/// Sends a request every 50 ms until its acknowledge comes; the payload of that.
+Result<Bytes> exchange(const std::string& ipv4, std::uint16_t command, const Bytes& payload,
+                       std::chrono::milliseconds patience) {
   using Clock = std::chrono::steady_clock;
   sockaddr_in device{};
   device.sin_family = AF_INET;
@@ -73,7 +72,7 @@ Result<std::uint32_t> gvcp_read_register(const std::string& ipv4, std::uint32_t 
   }
   const auto deadline = Clock::now() + patience;
   for (std::uint16_t request_id = 1;; ++request_id) {
-    const auto request = read_register_request(request_id, address);
+    const auto request = request_of(command, request_id, payload);
     // A refused send (nobody listens yet) is no different from a lost one: wait and repeat.
     [[maybe_unused]] const auto sent = ::send(socket.fd(), request.data(), request.size(), 0);
     const auto repeat_at = std::min(deadline, Clock::now() + repeat_after);
@@ -81,20 +80,44 @@ Result<std::uint32_t> gvcp_read_register(const std::string& ipv4, std::uint32_t 
       const auto left = std::chrono::ceil<std::chrono::milliseconds>(repeat_at - Clock::now());
       pollfd readable{socket.fd(), POLLIN, 0};
       if (left.count() <= 0 || ::poll(&readable, 1, static_cast<int>(left.count())) <= 0) break;
-      std::array<std::uint8_t, 64> reply{};
+      std::array<std::uint8_t, 1024> reply{};
       const auto size = ::recv(socket.fd(), reply.data(), reply.size(), MSG_DONTWAIT);
-      if (size < 12) {
+      if (size < 8) {
         // "Connection refused" wakes poll() at once; without this the loop would spin until the deadline.
         if (size < 0) ::poll(nullptr, 0, static_cast<int>(std::min<std::int64_t>(left.count(), 10)));
         continue;
       }
-      const bool ours = big_endian_16(&reply[2]) == read_register_acknowledge && big_endian_16(&reply[6]) <= request_id;
+      const bool ours = big_endian_16(&reply[2]) == command + 1 && big_endian_16(&reply[6]) <= request_id;
       if (!ours) continue;
-      if (big_endian_16(&reply[0]) != 0) return fail(ErrorCode::not_found, ipv4 + " refuses to read a register");
-      return big_endian_32(&reply[8]);
+      if (big_endian_16(&reply[0]) != 0) return fail(ErrorCode::not_found, ipv4 + " refuses to be read");
+      return Bytes(reply.begin() + 8, reply.begin() + size);
     }
     if (Clock::now() >= deadline) return fail(ErrorCode::timeout, "no GigE Vision device answers at " + ipv4);
   }
+}
+
+}  // namespace
+
+Result<std::uint32_t> gvcp_read_register(const std::string& ipv4, std::uint32_t address,
+                                         std::chrono::milliseconds patience) {
+  Bytes payload;
+  append(payload, address, 4);
+  const auto answer = exchange(ipv4, read_register_command, payload, patience);
+  if (!answer) return tl::unexpected(answer.error());
+  if (answer->size() < 4) return fail(ErrorCode::not_found, ipv4 + " answers with too few bytes");
+  return big_endian_32(answer->data());
+}
+
+Result<std::string> gvcp_read_text(const std::string& ipv4, std::uint32_t address, std::uint16_t bytes,
+                                   std::chrono::milliseconds patience) {
+  Bytes payload;
+  append(payload, address, 4);
+  append(payload, bytes, 4);
+  const auto answer = exchange(ipv4, read_memory_command, payload, patience);
+  if (!answer) return tl::unexpected(answer.error());
+  if (answer->size() < 4) return fail(ErrorCode::not_found, ipv4 + " answers with too few bytes");
+  const auto end = std::find(answer->begin() + 4, answer->end(), std::uint8_t{0});
+  return std::string(answer->begin() + 4, end);
 }
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
-// The two GigE Vision control messages that must not wait for anybody: discovery and reading one register, over a plain
-// UDP socket. Source: GigE Vision 2.0, chapter "GVCP"; key byte 0x42, acknowledge = command + 1.
+// GigE Vision control messages that must not wait for anybody: reading a register or a text, over a plain UDP socket.
+// Source: GigE Vision 2.0, chapter "GVCP"; key byte 0x42, acknowledge = command + 1.
 #pragma once
 
 #include <chrono>
@@ -23,5 +23,9 @@ inline constexpr std::uint32_t gvcp_control_privilege_register = 0x0A00;
 /// `not_found` (not an IPv4 address, no socket, the device refuses the address).
 [[nodiscard]] Result<std::uint32_t> gvcp_read_register(const std::string& ipv4, std::uint32_t address,
                                                        std::chrono::milliseconds patience);
+
+/// Reads the text in at most `bytes` (a multiple of 4, up to 536) bytes of the device's memory, in the same way.
+[[nodiscard]] Result<std::string> gvcp_read_text(const std::string& ipv4, std::uint32_t address, std::uint16_t bytes,
+                                                 std::chrono::milliseconds patience);
 
 }  // namespace todbench

@@ -15,12 +15,18 @@ struct Accuracy {
   int wavelengths = 16;                 ///< Gauss-Legendre nodes over the band
   int phases_per_axis = 8;              ///< sampling phases averaged by the direct estimate, per pitch and axis
   int noise_draws = 600;                ///< draws of the direct estimate per size, shared by phases and contrasts
+  double standard_error_percent = 0;    ///< of the direct estimate: draws are added until it is met; 0: no demand
   bool operator==(const Accuracy&) const = default;
 
+  /// Draws per size that no demand exceeds: 40 MB of projected noise per size.
+  static constexpr int max_noise_draws = 8000;
+
+  /// Everything derived from the acuity tolerance alone: half of it for the standard error, the rest in proportion.
+  [[nodiscard]] static Accuracy for_tolerance(double acuity_tolerance_percent);
   [[nodiscard]] static Accuracy draft();
   [[nodiscard]] static Accuracy normal();
   [[nodiscard]] static Accuracy reference();
-  /// "draft", "normal" or "reference"; `invalid_input` otherwise.
+  /// "draft", "normal", "reference", or "auto": for_tolerance() of the default tolerance; `invalid_input` otherwise.
   [[nodiscard]] static Result<Accuracy> named(std::string_view level);
 };
 

@@ -19,6 +19,13 @@ enum class FrameStatus {
 
 [[nodiscard]] std::string_view to_string(FrameStatus status);
 
+/// What the camera itself says about its non-uniformity correction: a telemetry row, a chunk or a node.
+enum class CorrectionState {
+  unknown,  ///< the camera does not say
+  idle,
+  running,  ///< imminent, or the shutter is closed
+};
+
 /// One exposed image. Immutable once handed out: pixels are shared, copying is cheap, any thread may read.
 struct Frame {
   cv::Mat1w counts;            ///< as the camera sent them, row by row from the top
@@ -27,8 +34,10 @@ struct Frame {
       0;  ///< the camera's own clock (start of transfer where the camera does not say more); 0: none
   std::int64_t host_time_ns = 0;  ///< CLOCK_MONOTONIC when the complete frame reached the program
   FrameStatus status = FrameStatus::complete;
-  int significant_bits = 16;                      ///< full scale is 2^significant_bits - 1 counts
-  std::shared_ptr<const RadiometricScale> scale;  ///< never null
+  CorrectionState correction = CorrectionState::unknown;  ///< while this frame was exposed
+  double since_correction_s = -1;                         ///< as the camera says; negative: it does not
+  int significant_bits = 16;                              ///< full scale is 2^significant_bits - 1 counts
+  std::shared_ptr<const RadiometricScale> scale;          ///< never null
 };
 
 /// The frame in kelvin. Fails with `calibration` when the scale cannot say for some pixel.

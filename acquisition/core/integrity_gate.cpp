@@ -1,9 +1,16 @@
 #include "acquisition/core/integrity_gate.h"
 
+#include <algorithm>
 #include <cstring>
+
+#include "acquisition/core/byte_order.h"
 
 namespace todbench {
 namespace {
+
+/// A transfer that serves an old buffer again serves one of its own few; two pictures of a camera with noise differ
+/// within their first pixels, so comparing costs nothing.
+constexpr std::size_t remembered_frames = 8;
 
 bool same_pixels(const cv::Mat1w& a, const cv::Mat1w& b) {
   if (a.size() != b.size()) return false;
@@ -38,10 +45,14 @@ std::string_view to_string(Rejection reason) {
       return "repeated";
     case Rejection::out_of_order:
       return "out_of_order";
+    case Rejection::gapped:
+      return "gapped";
     case Rejection::frozen:
       return "frozen";
     case Rejection::saturated:
       return "saturated";
+    case Rejection::byte_swapped:
+      return "byte_swapped";
     case Rejection::nonuniformity_correction:
       return "nonuniformity_correction";
   }
@@ -50,31 +61,57 @@ std::string_view to_string(Rejection reason) {
 
 IntegrityGate::IntegrityGate(IntegrityOptions options) : options_(options) {}
 
-std::optional<Rejection> IntegrityGate::judge(const Frame& frame) {
-  const auto rejected_for = [this](Rejection reason) {
-    reject(reason);
-    return std::optional(reason);
-  };
-  if (last_sequence_ && frame.sequence == *last_sequence_) return rejected_for(Rejection::repeated);
-  if (last_sequence_ && frame.sequence < *last_sequence_) return rejected_for(Rejection::out_of_order);
-  if (last_sequence_) lost_ += frame.sequence - *last_sequence_ - 1;
+std::optional<Rejection> IntegrityGate::judge_sequence(const Frame& frame) {
+  const auto last = last_sequence_;
+  if (last && frame.sequence == *last) return Rejection::repeated;
+  if (last && frame.sequence < *last) return Rejection::out_of_order;
   last_sequence_ = frame.sequence;
+  if (!last || frame.sequence == *last + 1) return std::nullopt;
+  lost_ += frame.sequence - *last - 1;
+  return Rejection::gapped;
+}
 
-  if (frame.status == FrameStatus::wrong_size || frame.counts.empty()) return rejected_for(Rejection::wrong_size);
-  if (frame.status == FrameStatus::incomplete) return rejected_for(Rejection::incomplete);
-  if ((options_.width > 0 && frame.counts.cols != options_.width) ||
-      (options_.height > 0 && frame.counts.rows != options_.height)) {
-    return rejected_for(Rejection::wrong_size);
+std::optional<Rejection> IntegrityGate::judge_pixels(const Frame& frame) {
+  if (options_.reject_frozen) {
+    const auto twin = std::find_if(recent_.begin(), recent_.end(),
+                                   [&](const cv::Mat1w& old) { return same_pixels(frame.counts, old); });
+    const bool newest = twin == recent_.begin(), found = twin != recent_.end();
+    if (found) return newest ? Rejection::frozen : Rejection::repeated;
+    recent_.push_front(frame.counts);
+    if (recent_.size() > remembered_frames) recent_.pop_back();
   }
-  const bool frozen = options_.reject_frozen && same_pixels(frame.counts, last_counts_);
-  last_counts_ = frame.counts;
-  if (frozen) return rejected_for(Rejection::frozen);
-  if (saturated_share(frame) > options_.max_saturated_share) return rejected_for(Rejection::saturated);
-  ++accepted_;
+  if (frame.significant_bits > 8 && byte_order_evidence(frame.counts, {}).verdict == ByteOrderVerdict::swapped) {
+    return Rejection::byte_swapped;
+  }
+  if (saturated_share(frame) > options_.max_saturated_share) return Rejection::saturated;
   return std::nullopt;
 }
 
-void IntegrityGate::reject(Rejection reason) {
+std::optional<Rejection> IntegrityGate::judge(const Frame& frame) {
+  std::optional<Rejection> reason = judge_sequence(frame);
+  // A damaged frame after a gap counts as damaged: the gap is in lost().
+  if (!reason || reason == Rejection::gapped) {
+    const bool wrong_size = frame.status == FrameStatus::wrong_size || frame.counts.empty() ||
+                            (options_.width > 0 && frame.counts.cols != options_.width) ||
+                            (options_.height > 0 && frame.counts.rows != options_.height);
+    if (frame.status == FrameStatus::incomplete) {
+      reason = Rejection::incomplete;
+    } else if (wrong_size) {
+      reason = Rejection::wrong_size;
+    } else if (const auto pixels = judge_pixels(frame)) {
+      reason = pixels;
+    }
+  }
+  if (reason) {
+    ++rejected_[*reason];
+  } else {
+    ++accepted_;
+  }
+  return reason;
+}
+
+void IntegrityGate::reject_accepted(Rejection reason) {
+  --accepted_;
   ++rejected_[reason];
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,19 +16,26 @@ namespace todbench {
 enum class Rejection {
   incomplete,                ///< the transport says so
   wrong_size,                ///< not the geometry of the source
-  repeated,                  ///< a sequence number seen before
+  repeated,                  ///< a sequence number seen before, or the pixels of one of the frames before the last
   out_of_order,              ///< a sequence number below the last one
+  gapped,                    ///< exposures are missing just before it
   frozen,                    ///< bit-identical to the frame before it (shutter, stuck transfer)
   saturated,                 ///< more than the allowed share of pixels at zero or full scale
+  byte_swapped,              ///< the picture says that its bytes are in the other order
   nonuniformity_correction,  ///< during or just after a correction
 };
+inline constexpr Rejection all_rejections[] = {
+    Rejection::incomplete,   Rejection::wrong_size,   Rejection::repeated,
+    Rejection::out_of_order, Rejection::gapped,       Rejection::frozen,
+    Rejection::saturated,    Rejection::byte_swapped, Rejection::nonuniformity_correction};
 
 [[nodiscard]] std::string_view to_string(Rejection reason);
 
 struct IntegrityOptions {
   int width = 0, height = 0;          ///< expected geometry; 0: not checked
   double max_saturated_share = 0.01;  ///< of all pixels
-  bool reject_frozen = true;  ///< false only for a simulated sensor without noise, whose frames are equal by right
+  /// False only for a simulated sensor without noise, whose frames are equal by right and tell nothing of corrections.
+  bool reject_frozen = true;
 };
 
 /// Looks at every frame in order of arrival. One thread at a time.
@@ -36,8 +44,8 @@ class IntegrityGate {
   explicit IntegrityGate(IntegrityOptions options);
   /// Nothing when the frame may be measured; otherwise the first reason that applies. Counts either way.
   [[nodiscard]] std::optional<Rejection> judge(const Frame& frame);
-  /// Counts a frame as rejected for a reason that only the caller knows (time since a correction).
-  void reject(Rejection reason);
+  /// Takes back the acceptance of the last frame for a reason that only the caller knows (time since a correction).
+  void reject_accepted(Rejection reason);
 
   [[nodiscard]] std::uint64_t accepted() const { return accepted_; }
   [[nodiscard]] std::uint64_t rejected() const;
@@ -46,9 +54,14 @@ class IntegrityGate {
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
 
  private:
+  /// What is wrong with the order of arrival; moves the expected sequence on.
+  [[nodiscard]] std::optional<Rejection> judge_sequence(const Frame& frame);
+  /// What is wrong with a frame that is whole, new and of the right size.
+  [[nodiscard]] std::optional<Rejection> judge_pixels(const Frame& frame);
+
   IntegrityOptions options_;
   std::optional<std::uint64_t> last_sequence_;
-  cv::Mat1w last_counts_;
+  std::deque<cv::Mat1w> recent_;  ///< pixels of the last complete frames, the newest first
   std::uint64_t accepted_ = 0;
   std::uint64_t lost_ = 0;
   std::map<Rejection, std::uint64_t> rejected_;

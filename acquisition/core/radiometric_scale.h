@@ -57,10 +57,13 @@ class RadiometricScale {
   [[nodiscard]] std::string describe() const;
   bool operator==(const RadiometricScale&) const = default;
 
+  using Parameters = std::variant<Uncalibrated, LinearScale, TableScale, PlanckScale>;
+  /// What it was made of, to be stored.
+  [[nodiscard]] const Parameters& parameters() const { return scale_; }
+
  private:
-  using Any = std::variant<Uncalibrated, LinearScale, TableScale, PlanckScale>;
-  explicit RadiometricScale(Any scale) : scale_(std::move(scale)) {}
-  Any scale_;
+  explicit RadiometricScale(Parameters scale) : scale_(std::move(scale)) {}
+  Parameters scale_;
 };
 
 }  // namespace todbench

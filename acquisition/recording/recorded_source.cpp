@@ -9,20 +9,26 @@ namespace {
 
 class RecordedSource : public FrameSource {
  public:
-  explicit RecordedSource(Recording recording)
-      : recording_(std::move(recording)), scale_(std::make_shared<const RadiometricScale>(recording_.info.scale)) {}
+  RecordedSource(Recording recording, Playback playback)
+      : recording_(std::move(recording)),
+        playback_(playback),
+        scale_(std::make_shared<const RadiometricScale>(recording_.info.scale)) {}
 
   [[nodiscard]] const SourceInfo& info() const override { return recording_.info; }
 
   [[nodiscard]] Result<void> start() override {
     if (dead_) return tl::unexpected(end());
-    if (!running_.exchange(true)) position_ = 0;
+    if (!running_.exchange(true)) position_ = failure_ = next_sequence_ = 0;
     return {};
   }
 
   [[nodiscard]] Result<Frame> next(std::chrono::milliseconds) override {
     if (dead_) return tl::unexpected(end());
     if (!running_) return fail(ErrorCode::interrupted, recording_.info.id + " is stopped");
+    if (playback_ == Playback::replay && failure_ < recording_.failures.size() &&
+        recording_.failures[failure_].before_frame <= position_) {
+      return tl::unexpected(recording_.failures[failure_++].error);
+    }
     if (position_ >= recording_.frame_count) {
       dead_ = true;
       return tl::unexpected(end());
@@ -49,6 +55,7 @@ class RecordedSource : public FrameSource {
   }
 
   [[nodiscard]] Result<void> correct_nonuniformity() override {
+    if (playback_ == Playback::replay) return {};
     return fail(ErrorCode::invalid_input, "a recording cannot correct its non-uniformity");
   }
 
@@ -56,15 +63,17 @@ class RecordedSource : public FrameSource {
   [[nodiscard]] Frame frame(RecordedFrame recorded) {
     Frame result;
     result.counts = std::move(recorded.counts);
-    result.sequence = position_++;
+    result.sequence = recorded.sequence.value_or(next_sequence_);
+    next_sequence_ = result.sequence + 1;
+    ++position_;
     result.device_time_ns = recorded.device_time_ns;
-    result.host_time_ns =
-        std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-            .count();
-    result.significant_bits = recording_.info.significant_bits;
+    result.host_time_ns = playback_ == Playback::replay ? recorded.host_time_ns : now_ns();
+    result.correction = recorded.correction;
+    result.since_correction_s = recorded.since_correction_s;
+    result.significant_bits = recorded.significant_bits.value_or(recording_.info.significant_bits);
     result.scale = scale_;
     const bool as_stated = result.counts.cols == recording_.info.width && result.counts.rows == recording_.info.height;
-    result.status = as_stated ? FrameStatus::complete : FrameStatus::wrong_size;
+    result.status = recorded.status == FrameStatus::complete && !as_stated ? FrameStatus::wrong_size : recorded.status;
     return result;
   }
 
@@ -72,17 +81,25 @@ class RecordedSource : public FrameSource {
     return {ErrorCode::disconnected, recording_.info.id + " ends after " + std::to_string(position_) + " frames"};
   }
 
+  [[nodiscard]] static std::int64_t now_ns() {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+  }
+
   Recording recording_;
+  Playback playback_;
   std::shared_ptr<const RadiometricScale> scale_;
   std::uint64_t position_ = 0;
+  std::uint64_t next_sequence_ = 0;
+  std::size_t failure_ = 0;  ///< the next one
   bool dead_ = false;
   std::atomic<bool> running_ = false;  ///< the only thing that stop() touches from another thread
 };
 
 }  // namespace
 
-std::unique_ptr<FrameSource> recorded_source(Recording recording) {
-  return std::make_unique<RecordedSource>(std::move(recording));
+std::unique_ptr<FrameSource> recorded_source(Recording recording, Playback playback) {
+  return std::make_unique<RecordedSource>(std::move(recording), playback);
 }
 
 }  // namespace todbench

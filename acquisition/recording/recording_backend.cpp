@@ -1,12 +1,15 @@
 #include "acquisition/recording/recording_backend.h"
 
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
 
 #include "acquisition/recording/flir_seq.h"
+#include "acquisition/recording/frame_stream.h"
 #include "acquisition/recording/raw_recording.h"
+#include "acquisition/recording/tiff_stack.h"
 
 namespace todbench {
 namespace {
@@ -36,9 +39,14 @@ Result<RawRecordingFormat> raw_format(std::map<std::string, double> values) {
     return node.empty() ? otherwise : node.mapped();
   };
   RawRecordingFormat format;
-  format.width = static_cast<int>(take("width", 0));
-  format.height = static_cast<int>(take("height", 0));
-  format.significant_bits = static_cast<int>(take("bits", 16));
+  // What is no whole number or out of range becomes one that is refused later.
+  const auto whole = [&](const char* key, double otherwise) {
+    const double value = take(key, otherwise);
+    return value >= 0 && value <= 65536 && value == std::floor(value) ? static_cast<int>(value) : -1;
+  };
+  format.width = whole("width", 0);
+  format.height = whole("height", 0);
+  format.significant_bits = whole("bits", 16);
   format.frame_rate_hz = take("frame_rate_hz", 0);
   const bool calibrated = values.contains("kelvin_per_count");
   const double kelvin_per_count = take("kelvin_per_count", 0);
@@ -61,28 +69,39 @@ class RecordingBackend : public CameraBackend {
     const std::string rest = id.substr(5);
     const std::size_t mark = rest.find('?');
     const std::filesystem::path path = rest.substr(0, mark);
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error)) {
-      return fail(ErrorCode::not_found, path.string() + ": no such file");
-    }
-    auto recording = path.extension() == ".seq" ? open_flir_seq(path) : open_raw(path, mark, rest);
+    auto recording = open_recording(path, mark == std::string::npos ? "" : rest.substr(mark + 1));
     if (!recording) return tl::unexpected(recording.error());
     recording->info.id = id;
     return recorded_source(std::move(*recording));
   }
-
- private:
-  [[nodiscard]] static Result<Recording> open_raw(const std::filesystem::path& path, std::size_t mark,
-                                                  const std::string& rest) {
-    const auto values = parsed_query(mark == std::string::npos ? "" : rest.substr(mark + 1));
-    if (!values) return fail(path.string(), values.error());
-    const auto format = raw_format(*values);
-    if (!format) return fail(path.string(), format.error());
-    return open_raw_recording(path, *format);
-  }
 };
 
+bool is_tiff(const std::filesystem::path& path) {
+  return path.extension() == ".tif" || path.extension() == ".tiff";
+}
+
 }  // namespace
+
+Result<Recording> open_recording(const std::filesystem::path& path, const std::string& query) {
+  std::error_code error;
+  const bool folder = std::filesystem::is_directory(path, error);
+  if (!folder && !std::filesystem::is_regular_file(path, error))
+    return fail(ErrorCode::not_found, path.string() + ": no such file");
+  if (!folder && is_frame_stream(path)) {
+    auto stream = open_frame_stream(path);
+    if (!stream) return tl::unexpected(stream.error());
+    return std::move(stream->recording);
+  }
+  if (path.extension() == ".seq") return open_flir_seq(path);
+  const auto values = parsed_query(query);
+  if (!values) return fail(path.string(), values.error());
+  const auto format = raw_format(*values);
+  if (!format) return fail(path.string(), format.error());
+  if (!folder && !is_tiff(path)) return open_raw_recording(path, *format);
+  if (format->width != 0 || format->height != 0)
+    return fail(ErrorCode::invalid_input, path.string() + ": a TIFF states its width and height itself");
+  return open_tiff_stack(path, {format->significant_bits, format->frame_rate_hz, format->scale});
+}
 
 std::unique_ptr<CameraBackend> recording_backend() {
   return std::make_unique<RecordingBackend>();

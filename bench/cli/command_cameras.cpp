@@ -36,16 +36,25 @@ int run_emulate(Console& console, const EmulationArguments& arguments, StopSigna
   if (!laboratory) return report_error(console, laboratory.error());
   const Laboratory& lab = **laboratory;
   if (console.json()) {
-    console.object({{"camera", {{"id", lab.camera_id()}, {"address", lab.camera_address()}}},
-                    {"black_body", lab.black_body_endpoint()},
-                    {"stage", lab.stage_endpoint()}});
+    console.object(
+        {{"camera",
+          {{"id", lab.camera_id()}, {"address", lab.camera_address()}, {"environment", lab.client_environment()}}},
+         {"black_body", lab.black_body_endpoint()},
+         {"stage", lab.stage_endpoint()}});
   } else {
+    const auto environment = lab.client_environment();
+    const std::string by_address = environment.empty() ? " or \"gige:" + lab.camera_address() + "\"" : "";
     console.table(
         {"device", "address", "for the plan"},
-        {{"camera", lab.camera_address(),
-          "[camera] id = \"" + lab.camera_id() + "\" or \"gige:" + lab.camera_address() + "\""},
+        {{"camera", lab.camera_address(), "[camera] id = \"" + lab.camera_id() + "\"" + by_address},
          {"black body", lab.black_body_endpoint(), "[target] black_body = \"" + lab.black_body_endpoint() + "\""},
          {"plate stage", lab.stage_endpoint(), "[target] stage = \"" + lab.stage_endpoint() + "\""}});
+    std::string before_the_command;
+    for (const auto& [name, value] : environment) before_the_command += name + "=" + value + " ";
+    if (!environment.empty()) {
+      console.text("the device node exists for programs that are started with it: " + before_the_command +
+                   "todbench measure PLAN.toml");
+    }
     console.text("running until Ctrl-C");
   }
   stop.wait();
@@ -67,8 +76,11 @@ void add_devices_command(CLI::App& app, Program& program) {
 
 void add_emulate_command(CLI::App& app, Program& program) {
   auto* command =
-      app.add_subcommand("emulate", "runs the emulated laboratory until Ctrl-C: GigE camera, black body, plate stage");
+      app.add_subcommand("emulate", "runs the emulated laboratory until Ctrl-C: camera, black body, plate stage");
   auto a = std::make_shared<EmulationArguments>();
+  command->add_option("--camera", a->camera, "interface of the camera")
+      ->check(CLI::IsMember(emulated_cameras()))
+      ->capture_default_str();
   command->add_option("--sensor", a->sensor, "name or file of the sensor inside the camera")->capture_default_str();
   command->add_option("--interface", a->interface_address, "IPv4 address to serve on")
       ->check(CLI::ValidIPV4)

@@ -1,4 +1,4 @@
-// todbench measure, todbench simulate, todbench demo
+// todbench measure, todbench simulate, todbench replay, todbench demo
 #include <algorithm>
 #include <memory>
 
@@ -6,6 +6,7 @@
 #include "bench/cli/simulation_plan.h"
 #include "bench/run/emulation.h"
 #include "bench/run/experiment.h"
+#include "bench/run/replay.h"
 #include "bench/session/provenance.h"
 #include "bench/session/resources.h"
 
@@ -16,6 +17,7 @@ struct RunArguments {
   std::string plan;
   std::string out;
   bool overwrite = false;
+  bool record_frames = false;
 };
 
 struct SimulateArguments {
@@ -111,6 +113,7 @@ int run_measure(Console& console, const RunArguments& arguments, const Program& 
                                                    "lists them)"});
   }
   if (program.common.seed_given) plan->seed = program.common.seed;
+  if (arguments.record_frames) plan->measurement.record_frames = true;
   auto outcome = measure_plan(*plan, folder_of(arguments, *plan), listener_of(console), program.stop->token());
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
@@ -145,15 +148,20 @@ int run_simulate(Console& console, SimulateArguments arguments, const Program& p
   return finish(console, *outcome);
 }
 
-int run_demo(Console& console, const RunArguments& arguments, const Program& program) {
+int run_demo(Console& console, const RunArguments& arguments, const std::string& camera, const Program& program) {
 #ifdef TODBENCH_WITH_ARAVIS
+  enter_emulation(camera);
   auto plan = load_plan("demo");
   if (!plan) return report_error(console, plan.error());
   if (program.common.seed_given) plan->seed = program.common.seed;
+  EmulationArguments emulation = emulation_for(*plan);
+  emulation.camera = camera;
   console.phase("starting the emulated laboratory");
-  auto laboratory = start_laboratory(emulation_for(*plan));
+  auto laboratory = start_laboratory(emulation);
   if (!laboratory) return report_error(console, laboratory.error());
   *plan = with_laboratory(*std::move(plan), **laboratory);
+  if (camera != "gige") plan->unit = "emulated " + camera + " camera";
+  if (arguments.record_frames) plan->measurement.record_frames = true;
   auto outcome = measure_plan(*plan, folder_of(arguments, *plan), listener_of(console), program.stop->token());
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
@@ -171,6 +179,7 @@ int run_demo(Console& console, const RunArguments& arguments, const Program& pro
   return finish(console, *outcome);
 #else
   (void)arguments;
+  (void)camera;
   (void)program;
   return report_error(
       console,
@@ -187,7 +196,53 @@ void add_folder_options(CLI::App& command, RunArguments& arguments) {
   command.add_option("--out", arguments.out, "session folder; default: session-TIME-NAME in the current folder");
 }
 
+void add_record_flag(CLI::App& command, RunArguments& arguments) {
+  command.add_flag("--record-frames", arguments.record_frames,
+                   "keep every frame in the session, for todbench replay (like [measurement] record_frames)");
+}
+
+int run_replay(Console& console, const std::string& session, const RunArguments& arguments, const Program& program) {
+  auto name = std::filesystem::path(session).lexically_normal();
+  if (name.filename().empty()) name = name.parent_path();
+  ExperimentOptions options{.folder = arguments.out, .existing = ExistingFolder::refuse};
+  if (arguments.overwrite) options.existing = ExistingFolder::overwrite;
+  if (arguments.out.empty())
+    options = {.folder = default_folder(name.filename().string() + "-replay"), .existing = ExistingFolder::number};
+  auto outcome = replay_session(session, options, listener_of(console), program.stop->token());
+  console.end_progress();
+  if (!outcome) return report_error(console, outcome.error());
+  const auto said = [](const std::optional<bool>& same) { return same ? (*same ? "the same" : "DIFFERENT") : "none"; };
+  if (console.json()) {
+    Json json = curve_json(outcome->run.curve, outcome->run.effects, outcome->run.figures);
+    json["same_trials"] = outcome->same_trials;
+    json["same_fits"] = outcome->same_fits ? Json(*outcome->same_fits) : Json();
+    json["session"] = outcome->run.folder.string();
+    console.object(json);
+  } else {
+    print_curve(console, outcome->run.curve);
+    console.text("");
+    console.text("trials: " + std::string(said(outcome->same_trials)) + "; fits: " + said(outcome->same_fits));
+  }
+  if (!outcome->same_trials || !outcome->same_fits.value_or(true)) {
+    console.error("the replay answers differently from the session: another version of the program, or a defect");
+    return exit_code(VerdictKind::fail);
+  }
+  return finish(console, outcome->run);
+}
+
 }  // namespace
+
+void add_replay_command(CLI::App& app, Program& program) {
+  auto* command = app.add_subcommand(
+      "replay", "measures a session again from its recorded frames, into a new session: same answers bit for bit");
+  auto a = std::make_shared<RunArguments>();
+  auto session = std::make_shared<std::string>();
+  command->add_option("DIR", *session, "session folder with recorded frames")->required();
+  add_folder_options(*command, *a);
+  command->add_flag("--force", a->overwrite, "overwrite the session in an existing folder");
+  finish_command(*command, program,
+                 [a, session, &program](Console& console) { return run_replay(console, *session, *a, program); });
+}
 
 void add_measure_command(CLI::App& app, Program& program) {
   auto* command = app.add_subcommand("measure", "measures a TOD curve with the camera and target that the plan names");
@@ -195,6 +250,7 @@ void add_measure_command(CLI::App& app, Program& program) {
   command->add_option("PLAN.toml", a->plan, "name or file")->required();
   add_folder_options(*command, *a);
   command->add_flag("--force", a->overwrite, "overwrite the session in an existing folder");
+  add_record_flag(*command, *a);
   finish_command(*command, program, [a, &program](Console& console) { return run_measure(console, *a, program); });
 }
 
@@ -242,9 +298,15 @@ void add_demo_command(CLI::App& app, Program& program) {
   auto* command =
       app.add_subcommand("demo", "does the whole job on the emulated laboratory: measure, simulate, compare, report");
   auto a = std::make_shared<RunArguments>();
+  auto camera = std::make_shared<std::string>(emulated_cameras().front());
   add_folder_options(*command, *a);
   command->add_flag("--force", a->overwrite, "overwrite the session in an existing folder");
-  finish_command(*command, program, [a, &program](Console& console) { return run_demo(console, *a, program); });
+  add_record_flag(*command, *a);
+  command->add_option("--camera", *camera, "interface of the emulated camera")
+      ->check(CLI::IsMember(emulated_cameras()))
+      ->capture_default_str();
+  finish_command(*command, program,
+                 [a, camera, &program](Console& console) { return run_demo(console, *a, *camera, program); });
 }
 
 }  // namespace todbench

@@ -43,7 +43,10 @@ void add_emulate_command(CLI::App& app, Program& program);
 void add_demo_command(CLI::App& app, Program& program);
 void add_measure_command(CLI::App& app, Program& program);
 void add_simulate_command(CLI::App& app, Program& program);
+void add_record_command(CLI::App& app, Program& program);
+void add_replay_command(CLI::App& app, Program& program);
 void add_compare_command(CLI::App& app, Program& program);
 void add_report_command(CLI::App& app, Program& program);
+void add_range_command(CLI::App& app, Program& program);
 
 }  // namespace todbench

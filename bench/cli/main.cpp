@@ -109,11 +109,14 @@ int run(int argc, char** argv) {
   add_emulate_command(app, program);
   add_measure_command(app, program);
   add_simulate_command(app, program);
+  add_record_command(app, program);
+  add_replay_command(app, program);
   add_compare_command(app, program);
   add_report_command(app, program);
   add_fit_command(app, program);
   add_render_command(app, program);
   add_mtf_command(app, program);
+  add_range_command(app, program);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

@@ -87,14 +87,30 @@ std::string_view in_words(Effect effect) {
   switch (effect) {
     case Effect::diffraction:
       return "Diffraction";
+    case Effect::spectral_band:
+      return "Spectral band";
     case Effect::aberration:
       return "Aberration of the lens";
     case Effect::detector:
       return "Detector footprint";
+    case Effect::motion:
+      return "Motion and time constant";
+    case Effect::microscan:
+      return "Microscan";
     case Effect::temporal_noise:
       return "Temporal noise";
     case Effect::fixed_pattern:
       return "Fixed pattern noise";
+    case Effect::row_column_noise:
+      return "Row and column noise";
+    case Effect::dead_pixels:
+      return "Dead pixels";
+    case Effect::frame_averaging:
+      return "Frame averaging";
+    case Effect::super_resolution:
+      return "Dynamic super-resolution";
+    case Effect::display:
+      return "Display reconstruction";
     case Effect::quantisation:
       return "Quantisation";
   }

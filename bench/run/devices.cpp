@@ -11,6 +11,9 @@
 #ifdef TODBENCH_WITH_ARAVIS
 #include "acquisition/aravis/aravis_backend.h"
 #endif
+#ifdef TODBENCH_WITH_V4L2
+#include "acquisition/v4l2/v4l2_backend.h"
+#endif
 
 namespace todbench {
 namespace {
@@ -108,6 +111,9 @@ CameraRegistry camera_registry() {
 #ifdef TODBENCH_WITH_ARAVIS
   registry.add(aravis_backend());
   registry.add(aravis_backend({.transport = AravisTransport::usb3_vision}));
+#endif
+#ifdef TODBENCH_WITH_V4L2
+  registry.add(v4l2_backend());
 #endif
   registry.add(recording_backend());
   registry.add(std::make_unique<SimulatedBackend>());

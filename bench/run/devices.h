@@ -1,6 +1,8 @@
 // From the words of a plan to opened devices.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <stop_token>
@@ -9,18 +11,20 @@
 #include "bench/run/operator_target.h"
 #include "bench/session/plan.h"
 #include "sim_devices/sensor/simulated_camera.h"
+#include "tod/frame_taker.h"
 #include "tod/target.h"
 
 namespace todbench {
 
-/// Every back end of this build: GigE Vision, USB3 Vision, recordings, simulated sensors.
+/// Every back end of this build: GigE Vision, USB3 Vision, V4L2, recordings, simulated sensors.
 [[nodiscard]] CameraRegistry camera_registry();
 
 /// A camera and what changes the target before it.
 struct OpenedBench {
   std::unique_ptr<FrameSource> camera;
   std::unique_ptr<Target> target;
-  bool simulated = false;  ///< the camera is a sensor model, its clock that of the model
+  bool simulated = false;                               ///< the camera is a sensor model, its clock that of the model
+  std::function<std::int64_t()> now_ns = monotonic_ns;  ///< the clock of the camera's host times
 };
 
 /// Opens what the plan names and writes its settings into the camera. Errors: `not_found`, `invalid_input` (a target

@@ -1,8 +1,43 @@
 #include "bench/run/emulation.h"
 
+#include <optional>
+#include <string_view>
+
 #include "bench/session/descriptions.h"
+#ifdef TODBENCH_WITH_EMULATED_VIDEO
+#include "sim_devices/lab/v4l2_laboratory.h"
+#endif
 
 namespace todbench {
+namespace {
+
+constexpr std::string_view gige = "gige";
+
+#ifdef TODBENCH_WITH_EMULATED_VIDEO
+std::optional<VideoCameraKind> video_kind(const std::string& camera) {
+  if (camera == "v4l2") return VideoCameraKind::lepton;
+  if (camera == "v4l2-yuyv") return VideoCameraKind::temperature_rows;
+  return std::nullopt;
+}
+#endif
+
+}  // namespace
+
+std::vector<std::string> emulated_cameras() {
+#ifdef TODBENCH_WITH_EMULATED_VIDEO
+  return {std::string(gige), "v4l2", "v4l2-yuyv"};
+#else
+  return {std::string(gige)};
+#endif
+}
+
+void enter_emulation(const std::string& camera) {
+#ifdef TODBENCH_WITH_EMULATED_VIDEO
+  if (video_kind(camera)) MockSystem::enter();
+#else
+  (void)camera;
+#endif
+}
 
 EmulationArguments emulation_for(const Plan& plan) {
   EmulationArguments arguments;
@@ -21,7 +56,17 @@ Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& a
   auto sensor = load_sensor(arguments.sensor);
   if (!sensor) return tl::unexpected(sensor.error());
   options.sensor = *sensor;
-  options.plan = full_plan(*sensor, {}, {});
+#ifdef TODBENCH_WITH_EMULATED_VIDEO
+  if (const auto kind = video_kind(arguments.camera)) {
+    options.sensor = with_counts_of(*kind, *sensor);
+    VideoCameraConfig camera;
+    camera.kind = *kind;
+    camera.model = "Emulated " + sensor->name;
+    camera.serial = arguments.serial;
+    options.connect = connect_v4l2(MockSystem::create(), camera);
+  }
+#endif
+  options.plan = full_plan(options.sensor, {}, {});
   for (const auto& name : arguments.plates) {
     auto plate = load_plate(name);
     if (!plate) return tl::unexpected(plate.error());
@@ -46,7 +91,9 @@ Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& a
 }
 
 Plan with_laboratory(Plan plan, const Laboratory& laboratory) {
-  plan.camera.id = "gige:" + laboratory.camera_address();
+  // The address of the camera is enough on GigE; anything else is known by its serial number.
+  plan.camera.id =
+      laboratory.camera_id().starts_with("gige:") ? "gige:" + laboratory.camera_address() : laboratory.camera_id();
   plan.target.kind = TargetKind::scpi;
   plan.target.black_body = laboratory.black_body_endpoint();
   plan.target.stage = laboratory.stage_endpoint();

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "acquisition/core/result.h"
 #include "bench/session/plan.h"
@@ -12,7 +13,16 @@
 
 namespace todbench {
 
+/// The cameras that can be emulated in this build, by the names of `--camera`: "gige", "v4l2" (Y16 with telemetry, as a
+/// Lepton sends it), "v4l2-yuyv" (temperatures below a picture, as a Tiny1 does).
+[[nodiscard]] std::vector<std::string> emulated_cameras();
+
+/// Makes this process one that can look at an emulated device node: starts the program again under the preload library
+/// where `camera` needs it. Call it before anything else is done.
+void enter_emulation(const std::string& camera);
+
 struct EmulationArguments {
+  std::string camera = "gige";    ///< one of emulated_cameras()
   std::string sensor = "sc2000";  ///< name or file
   std::string interface_address = "127.0.0.1";
   std::string serial = "TB0001";

@@ -6,6 +6,7 @@
 
 #include "bench/report/report.h"
 #include "bench/run/experiment_inputs.h"
+#include "bench/run/recorded_bench.h"
 #include "bench/run/observed_source.h"
 #include "bench/run/report_data.h"
 #include "sim_devices/prediction/contrast_response.h"
@@ -62,6 +63,11 @@ class Recorder {
     if (listener_.pause != nullptr) events.paused = [this] { return listener_.pause->rest(halt_.get_token()); };
     events.on_progress = listener_.on_progress;
     events.on_note = [&](const std::string& sentence) { note(folder_, listener_, sentence); };
+    events.on_rejected = [&](const RejectedFrame& frame) {
+      (void)folder_.log("frame " + std::to_string(frame.sequence) +
+                        " not used: " + std::string(to_string(frame.reason)) +
+                        (frame.seen ? " (" + std::string(to_string(*frame.seen)) + ")" : ""));
+    };
     auto result = measure(*bench.camera, *bench.target, observer, schedule, options, events, halt_.get_token());
     if (auto synced = writer->sync(); !synced && !write_error) write_error = synced.error();
     if (write_error) {
@@ -282,6 +288,7 @@ Result<MeasurementResult> run_measured(const Plan& plan, const ExperimentInputs&
   auto response = responses(model, plan, inputs.plates, options, stop);
   if (!response) return tl::unexpected(response.error());
   options.contrast_response = std::move(*response);
+  options.now_ns = bench.now_ns;
   options.free_running = !bench.simulated;
   ListedSchedule schedule(constant_stimuli(stimuli_options(plan, inputs.plates, plan.camera.ifov_mrad, Side::measured),
                                            RandomStream(plan.seed, "schedule")));
@@ -326,46 +333,56 @@ Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions
   if (listener.on_phase) listener.on_phase("opening " + plan.camera.id);
   auto bench = open_bench(plan, inputs->plates, stop, listener.ask_operator);
   if (!bench) return tl::unexpected(bench.error());
-  if (listener.on_open) listener.on_open(bench->camera->info());
-  if (listener.on_frame) bench->camera = observed_source(std::move(bench->camera), listener.on_frame);
-  const SourceInfo info = bench->camera->info();
+  return measure_on_bench(plan, *inputs, *std::move(bench), options, listener, std::move(stop));
+}
+
+Result<ExperimentOutcome> measure_on_bench(const Plan& plan, const ExperimentInputs& inputs, OpenedBench bench,
+                                           const ExperimentOptions& options, const ExperimentListener& listener,
+                                           std::stop_token stop) {
+  if (listener.on_open) listener.on_open(bench.camera->info());
+  if (listener.on_frame) bench.camera = observed_source(std::move(bench.camera), listener.on_frame);
+  const SourceInfo info = bench.camera->info();
   if (!info.scale.calibrated()) {
     return fail(ErrorCode::calibration,
                 "camera " + info.id + " has no temperature scale: contrasts in kelvin cannot be measured");
   }
-  if (auto fits = check_measured_geometry(plan, *inputs, {info.width, info.height}); !fits)
+  if (auto fits = check_measured_geometry(plan, inputs, {info.width, info.height}); !fits)
     return tl::unexpected(fits.error());
-  if (auto fits = check_simulated_geometry(plan, *inputs); !fits) return fail("the simulated twin", fits.error());
+  if (auto fits = check_simulated_geometry(plan, inputs); !fits) return fail("the simulated twin", fits.error());
   Provenance provenance = begin_provenance(plan, Side::measured);
-  provenance.effects = inputs->effects;
+  provenance.effects = inputs.effects;
   provenance.camera = camera_record(info);
-  provenance.target = bench->target->capabilities().description;
+  provenance.target = bench.target->capabilities().description;
   auto folder = begin_session(plan, options, provenance);
   if (!folder) return tl::unexpected(folder.error());
   if (listener.on_session) listener.on_session(folder->path());
   for (const auto& warning : info.warnings) note(*folder, listener, warning);
+  if (plan.measurement.record_frames) {
+    if (auto recording = record_bench(bench, folder->path()); !recording)
+      return abandon(*folder, provenance, recording.error());
+  }
 
   const auto begin = Clock::now();
   phase(*folder, listener, "measuring " + info.model + " " + info.serial);
-  auto result = run_measured(plan, *inputs, *bench, *folder, listener, stop);
+  auto result = run_measured(plan, inputs, bench, *folder, listener, stop);
   if (!result) return abandon(*folder, provenance, with_context("measuring", result.error()));
   provenance.run = run_record(*result, seconds_since(begin));
-  bench->camera.reset();
+  bench = {};
 
   auto curve = tod_curve(result->trials, fit_options(plan));
   if (!curve) return abandon(*folder, provenance, curve.error());
   curve->sensor = info.model + " " + info.serial;
-  curve->observer = inputs->observer.name;
+  curve->observer = inputs.observer.name;
   ExperimentOutcome outcome{.folder = folder->path(),
                             .curve = std::move(*curve),
                             .twin = std::nullopt,
                             .comparison = std::nullopt,
                             .verdict = {},
-                            .effects = inputs->effects,
+                            .effects = inputs.effects,
                             .figures = figures_of(*provenance.run),
                             .ended_by = result->ended_by};
   if (!outcome.ended_by) {
-    TwinResults twin = run_twin(plan, *inputs, outcome.curve, *folder, listener, stop);
+    TwinResults twin = run_twin(plan, inputs, outcome.curve, *folder, listener, stop);
     provenance.twin_run = std::move(twin.run);
     outcome.twin = std::move(twin.curve);
     outcome.comparison = std::move(twin.comparison);

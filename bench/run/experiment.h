@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "bench/run/devices.h"
+#include "bench/run/experiment_inputs.h"
 #include "bench/run/pause.h"
 #include "bench/session/json_output.h"
 #include "bench/session/plan.h"
@@ -59,6 +60,11 @@ struct ExperimentOutcome {
 /// without a folder when a device cannot be opened, with a folder marked interrupted after that.
 [[nodiscard]] Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions& options,
                                                      const ExperimentListener& listener, std::stop_token stop);
+
+/// measure_plan() on a bench that is open already.
+[[nodiscard]] Result<ExperimentOutcome> measure_on_bench(const Plan& plan, const ExperimentInputs& inputs,
+                                                         OpenedBench bench, const ExperimentOptions& options,
+                                                         const ExperimentListener& listener, std::stop_token stop);
 
 /// The same with the simulated sensor in place of the camera, and its direct estimate.
 [[nodiscard]] Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOptions& options,

@@ -76,6 +76,19 @@ Result<SensorSpec> parse_sensor(const Resource& resource) {
       reader->number("aberration_sigma_pitch", NumberRange::between(0, 10), spec.aberration_sigma_pitch);
   spec.netd_k = reader->number("netd_k", not_negative, std::nullopt);
   spec.fixed_pattern_k = reader->number("fixed_pattern_k", not_negative, spec.fixed_pattern_k);
+  spec.time_constant_ms = reader->number("time_constant_ms", NumberRange::between(0, 1000), spec.time_constant_ms);
+  spec.row_noise_k = reader->number("row_noise_k", not_negative, spec.row_noise_k);
+  spec.column_noise_k = reader->number("column_noise_k", not_negative, spec.column_noise_k);
+  spec.dead_pixel_share = reader->number("dead_pixel_share", NumberRange::between(0, 0.1), spec.dead_pixel_share);
+  spec.frames_averaged = static_cast<int>(reader->whole("frames_averaged", 1, 1024, spec.frames_averaged));
+  spec.super_resolution_frames =
+      static_cast<int>(reader->whole("super_resolution_frames", 0, 1024, spec.super_resolution_frames));
+  const std::vector<std::string> displays{"sample_and_hold", "bilinear"};
+  spec.display = reader->choice("display", displays, "sample_and_hold") == "bilinear"
+                     ? DisplayReconstruction::bilinear
+                     : DisplayReconstruction::sample_and_hold;
+  spec.display_blur_samples =
+      reader->number("display_blur_samples", NumberRange::between(0, 3), spec.display_blur_samples);
   spec.microscan = static_cast<int>(reader->whole("microscan", 1, 4, spec.microscan));
   spec.bits = static_cast<int>(reader->whole("bits", 8, 16, spec.bits));
   spec.kelvin_per_count = reader->number("kelvin_per_count", positive, spec.kelvin_per_count);

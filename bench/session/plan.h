@@ -96,6 +96,7 @@ struct MeasurementPlan {
   double max_scale_deviation = 0.02;
   double max_rotation_deg = 10;
   double max_residual_px = 0.25;
+  bool record_frames = false;  ///< every frame of the camera into frames/, for `todbench replay`
   bool operator==(const MeasurementPlan&) const = default;
 };
 

@@ -207,6 +207,7 @@ MeasurementPlan read_measurement(TomlReader reader) {
   plan.max_scale_deviation =
       reader.number("max_scale_deviation", NumberRange::above_to(0, 0.5), plan.max_scale_deviation);
   plan.max_rotation_deg = reader.number("max_rotation_deg", NumberRange::above_to(0, 45), plan.max_rotation_deg);
+  plan.record_frames = reader.flag("record_frames", plan.record_frames);
   plan.max_residual_px = reader.number("max_residual_px", NumberRange::above_to(0, 5), plan.max_residual_px);
   return plan;
 }

@@ -36,6 +36,9 @@ std::string toml(std::string_view text) {
 std::string toml(double value) {
   return number_text(value);
 }
+std::string toml(bool value) {
+  return value ? "true" : "false";
+}
 std::string toml(int value) {
   return std::to_string(value);
 }
@@ -124,6 +127,7 @@ void write_measurement(Lines& out, const MeasurementPlan& plan) {
   out.key("max_scale_deviation", plan.max_scale_deviation);
   out.key("max_rotation_deg", plan.max_rotation_deg);
   out.key("max_residual_px", plan.max_residual_px);
+  out.key("record_frames", plan.record_frames);
 }
 
 void write_limits(Lines& out, const LimitsPlan& limits) {

@@ -179,6 +179,15 @@ std::int64_t TomlReader::whole(std::string_view key, std::int64_t low, std::int6
   return fallback.value_or(low);
 }
 
+bool TomlReader::flag(std::string_view key, std::optional<bool> fallback) {
+  const std::string expected = "true or false";
+  const toml::node* node = document_->ask(*table_, key, !fallback, expected);
+  if (!node) return fallback.value_or(false);
+  if (const auto* value = node->as_boolean()) return value->get();
+  document_->wrong(*table_, key, line_of(*node), expected_found(expected, *node));
+  return fallback.value_or(false);
+}
+
 std::string TomlReader::choice(std::string_view key, Words allowed, const std::optional<std::string>& fallback) {
   const toml::node* node = document_->ask(*table_, key, !fallback, one_of(allowed));
   if (!node) return fallback.value_or(allowed.front());

@@ -47,6 +47,8 @@ class TomlReader {
   [[nodiscard]] double number(std::string_view key, const NumberRange& range, std::optional<double> fallback);
   [[nodiscard]] std::int64_t whole(std::string_view key, std::int64_t low, std::int64_t high,
                                    std::optional<std::int64_t> fallback);
+  /// true or false.
+  [[nodiscard]] bool flag(std::string_view key, std::optional<bool> fallback);
   /// One of the words in `allowed`.
   [[nodiscard]] std::string choice(std::string_view key, Words allowed, const std::optional<std::string>& fallback);
   /// Lists. An empty list is a value, not a missing key.

@@ -6,12 +6,45 @@
 
 namespace todbench {
 
+namespace {
+
+class GigeLaboratoryCamera final : public LaboratoryCamera {
+ public:
+  explicit GigeLaboratoryCamera(std::unique_ptr<EmulatedGigeCamera> camera) : camera_(std::move(camera)) {}
+  [[nodiscard]] std::string id() const override {
+    return todbench::camera_id("gige", camera_->config().vendor, camera_->config().serial);
+  }
+  [[nodiscard]] std::string address() const override { return camera_->config().interface_address; }
+
+ private:
+  std::unique_ptr<EmulatedGigeCamera> camera_;
+};
+
+ConnectCamera connect_gige(EmulatedGigeCameraConfig config) {
+  return [config](const SensorSpec& sensor,
+                  LaboratoryExposure exposure) mutable -> Result<std::unique_ptr<LaboratoryCamera>> {
+    config.width = sensor.width * sensor.microscan;
+    config.height = sensor.height * sensor.microscan;
+    config.significant_bits = sensor.bits;
+    config.frame_rate_hz = sensor.frame_rate_hz;
+    config.kelvin_per_count = sensor.kelvin_per_count;
+    config.offset_k = sensor.offset_k;
+    auto camera = EmulatedGigeCamera::start(config, std::move(exposure));
+    if (!camera) return fail("starting the emulated GigE camera", camera.error());
+    return std::make_unique<GigeLaboratoryCamera>(std::move(*camera));
+  };
+}
+
+}  // namespace
+
 struct Laboratory::State {
   LaboratoryOptions options;
   std::unique_ptr<SensorModel> model;
   std::unique_ptr<BlackBody> black_body;
   std::unique_ptr<PlateStage> stage;
-  std::unique_ptr<EmulatedGigeCamera> camera;  // last: its thread looks at the others
+  std::string camera_id, camera_address;
+  std::map<std::string, std::string> client_environment;
+  std::unique_ptr<LaboratoryCamera> camera;  // last: its thread looks at the others
 
   [[nodiscard]] PlateScene scene() const {
     const PlateStageState on_stage = stage->state();
@@ -50,25 +83,26 @@ Result<std::unique_ptr<Laboratory>> Laboratory::start(LaboratoryOptions options)
   if (!stage) return tl::unexpected(stage.error());
   state->stage = std::move(*stage);
 
-  o.camera.width = state->model->size().width;
-  o.camera.height = state->model->size().height;
-  o.camera.significant_bits = o.sensor.bits;
-  o.camera.frame_rate_hz = o.sensor.frame_rate_hz;
-  o.camera.kelvin_per_count = o.sensor.kelvin_per_count;
-  o.camera.offset_k = o.sensor.offset_k;
+  if (!o.connect) o.connect = connect_gige(o.camera);
   // Frame k shows what is before the camera at that moment, with the noise of exposure k.
-  auto camera = EmulatedGigeCamera::start(
-      o.camera, [seen = state.get()](std::uint64_t index) { return seen->model->expose(seen->scene(), index); });
-  if (!camera) return fail("starting the emulated GigE camera", camera.error());
+  auto camera = o.connect(
+      o.sensor, [seen = state.get()](std::uint64_t index) { return seen->model->expose(seen->scene(), index); });
+  if (!camera) return tl::unexpected(camera.error());
   state->camera = std::move(*camera);
+  state->camera_id = state->camera->id();
+  state->camera_address = state->camera->address();
+  state->client_environment = state->camera->client_environment();
   return std::unique_ptr<Laboratory>(new Laboratory(std::move(state)));
 }
 
 std::string Laboratory::camera_id() const {
-  return todbench::camera_id("gige", state_->options.camera.vendor, state_->options.camera.serial);
+  return state_->camera_id;
 }
 std::string Laboratory::camera_address() const {
-  return state_->options.camera.interface_address;
+  return state_->camera_address;
+}
+std::map<std::string, std::string> Laboratory::client_environment() const {
+  return state_->client_environment;
 }
 std::string Laboratory::black_body_endpoint() const {
   return state_->black_body->endpoint();
@@ -81,9 +115,6 @@ PlateScene Laboratory::scene() const {
 }
 const SensorModel& Laboratory::model() const {
   return *state_->model;
-}
-EmulatedGigeCamera& Laboratory::camera() {
-  return *state_->camera;
 }
 void Laboratory::switch_camera_off() {
   state_->camera.reset();

@@ -1,4 +1,4 @@
-// The emulated laboratory: a GigE Vision camera, a black body and a plate stage, each on its real protocol, around one
+// The emulated laboratory: a camera, a black body and a plate stage, each on its real protocol, around one
 // simulated sensor. What the instruments show is what the camera sees, also while they settle.
 #pragma once
 
@@ -10,6 +10,7 @@
 #include "acquisition/core/accuracy.h"
 #include "sim_devices/lab/black_body.h"
 #include "sim_devices/lab/gige_camera.h"
+#include "sim_devices/lab/laboratory_camera.h"
 #include "sim_devices/lab/plate_stage.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "tod/target_plate.h"
@@ -24,7 +25,9 @@ struct LaboratoryOptions {
   double distance_m = 2;
   cv::Point2d centre_px{0.3, -0.2};  ///< aim of the camera: where the plate's middle is, from the middle of the picture
   double rotation_deg = 0.4;         ///< of the plate about the line of sight
-  EmulatedGigeCameraConfig camera;   ///< geometry, rate and scale are filled in from the sensor
+  /// Another camera than the GigE Vision one. Its counts must be those of `sensor`.
+  ConnectCamera connect;
+  EmulatedGigeCameraConfig camera;  ///< geometry, rate and scale are filled in from the sensor
   BlackBodyOptions black_body;
   PlateStageOptions stage;  ///< plates are filled in
   std::uint64_t seed = 1;
@@ -41,15 +44,16 @@ class Laboratory {
 
   /// "gige:VENDOR-SERIAL".
   [[nodiscard]] std::string camera_id() const;
-  /// IPv4 address of the camera.
+  /// IPv4 address of the camera, or its device node.
   [[nodiscard]] std::string camera_address() const;
+  /// What a client in another process needs in its environment.
+  [[nodiscard]] std::map<std::string, std::string> client_environment() const;
   /// "address:port".
   [[nodiscard]] std::string black_body_endpoint() const;
   [[nodiscard]] std::string stage_endpoint() const;
   /// What is in front of the camera now.
   [[nodiscard]] PlateScene scene() const;
   [[nodiscard]] const SensorModel& model() const;
-  [[nodiscard]] EmulatedGigeCamera& camera();
 
   /// Switches the camera off without a word to its client, as a pulled cable does.
   void switch_camera_off();

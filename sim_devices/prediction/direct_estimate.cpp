@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <memory>
 #include <numbers>
 #include <optional>
 
-#include "hvs/score_maxima.h"
+#include "sim_devices/prediction/size_trial.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "tod/test_pattern.h"
 
@@ -24,121 +25,6 @@ constexpr int scout_draws = 64;
 double size_of(int index) {
   return std::pow(size_step, index);
 }
-
-/// Proportion correct at one size with its variance.
-struct Proportion {
-  double mean = 0, variance = 0;
-};
-
-/// One size: responses to the signal for every phase, and projected noise, both drawn once and shared by contrasts.
-class SizeTrial {
- public:
-  SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank> bank, double size_pitch,
-            const DirectEstimateOptions& options, RandomStream stream)
-      : bank_(std::move(bank)), options_(options), stream_(stream) {
-    const cv::Mat1d fine = chain.image(triangle(size_pitch, Apex::up)).fine_image(chain.points_per_pitch());
-    const int per_axis = std::max(1, options.accuracy.phases_per_axis / options.samples_per_pitch);
-    for (int j = 0; j < per_axis; ++j) {
-      for (int i = 0; i < per_axis; ++i) responses_.push_back(response(fine, chain.points_per_pitch(), i, j, per_axis));
-    }
-  }
-
-  /// Noise per sample relative to the contrast: `white` (temporal, quantisation, internal) and `fixed` (shared by the
-  /// samples of a detector).
-  [[nodiscard]] Proportion proportion(double white, double fixed, int draws) {
-    while (static_cast<int>(noise_.size()) < draws) draw(fixed > 0);
-    if (fixed > 0) {
-      for (int d = 0; d < draws; ++d) {
-        if (patterns_[static_cast<std::size_t>(d)].empty())
-          patterns_[static_cast<std::size_t>(d)] = pattern(static_cast<std::uint64_t>(d));
-      }
-    }
-    double sum = 0, squares = 0;
-    std::vector<float> mixed(bank_->padded_templates());
-    for (int d = 0; d < draws; ++d) {
-      const auto& z = noise_[static_cast<std::size_t>(d)];
-      std::span<const float> total(z);
-      if (fixed > 0) {
-        const auto& f = patterns_[static_cast<std::size_t>(d)];
-        const auto ratio = static_cast<float>(white > 0 ? fixed / white : 0);
-        for (std::size_t t = 0; t < mixed.size(); ++t) mixed[t] = white > 0 ? z[t] + ratio * f[t] : f[t];
-        total = mixed;
-      }
-      const double p = correct_share(total, static_cast<float>(white > 0 ? white : fixed));
-      sum += p;
-      squares += p * p;
-    }
-    const double mean = sum / draws;
-    return {mean, std::max(0.0, squares / draws - mean * mean) / std::max(1, draws - 1)};
-  }
-
- private:
-  [[nodiscard]] std::vector<float> response(const cv::Mat1d& fine, int per_pitch, int i, int j, int per_axis) const {
-    const int window = bank_->window_samples();
-    const int stride = per_pitch / options_.samples_per_pitch;
-    const int n = fine.rows;
-    // Window centre relative to the centroid: -1/2 + (i + 1/2) / per_axis samples; samples at k + 1/2 from it.
-    const auto first = [&](int phase) { return (2 * phase + 1) * stride / (2 * per_axis) - window / 2 * stride; };
-    std::vector<float> patch(static_cast<std::size_t>(window) * static_cast<std::size_t>(window));
-    for (int row = 0; row < window; ++row) {
-      const int y = ((first(j) + row * stride) % n + n) % n;
-      for (int column = 0; column < window; ++column) {
-        const int x = ((first(i) + column * stride) % n + n) % n;
-        patch[static_cast<std::size_t>(row * window + column)] = static_cast<float>(fine(y, x));
-      }
-    }
-    std::vector<float> scores(bank_->padded_templates());
-    bank_->project(patch, scores);
-    return scores;
-  }
-
-  void draw(bool with_pattern) {
-    const auto window = static_cast<std::size_t>(bank_->window_samples());
-    const auto index = static_cast<std::uint64_t>(noise_.size());
-    std::vector<float> samples(window * window);
-    stream_.sub(2 * index).fill_normal(samples);
-    noise_.emplace_back(bank_->padded_templates());
-    bank_->project(samples, noise_.back());
-    patterns_.push_back(with_pattern ? pattern(index) : std::vector<float>{});
-  }
-
-  [[nodiscard]] std::vector<float> pattern(std::uint64_t index) const {
-    const int window = bank_->window_samples();
-    const int detectors = window / options_.samples_per_pitch;
-    std::vector<float> offsets(static_cast<std::size_t>(detectors) * static_cast<std::size_t>(detectors));
-    stream_.sub(2 * index + 1).fill_normal(offsets);
-    std::vector<float> samples(static_cast<std::size_t>(window) * static_cast<std::size_t>(window));
-    for (int row = 0; row < window; ++row) {
-      for (int column = 0; column < window; ++column) {
-        samples[static_cast<std::size_t>(row * window + column)] = offsets[static_cast<std::size_t>(
-            row / options_.samples_per_pitch * detectors + column / options_.samples_per_pitch)];
-      }
-    }
-    std::vector<float> scores(bank_->padded_templates());
-    bank_->project(samples, scores);
-    return scores;
-  }
-
-  /// Share of the phases at which the true alternative (the first) wins; a tie counts its fair part.
-  [[nodiscard]] double correct_share(std::span<const float> noise, float scale) const {
-    float maxima[Choice::max_alternatives];
-    const std::span<float> tops(maxima, static_cast<std::size_t>(bank_->alternatives()));
-    double correct = 0;
-    for (const auto& signal : responses_) {
-      score_maxima(signal, noise, scale, bank_->places(), tops);
-      const float best = *std::max_element(tops.begin(), tops.end());
-      if (tops[0] == best) correct += 1.0 / static_cast<double>(std::count(tops.begin(), tops.end(), best));
-    }
-    return correct / static_cast<double>(responses_.size());
-  }
-
-  std::shared_ptr<const TemplateBank> bank_;
-  DirectEstimateOptions options_;
-  RandomStream stream_;
-  std::vector<std::vector<float>> responses_;  ///< per phase
-  std::vector<std::vector<float>> noise_;      ///< per draw, unit white noise projected
-  std::vector<std::vector<float>> patterns_;   ///< per draw, unit fixed pattern projected; empty until needed
-};
 
 /// ln((P - 0.25) / (1 - P)): nearly linear in ln size near the threshold, ln 2 at 75 %.
 double transformed(double p, double resolution) {
@@ -188,32 +74,38 @@ std::optional<Crossing> crossing(const std::vector<double>& xs, const std::vecto
 /// Sizes on demand for one sensor and observer.
 class SizeLadder {
  public:
-  SizeLadder(const ImageChain& chain, TemplateObserver& observer, const DirectEstimateOptions& options)
-      : chain_(chain), observer_(observer), options_(options), stream_(options.seed, "direct_estimate") {}
+  SizeLadder(const ImageChain& chain, TemplateObserver& observer, TrialConditions conditions,
+             const DirectEstimateOptions& options)
+      : chain_(chain),
+        observer_(observer),
+        conditions_(std::move(conditions)),
+        options_(options),
+        stream_(options.seed, "direct_estimate") {}
 
-  [[nodiscard]] Result<Proportion> proportion(int index, double white, double fixed, int draws) {
+  [[nodiscard]] Result<Proportion> proportion(int index, const WhiteNoise& white, double contrast_k, int draws) {
     if (options_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
     auto& slot = sizes_[index];
     if (slot == nullptr) {
       const double size = size_of(index);
-      auto bank = observer_.bank(size * options_.samples_per_pitch, options_.samples_per_pitch);
+      auto bank = observer_.bank(size * conditions_.samples_per_pitch, conditions_.samples_per_pitch);
       if (!bank) return tl::unexpected(bank.error());
-      slot = std::make_unique<SizeTrial>(chain_, *bank, size, options_,
+      slot = std::make_unique<SizeTrial>(chain_, *bank, size, conditions_,
                                          stream_.sub(static_cast<std::uint64_t>(index - smallest_index)));
     }
-    return slot->proportion(white, fixed, draws);
+    return slot->proportion(white, contrast_k, draws);
   }
 
  private:
   const ImageChain& chain_;
   TemplateObserver& observer_;
+  TrialConditions conditions_;
   DirectEstimateOptions options_;
   RandomStream stream_;
   std::map<int, std::unique_ptr<SizeTrial>> sizes_;
 };
 
 /// The largest index whose proportion is below 75 % while that of the next is not: the first crossing from above.
-Result<int> bracket(SizeLadder& ladder, double white, double fixed, double contrast) {
+Result<int> bracket(SizeLadder& ladder, const WhiteNoise& white, double contrast) {
   int index = 9;  // 2 pitches
   for (;; index += 4) {
     if (index > largest_index) {
@@ -222,12 +114,12 @@ Result<int> bracket(SizeLadder& ladder, double white, double fixed, double contr
                     contrast, size_of(largest_index));
       return fail(ErrorCode::invalid_input, text);
     }
-    const auto p = ladder.proportion(index, white, fixed, scout_draws);
+    const auto p = ladder.proportion(index, white, std::abs(contrast), scout_draws);
     if (!p) return tl::unexpected(p.error());
     if (p->mean > 0.8) break;
   }
   for (--index; index >= smallest_index; --index) {
-    const auto p = ladder.proportion(index, white, fixed, scout_draws);
+    const auto p = ladder.proportion(index, white, std::abs(contrast), scout_draws);
     if (!p) return tl::unexpected(p.error());
     if (p->mean < 0.75) return index;
   }
@@ -235,20 +127,24 @@ Result<int> bracket(SizeLadder& ladder, double white, double fixed, double contr
               "even the smallest target is judged correctly: there is no threshold above 0.2 pitch");
 }
 
-Result<DirectPoint> estimate_contrast(SizeLadder& ladder, double contrast, double white, double fixed,
-                                      const Accuracy& accuracy) {
-  const auto below = bracket(ladder, white, fixed, contrast);
-  if (!below) return tl::unexpected(below.error());
-  int centre = *below;
-  const double resolution = 0.25 / (accuracy.noise_draws * accuracy.phases_per_axis);
+/// One pass at a number of draws: five sizes around the threshold, moved until it is in their middle.
+struct Pass {
+  DirectPoint point;
+  int centre = 0;
+};
+
+Result<Pass> one_pass(SizeLadder& ladder, double contrast, const WhiteNoise& white, const Accuracy& accuracy,
+                      int centre, int draws) {
+  const double resolution = 0.25 / (draws * accuracy.phases_per_axis);
   for (int attempt = 0; attempt < 4; ++attempt) {
     centre = std::clamp(centre, smallest_index + 2, largest_index - 2);
     DirectPoint point;
     point.delta_t_k = contrast;
+    point.noise_draws = draws;
     std::vector<double> xs;
     std::vector<Proportion> ps;
     for (int k = centre - 2; k <= centre + 2; ++k) {
-      const auto p = ladder.proportion(k, white, fixed, accuracy.noise_draws);
+      const auto p = ladder.proportion(k, white, std::abs(contrast), draws);
       if (!p) return tl::unexpected(p.error());
       xs.push_back((k - centre) * std::log(size_step));
       ps.push_back(*p);
@@ -264,10 +160,44 @@ Result<DirectPoint> estimate_contrast(SizeLadder& ladder, double contrast, doubl
     }
     point.s75_pitch = size_of(centre) * std::exp(found->x);
     point.standard_error_pitch = point.s75_pitch * found->standard_error;
-    return point;
+    return Pass{std::move(point), centre};
   }
   return fail(ErrorCode::invalid_input,
               "the proportion correct does not rise with size near 75 %: the contrast has no threshold");
+}
+
+/// Why the asked tolerance cannot be met, what can, and for what.
+std::string out_of_reach(double contrast, double asked_percent, double needed_draws, double reachable_percent,
+                         double seconds) {
+  char text[320];
+  std::snprintf(text, sizeof text,
+                "a tolerance of %.3g %% cannot be met at a contrast of %g K: a standard error of half of it needs %.0f "
+                "noise draws per size, the most is %d; the best that is reachable is %.2g %%, for about %.1f s",
+                2 * asked_percent, contrast, needed_draws, Accuracy::max_noise_draws, 2 * reachable_percent, seconds);
+  return text;
+}
+
+Result<DirectPoint> estimate_contrast(SizeLadder& ladder, double contrast, const WhiteNoise& white,
+                                      const Accuracy& accuracy, const std::function<double(double)>& seconds_at) {
+  const auto below = bracket(ladder, white, contrast);
+  if (!below) return tl::unexpected(below.error());
+  int centre = *below, draws = accuracy.noise_draws;
+  for (;;) {
+    auto pass = one_pass(ladder, contrast, white, accuracy, centre, draws);
+    if (!pass) return tl::unexpected(pass.error());
+    const double reached = 100 * pass->point.standard_error_pitch / pass->point.s75_pitch;
+    const double asked = accuracy.standard_error_percent;
+    if (!(asked > 0) || reached <= asked) return std::move(pass->point);
+    // The error falls with the square root of the draws; a tenth more, because it is itself an estimate.
+    const double needed = 1.1 * draws * std::pow(reached / asked, 2);
+    if (needed > 2 * Accuracy::max_noise_draws || draws == Accuracy::max_noise_draws) {
+      const double reachable = 1.05 * reached * std::sqrt(draws / double{Accuracy::max_noise_draws});
+      return fail(ErrorCode::invalid_input,
+                  out_of_reach(contrast, asked, needed, reachable, seconds_at(pass->point.s75_pitch)));
+    }
+    centre = pass->centre;
+    draws = std::min(static_cast<int>(needed) + 1, Accuracy::max_noise_draws);
+  }
 }
 
 }  // namespace
@@ -275,22 +205,44 @@ Result<DirectPoint> estimate_contrast(SizeLadder& ladder, double contrast, doubl
 Result<std::vector<DirectPoint>> direct_estimate(const SensorSpec& spec, const SensorPlan& plan,
                                                  TemplateObserver& observer, const std::vector<double>& delta_t_k,
                                                  const DirectEstimateOptions& options) {
-  const ImageChain chain(spec, plan, options.accuracy);
-  SizeLadder ladder(chain, observer, options);
-  const double netd = plan.simulates(Effect::temporal_noise) ? spec.netd_k * observer.spec().sensor_noise_factor : 0;
+  const ImageChain chain(spec, plan, options.accuracy, options.motion);
+  TrialConditions conditions{.sensor = as_planned(spec, plan),
+                             .motion = options.motion,
+                             .samples_per_pitch = options.samples_per_pitch,
+                             .phases_per_axis = options.accuracy.phases_per_axis};
+  if (options.samples_per_pitch == 0) conditions.samples_per_pitch = conditions.sensor.samples_per_pitch();
+  if (conditions.sensor.super_resolution_frames == 0) conditions.sensor.microscan = conditions.samples_per_pitch;
+  const SensorSpec sensor = conditions.sensor;
+  SizeLadder ladder(chain, observer, std::move(conditions), options);
+  const double netd = sensor.netd_k * observer.spec().sensor_noise_factor / std::sqrt(sensor.exposures_per_sample());
   const double step = plan.simulates(Effect::quantisation) ? spec.kelvin_per_count : 0;
-  const double fixed_k = plan.simulates(Effect::fixed_pattern) ? spec.fixed_pattern_k : 0;
   std::vector<DirectPoint> points;
   for (const double contrast : delta_t_k) {
     const double magnitude = std::abs(contrast);
     if (!(magnitude > 0)) return fail(ErrorCode::invalid_input, "a contrast of 0 K has no threshold");
-    const double white = std::sqrt((netd * netd + step * step / 12) / (magnitude * magnitude) +
-                                   observer.spec().internal_noise * observer.spec().internal_noise);
-    auto point = estimate_contrast(ladder, contrast, white, fixed_k / magnitude, options.accuracy);
+    const WhiteNoise white{.sensor = std::sqrt(netd * netd + step * step / 12) / magnitude,
+                           .internal = observer.spec().internal_noise};
+    auto point = estimate_contrast(ladder, contrast, white, options.accuracy, [&](double s75) {
+      return predicted_direct_seconds(observer.spec(), sensor, s75, Accuracy::max_noise_draws,
+                                      options.accuracy.phases_per_axis);
+    });
     if (!point) return tl::unexpected(point.error());
     points.push_back(std::move(*point));
   }
   return points;
+}
+
+double predicted_direct_seconds(const TemplateObserverSpec& observer, const SensorSpec& sensor, double s75_pitch,
+                                int noise_draws, int phases_per_axis) {
+  const double steps = 2 * observer.search_range_samples / observer.search_step_samples + 1;
+  const double templates = 4 * steps * steps;
+  const double n = sensor.samples_per_pitch();
+  const double half = std::ceil(observer.window_size_factor * s75_pitch + observer.window_margin_pitch);
+  const double samples = std::pow(2 * half * n, 2);
+  const double phases = std::pow(phases_per_axis / n, 2);
+  // Building a bank costs as much as sixty of its projections. A draw is projected, and compared at every phase.
+  const double per_size = (noise_draws + 60.0) * templates * samples + noise_draws * templates * phases;
+  return 5 * per_size * 5e-11;
 }
 
 }  // namespace todbench

@@ -18,20 +18,29 @@ struct DirectPoint {
   double standard_error_pitch = 0;
   std::vector<double> sizes_pitch;
   std::vector<double> proportion_correct;
+  int noise_draws = 0;  ///< per size
 };
 
 struct DirectEstimateOptions {
-  int samples_per_pitch = 1;  ///< 2: 2x2 microscan
+  int samples_per_pitch = 0;  ///< 2: 2x2 microscan; 0: as the sensor has it
+  SceneMotion motion{};
   Accuracy accuracy;
   std::uint64_t seed = 1;
   std::stop_token stop{};  ///< ends with `interrupted`, within a few hundredths of a second
 };
 
 /// One point per contrast (kelvin, > 0). Noise is drawn once per size and shared by phases and contrasts.
-/// `invalid_input` when no size between 0.2 and 40 pitches brackets 75 %: the contrast then has no threshold.
+/// Where the accuracy demands a standard error, draws are added until it is met.
+/// `invalid_input` when no size between 0.2 and 40 pitches brackets 75 %: the contrast then has no threshold; and
+/// when the demanded standard error needs more draws than Accuracy::max_noise_draws: the message says what is
+/// reachable.
 [[nodiscard]] Result<std::vector<DirectPoint>> direct_estimate(const SensorSpec& spec, const SensorPlan& plan,
                                                                TemplateObserver& observer,
                                                                const std::vector<double>& delta_t_k,
                                                                const DirectEstimateOptions& options);
+
+/// Predicted time on one core of about 2 x 10^10 template samples a second, for one contrast near `s75_pitch`.
+[[nodiscard]] double predicted_direct_seconds(const TemplateObserverSpec& observer, const SensorSpec& sensor,
+                                              double s75_pitch, int noise_draws, int phases_per_axis);
 
 }  // namespace todbench

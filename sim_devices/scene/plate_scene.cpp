@@ -20,7 +20,7 @@ bool same_geometry(const PlateScene& a, const PlateScene& b) {
     return s.position_mm == t.position_mm && s.size_mm == t.size_mm && s.apex == t.apex;
   };
   return a.distance_m == b.distance_m && a.shift_mm == b.shift_mm && a.centre_px == b.centre_px &&
-         a.rotation_deg == b.rotation_deg &&
+         a.rotation_deg == b.rotation_deg && a.motion == b.motion &&
          std::equal(a.plate.triangles.begin(), a.plate.triangles.end(), b.plate.triangles.begin(),
                     b.plate.triangles.end(), same_triangle);
 }

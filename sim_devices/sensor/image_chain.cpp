@@ -35,7 +35,7 @@ double reach(const Polygon& shape) {
 /// sensor_transfer() at the frequencies m / period, |m| <= band, to the last bit. Optics know only the radius and the
 /// detector is a product over the axes, so an eighth of the plane and one axis are computed.
 TransferFunction tabulated_transfer(FrequencyLattice lattice, const SensorSpec& spec, const SensorPlan& plan,
-                                    int wavelengths) {
+                                    int wavelengths, cv::Point2d smear) {
   const OpticsMtf optics(spec, plan, wavelengths);
   const double ratio = plan.simulates(Effect::detector) ? spec.detector_pitch_ratio() : 0;
   const double period = lattice.period;
@@ -48,20 +48,23 @@ TransferFunction tabulated_transfer(FrequencyLattice lattice, const SensorSpec& 
     for (std::size_t smaller = 0; smaller <= larger; ++smaller)
       radial.push_back(optics(std::hypot(u, static_cast<double>(smaller) / period)));
   }
-  return [radial = std::move(radial), axis = std::move(axis), period](double u, double w) -> std::complex<double> {
+  const auto still = [radial = std::move(radial), axis = std::move(axis), period](double u, double w) {
     const auto m = static_cast<std::size_t>(std::llround(std::abs(u) * period));
     const auto n = static_cast<std::size_t>(std::llround(std::abs(w) * period));
     const std::size_t larger = std::max(m, n);
-    return radial[larger * (larger + 1) / 2 + std::min(m, n)] * (axis[m] * axis[n]);
+    return std::complex<double>(radial[larger * (larger + 1) / 2 + std::min(m, n)] * (axis[m] * axis[n]));
   };
+  if (smear == cv::Point2d(0, 0)) return still;
+  return [still, smear](double u, double w) { return still(u, w) * motion_transfer(u, w, smear); };
 }
 
 }  // namespace
 
-ImageChain::ImageChain(SensorSpec spec, SensorPlan plan, Accuracy accuracy)
+ImageChain::ImageChain(SensorSpec spec, SensorPlan plan, Accuracy accuracy, SceneMotion motion)
     : spec_(std::move(spec)),
       plan_(std::move(plan)),
       accuracy_(accuracy),
+      smear_pitch_(smear_pitch(spec_, plan_, motion)),
       band_per_pitch_(needed_band(spec_, plan_, accuracy_)) {
   points_per_pitch_ = 16 * static_cast<int>(std::ceil((2 * band_per_pitch_ + 0.1) / 16));
 }
@@ -71,7 +74,8 @@ FrequencyLattice ImageChain::lattice(double size_pitch) const {
   // size 2.6.
   const double relative_area = std::max(1.0, std::pow(size_pitch / 2.6, 2));
   const double tails = 16 * std::cbrt(1.6e-4 * relative_area / accuracy_.wrap_tolerance);
-  const double body = 2 * size_pitch + 16;
+  // The tail of a moving target has fallen to e^-14, 1e-6, after fourteen smears.
+  const double body = 2 * size_pitch + 16 + 14 * std::hypot(smear_pitch_.x, smear_pitch_.y);
   const int period = 8 * static_cast<int>(std::ceil(std::max(tails, body) / 8 - 1e-9));
   return {.period = period, .band = static_cast<int>(std::floor(band_per_pitch_ * period))};
 }
@@ -80,8 +84,8 @@ std::shared_ptr<const FilterTable> ImageChain::filter(const FrequencyLattice& la
   const std::scoped_lock lock(mutex_);
   auto& slot = filters_[lattice.period];
   if (slot == nullptr)
-    slot =
-        std::make_shared<const FilterTable>(lattice, tabulated_transfer(lattice, spec_, plan_, accuracy_.wavelengths));
+    slot = std::make_shared<const FilterTable>(
+        lattice, tabulated_transfer(lattice, spec_, plan_, accuracy_.wavelengths, smear_pitch_));
   return slot;
 }
 

@@ -12,12 +12,12 @@
 
 namespace todbench {
 
-/// Optics and detector of one sensor. Lengths in detector pitches. Thread-safe; filter tables are computed once per
-/// lattice.
+/// Optics and detector of one sensor before a scene of one motion. Lengths in detector pitches. Thread-safe; filter
+/// tables are computed once per lattice.
 class ImageChain {
  public:
   /// Precondition: validate(spec) succeeds.
-  ImageChain(SensorSpec spec, SensorPlan plan, Accuracy accuracy);
+  ImageChain(SensorSpec spec, SensorPlan plan, Accuracy accuracy, SceneMotion motion = {});
 
   /// The lattice that keeps wrapped signal and truncated band within the tolerances for shapes of `size_pitch` (square
   /// root of area).
@@ -43,6 +43,7 @@ class ImageChain {
   SensorSpec spec_;
   SensorPlan plan_;
   Accuracy accuracy_;
+  cv::Point2d smear_pitch_;
   double band_per_pitch_ = 0;
   int points_per_pitch_ = 16;
   mutable std::mutex mutex_;

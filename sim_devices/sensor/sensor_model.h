@@ -24,15 +24,16 @@ class SensorModel {
   SensorModel(const SensorModel&) = delete;
   SensorModel& operator=(const SensorModel&) = delete;
 
+  /// The sensor as planned: parameters of skipped effects at their neutral values.
   [[nodiscard]] const SensorSpec& spec() const;
   [[nodiscard]] const SensorPlan& plan() const;
 
-  /// Picture elements: detectors times microscan.
+  /// Picture elements: detectors times samples per pitch.
   [[nodiscard]] cv::Size size() const;
   /// The picture before noise at a contrast of 1 K, above the surround. The last few geometries are cached.
   [[nodiscard]] std::shared_ptr<const cv::Mat1f> unit_signal(const PlateScene& scene) const;
-  /// Picture `index` in kelvin above the surround: signal, temporal noise, fixed pattern, quantisation; each as
-  /// planned.
+  /// Picture `index` in kelvin above the surround: signal, temporal and line noise, fixed pattern, dead
+  /// pixels, display, quantisation; each as planned.
   [[nodiscard]] cv::Mat1f picture(const PlateScene& scene, std::uint64_t index) const;
   /// Frame `index` as the camera delivers it: the picture in counts, rounded and clipped to the significant bits.
   /// Rounds also where the plan skips quantisation, because a frame holds whole counts.

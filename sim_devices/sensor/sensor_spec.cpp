@@ -4,6 +4,32 @@
 
 namespace todbench {
 
+std::string_view to_string(DisplayReconstruction reconstruction) {
+  return reconstruction == DisplayReconstruction::bilinear ? "bilinear" : "sample_and_hold";
+}
+
+namespace {
+
+/// The parameters of the stages behind the detector.
+std::string impossible_stage(const SensorSpec& spec) {
+  const auto not_negative = [](double value) { return std::isfinite(value) && value >= 0; };
+  if (!not_negative(spec.time_constant_ms) || spec.time_constant_ms > 1000)
+    return "time_constant_ms must be in [0, 1000]";
+  if (!not_negative(spec.row_noise_k)) return "row_noise_k must not be negative";
+  if (!not_negative(spec.column_noise_k)) return "column_noise_k must not be negative";
+  if (!(spec.dead_pixel_share >= 0 && spec.dead_pixel_share <= 0.1)) return "dead_pixel_share must be in [0, 0.1]";
+  if (spec.frames_averaged < 1 || spec.frames_averaged > 1024) return "frames_averaged must be 1 to 1024";
+  if (spec.super_resolution_frames < 0 || spec.super_resolution_frames > 1024 || spec.super_resolution_frames % 4 != 0)
+    return "super_resolution_frames must be 0 or a multiple of 4 up to 1024";
+  if (spec.super_resolution_frames > 0 && spec.microscan > 1)
+    return "super_resolution_frames and microscan exclude each other";
+  if (!(spec.display_blur_samples >= 0 && spec.display_blur_samples <= 3))
+    return "display_blur_samples must be in [0, 3]";
+  return "";
+}
+
+}  // namespace
+
 Result<void> validate(const SensorSpec& spec) {
   const auto refuse = [&](const std::string& what) {
     return fail(ErrorCode::invalid_input,
@@ -17,7 +43,7 @@ Result<void> validate(const SensorSpec& spec) {
   }
   if (!positive(spec.pitch_um)) return refuse("pitch_um must be positive");
   if (!positive(spec.detector_um)) return refuse("detector_um must be positive");
-  if (spec.detector_um > spec.pitch_um) return refuse("detector_um is larger than pitch_um");
+  if (spec.detector_um > spec.pitch_um) return refuse("detector_um is larger than pitch_um: detectors cannot overlap");
   if (!positive(spec.focal_length_mm)) return refuse("focal_length_mm must be positive");
   if (!positive(spec.f_number)) return refuse("f_number must be positive");
   if (!positive(spec.wavelength_min_um) || !(spec.wavelength_max_um > spec.wavelength_min_um) ||
@@ -31,6 +57,7 @@ Result<void> validate(const SensorSpec& spec) {
   }
   if (!not_negative(spec.netd_k)) return refuse("netd_k must not be negative");
   if (!not_negative(spec.fixed_pattern_k)) return refuse("fixed_pattern_k must not be negative");
+  if (const std::string problem = impossible_stage(spec); !problem.empty()) return refuse(problem);
   if (spec.microscan < 1 || spec.microscan > 4) return refuse("microscan must be 1 to 4");
   if (spec.bits < 8 || spec.bits > 16) return refuse("bits must be 8 to 16");
   if (!positive(spec.kelvin_per_count)) return refuse("kelvin_per_count must be positive");

@@ -2,10 +2,26 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "acquisition/core/result.h"
 
 namespace todbench {
+
+/// How the display makes a picture of samples.
+enum class DisplayReconstruction {
+  sample_and_hold,  ///< squares of one sample: what observers assume
+  bilinear,         ///< interpolated: the squares averaged over another sample
+};
+[[nodiscard]] std::string_view to_string(DisplayReconstruction reconstruction);
+
+/// Angular velocity of the target in the picture, x right, y down. The camera's operator tracks it: the picture shows
+/// it where it is, smeared.
+struct SceneMotion {
+  double x_mrad_s = 0, y_mrad_s = 0;
+  bool operator==(const SceneMotion&) const = default;
+  [[nodiscard]] bool moving() const { return x_mrad_s != 0 || y_mrad_s != 0; }
+};
 
 /// A staring thermal camera. Lengths in the unit of the name; square detectors.
 struct SensorSpec {
@@ -21,14 +37,28 @@ struct SensorSpec {
   double aberration_sigma_pitch = 0;  ///< Gaussian blur of the lens beyond diffraction, per axis, in detector pitches
   double netd_k = 0.07;               ///< temporal noise per sample
   double fixed_pattern_k = 0;         ///< sd of the fixed offset per detector
-  int microscan = 1;               ///< n: array displaced n x n times per picture, n^2 as many samples, same detectors
-  int bits = 14;                   ///< significant bits of a count
-  double kelvin_per_count = 0.01;  ///< linear temperature output
-  double offset_k = 250;           ///< temperature of count 0
+  double time_constant_ms = 0;        ///< of the bolometer; 0: a detector without memory
+  double row_noise_k = 0;             ///< sd of an offset per detector row, new in every exposure
+  double column_noise_k = 0;          ///< the same per column
+  double dead_pixel_share = 0;        ///< of the detectors; the camera shows the mean of the live neighbours instead
+  int frames_averaged = 1;            ///< exposures averaged into one frame
+  int super_resolution_frames = 0;    ///< exposures, displaced by half a pitch, on a grid twice as fine; multiple of 4
+  DisplayReconstruction display = DisplayReconstruction::sample_and_hold;
+  double display_blur_samples = 0;  ///< Gaussian blur of the display per axis, in displayed samples
+  int microscan = 1;                ///< n: array displaced n x n times per picture, n^2 as many samples, same detectors
+  int bits = 14;                    ///< significant bits of a count
+  double kelvin_per_count = 0.01;   ///< linear temperature output
+  double offset_k = 250;            ///< temperature of count 0
   double frame_rate_hz = 50;
   double scene_temperature_k = 300;  ///< of the surround; sets the spectral weighting dL/dT
 
   [[nodiscard]] double ifov_mrad() const { return pitch_um / focal_length_mm; }
+  /// Displayed samples per detector pitch and axis.
+  [[nodiscard]] int samples_per_pitch() const { return microscan * (super_resolution_frames > 0 ? 2 : 1); }
+  /// Exposures that are averaged in each displayed sample.
+  [[nodiscard]] int exposures_per_sample() const {
+    return frames_averaged * (super_resolution_frames > 0 ? super_resolution_frames / 4 : 1);
+  }
   [[nodiscard]] double detector_pitch_ratio() const { return detector_um / pitch_um; }
 };
 

@@ -53,7 +53,7 @@ std::vector<WavelengthNode> wavelength_nodes(const SensorSpec& spec, int count) 
 }
 
 OpticsMtf::OpticsMtf(const SensorSpec& spec, const SensorPlan& plan, int wavelengths)
-    : nodes_(wavelength_nodes(spec, wavelengths)),
+    : nodes_(wavelength_nodes(spec, plan.simulates(Effect::spectral_band) ? wavelengths : 1)),
       f_number_(spec.f_number),
       pitch_um_(spec.pitch_um),
       sigma_pitch_(plan.simulates(Effect::aberration) ? spec.aberration_sigma_pitch : 0),
@@ -84,11 +84,28 @@ double detector_mtf(double u_per_pitch, double w_per_pitch, double detector_pitc
   return sinc(u_per_pitch * detector_pitch_ratio) * sinc(w_per_pitch * detector_pitch_ratio);
 }
 
-TransferFunction sensor_transfer(const SensorSpec& spec, const SensorPlan& plan, int wavelengths) {
+std::complex<double> motion_transfer(double u_per_pitch, double w_per_pitch, cv::Point2d smear_pitch) {
+  const double phase = 2 * std::numbers::pi * (u_per_pitch * smear_pitch.x + w_per_pitch * smear_pitch.y);
+  return std::polar(1.0, -phase) / std::complex<double>(1, -phase);
+}
+
+cv::Point2d smear_pitch(const SensorSpec& spec, const SensorPlan& plan, SceneMotion motion) {
+  if (!plan.simulates(Effect::motion)) return {0, 0};
+  const double pitches_per_mrad_s = spec.time_constant_ms * 1e-3 / spec.ifov_mrad();
+  return {motion.x_mrad_s * pitches_per_mrad_s, motion.y_mrad_s * pitches_per_mrad_s};
+}
+
+TransferFunction sensor_transfer(const SensorSpec& spec, const SensorPlan& plan, int wavelengths, SceneMotion motion) {
   const OpticsMtf optics(spec, plan, wavelengths);
   const double ratio = plan.simulates(Effect::detector) ? spec.detector_pitch_ratio() : 0;
-  return [optics, ratio](double u, double w) -> std::complex<double> {
-    return optics(std::hypot(u, w)) * detector_mtf(u, w, ratio);
+  const cv::Point2d smear = smear_pitch(spec, plan, motion);
+  if (smear == cv::Point2d(0, 0)) {
+    return [optics, ratio](double u, double w) -> std::complex<double> {
+      return optics(std::hypot(u, w)) * detector_mtf(u, w, ratio);
+    };
+  }
+  return [optics, ratio, smear](double u, double w) -> std::complex<double> {
+    return optics(std::hypot(u, w)) * detector_mtf(u, w, ratio) * motion_transfer(u, w, smear);
   };
 }
 

@@ -1,6 +1,8 @@
 // Optics and detector in the frequency domain, in cycles per detector pitch.
 #pragma once
 
+#include <complex>
+#include <opencv2/core/types.hpp>
 #include <vector>
 
 #include "hvs/polygon_image.h"
@@ -38,7 +40,15 @@ class OpticsMtf {
 /// Square detector: sinc(u d) sinc(w d), sinc(x) = sin(pi x) / (pi x), d = detector over pitch.
 [[nodiscard]] double detector_mtf(double u_per_pitch, double w_per_pitch, double detector_pitch_ratio);
 
-/// Optics times detector as planned.
-[[nodiscard]] TransferFunction sensor_transfer(const SensorSpec& spec, const SensorPlan& plan, int wavelengths);
+/// A bolometer with time constant tau under a target of velocity v, smear s = v tau in pitches: the detector
+/// remembers exp(-t / tau) / tau of what it saw, so the tail is behind the target: 1 / (1 - 2 pi i f.s), times
+/// exp(-2 pi i f.s), which takes the mean lag out: the target is tracked.
+[[nodiscard]] std::complex<double> motion_transfer(double u_per_pitch, double w_per_pitch, cv::Point2d smear_pitch);
+/// v tau in pitches; zero where the plan leaves motion out.
+[[nodiscard]] cv::Point2d smear_pitch(const SensorSpec& spec, const SensorPlan& plan, SceneMotion motion);
+
+/// Optics, detector and motion as planned.
+[[nodiscard]] TransferFunction sensor_transfer(const SensorSpec& spec, const SensorPlan& plan, int wavelengths,
+                                               SceneMotion motion = {});
 
 }  // namespace todbench

@@ -14,6 +14,16 @@ Frame frame(std::uint64_t sequence, std::uint16_t value = 0) {
   return f;
 }
 
+/// A gradient of 14 bits whose bytes went the other way round.
+Frame swapped_picture(std::uint64_t sequence) {
+  Frame f = frame(sequence);
+  for (int i = 0; i < 20; ++i) {
+    const int value = 7000 + 13 * i;
+    f.counts(i / 5, i % 5) = static_cast<std::uint16_t>((value << 8) | (value >> 8));
+  }
+  return f;
+}
+
 TEST(IntegrityGate, AcceptsAnUndisturbedStream) {
   IntegrityGate gate({.width = 5, .height = 4});
 
@@ -39,20 +49,50 @@ TEST(IntegrityGate, CountsEveryReason) {
   EXPECT_EQ(gate.judge(frame(2)), Rejection::out_of_order);
   EXPECT_EQ(gate.judge(frame(4, 1003)), Rejection::frozen);
   EXPECT_EQ(gate.judge(frame(5, 16383)), Rejection::saturated);
-  gate.reject(Rejection::nonuniformity_correction);
+  EXPECT_EQ(gate.judge(frame(8)), Rejection::gapped);
+  EXPECT_EQ(gate.judge(swapped_picture(9)), Rejection::byte_swapped);
+  EXPECT_EQ(gate.judge(frame(10)), std::nullopt);
+  gate.reject_accepted(Rejection::nonuniformity_correction);
 
   EXPECT_EQ(gate.accepted(), 2u);
-  EXPECT_EQ(gate.rejected(), 7u);
-  EXPECT_EQ(gate.rejected_by_reason().size(), 7u);
+  EXPECT_EQ(gate.rejected(), 9u);
+  EXPECT_EQ(gate.rejected_by_reason().size(), std::size(all_rejections));
 }
 
 TEST(IntegrityGate, CountsLostExposuresFromGapsInTheSequence) {
   IntegrityGate gate({});
 
   EXPECT_EQ(gate.judge(frame(10)), std::nullopt);
-  EXPECT_EQ(gate.judge(frame(14)), std::nullopt);
+  EXPECT_EQ(gate.judge(frame(14)), Rejection::gapped);
+  EXPECT_EQ(gate.judge(frame(15)), std::nullopt);
 
   EXPECT_EQ(gate.lost(), 3u);
+}
+
+TEST(IntegrityGate, CountsAnOldPictureUnderANewNumberAsRepeated) {
+  IntegrityGate gate({});
+  for (std::uint64_t k = 0; k < 6; ++k) EXPECT_EQ(gate.judge(frame(k)), std::nullopt);
+
+  EXPECT_EQ(gate.judge(frame(6, 1002)), Rejection::repeated);
+  EXPECT_EQ(gate.judge(frame(7)), std::nullopt);
+}
+
+TEST(IntegrityGate, CountsADamagedFrameBehindAGapAsDamaged) {
+  IntegrityGate gate({});
+  Frame damaged = frame(5);
+  damaged.status = FrameStatus::incomplete;
+
+  EXPECT_EQ(gate.judge(frame(0)), std::nullopt);
+  EXPECT_EQ(gate.judge(damaged), Rejection::incomplete);
+
+  EXPECT_EQ(gate.lost(), 4u);
+  EXPECT_EQ(gate.rejected(), 1u);
+}
+
+TEST(IntegrityGate, LetsASensorWithoutNoiseRepeatItsPicture) {
+  IntegrityGate gate({.reject_frozen = false});
+
+  for (std::uint64_t k = 0; k < 5; ++k) EXPECT_EQ(gate.judge(frame(k, 500)), std::nullopt);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 #include "acquisition/recording/raw_recording.h"
 #include "sim_devices/sensor/simulated_camera.h"
 #ifdef TODBENCH_CONTRACT_WITH_ARAVIS
-#include "tests/acquisition/gige_test_support.h"
+#include "tests/acquisition/gvsp_test_support.h"
 #endif
 
 namespace todbench {
@@ -79,6 +79,11 @@ Bench emulated_gige() {
   return {std::move(camera), testing_support::open_camera()};
 }
 
+Bench emulated_ax5() {
+  std::shared_ptr<void> camera = testing_support::start_gvsp_camera({});
+  return {std::move(camera), testing_support::open_camera()};
+}
+
 Bench real_camera() {
   CameraRegistry cameras;
   cameras.add(aravis_backend());
@@ -95,6 +100,7 @@ std::vector<SourceCase> sources() {
                               {"RecordedFlirSeq", Ending::after_last_frame, sc660}};
 #ifdef TODBENCH_CONTRACT_WITH_ARAVIS
   all.push_back({"EmulatedGige", Ending::never, emulated_gige});
+  all.push_back({"EmulatedAx5", Ending::never, emulated_ax5});
   if (std::getenv("TODBENCH_CONTRACT_CAMERA") != nullptr) all.push_back({"RealCamera", Ending::never, real_camera});
 #endif
   return all;

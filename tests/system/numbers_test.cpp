@@ -134,5 +134,35 @@ TEST(RenderJson, TheTiffHoldsTheSameNumbers) {
   EXPECT_FLOAT_EQ(image.at<float>(2, 7), json["values"][2][7].get<float>());
 }
 
+TEST(RangeJson, ReadsTheCurveOfASessionAndFollowsTheTargetLine) {
+  const TemporaryFolder folder;
+  folder.write("plan.toml", small_plan(8));
+  const Ended simulated = todbench({"simulate", "./plan.toml", "--out", "s", "--json"}, {.folder = folder.path()});
+  ASSERT_TRUE(completed(simulated));
+  const double acuity = one_object(simulated)["points"][0]["acuity_per_mrad"];
+  const auto predict = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"range", "--tod", "s", "--size-m", "4.9", "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return todbench(arguments, {.folder = folder.path()});
+  };
+
+  const Ended met = predict({"--delta-t-k", "20", "--v50", "8.5"});
+  const Ended faint = predict({"--delta-t-k", "0.01", "--m75", "5.1", "--extinction-per-km", "0.2"});
+
+  ASSERT_EQ(met.code, 0) << met.err;
+  const Json json = one_object(met);
+  EXPECT_NEAR(json["r75_m"].get<double>(), 4900 * acuity / 5.1, 1e-6);  // acuity is constant above 16.9 K
+  EXPECT_LT(json["r75_ci95_m"][0], json["r75_m"]);
+  EXPECT_GT(json["r75_ci95_m"][1], json["r75_m"]);
+  ASSERT_GT(json["curve"].size(), 10u);
+  EXPECT_TRUE(json["curve"][0].contains("range_m"));
+  EXPECT_GT(json["curve"][0]["probability"], 0.99);
+  EXPECT_EQ(faint.code, 3) << faint.err;
+  EXPECT_TRUE(one_object(faint)["r75_m"].is_null());
+  EXPECT_THAT(one_object(faint)["reason"].get<std::string>(), ::testing::HasSubstr("below the lowest contrast"));
+  expect_refused(predict({"--delta-t-k", "1", "--v50", "8.5", "--m75", "5.1"}), 2, "range");
+  expect_refused(todbench({"range", "--tod", "none", "--size-m", "1", "--delta-t-k", "1"}), 2, "none");
+}
+
 }  // namespace
 }  // namespace todbench::testing

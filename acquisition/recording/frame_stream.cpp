@@ -1,0 +1,343 @@
+#include "acquisition/recording/frame_stream.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/uio.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "acquisition/recording/stream_header.h"
+
+namespace todbench {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers are stored as they lie in memory");
+
+constexpr char magic[] = "TODBREC1";
+constexpr std::size_t magic_bytes = 8;
+
+/// In front of every record: what it is, how long, and checksums of this head and of what follows.
+struct RecordHead {
+  std::array<char, 4> kind{};
+  std::uint32_t payload_bytes = 0;
+  std::uint32_t head_crc = 0;  ///< of the two fields above
+  std::uint32_t payload_crc = 0;
+};
+static_assert(sizeof(RecordHead) == 16);
+
+/// In front of the pixels of a frame.
+struct FrameHead {
+  std::uint64_t sequence = 0;
+  std::int64_t device_time_ns = 0;
+  std::int64_t host_time_ns = 0;
+  double since_correction_s = -1;
+  std::uint16_t width = 0, height = 0;
+  std::uint8_t status = 0, correction = 0, significant_bits = 16, zero = 0;
+};
+static_assert(sizeof(FrameHead) == 40);
+
+constexpr std::uint32_t most_payload = std::uint32_t{1} << 30;
+constexpr std::uint32_t most_header = std::uint32_t{1} << 20;
+constexpr std::uint32_t most_failure = std::uint32_t{1} << 16;
+
+std::uint32_t crc_of(const void* data, std::size_t bytes, std::uint32_t start = 0) {
+  // Lengths are below 2^31, and zlib takes 32-bit ones.
+  return static_cast<std::uint32_t>(::crc32(start, static_cast<const Bytef*>(data), static_cast<uInt>(bytes)));
+}
+
+std::uint32_t crc_of(const RecordHead& head) {
+  return crc_of(&head, offsetof(RecordHead, head_crc));
+}
+
+std::string reason() {
+  return std::generic_category().message(errno);
+}
+
+/// An open file that closes itself.
+class File {
+ public:
+  explicit File(int descriptor) : descriptor_(descriptor) {}
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+  ~File() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  [[nodiscard]] bool open() const { return descriptor_ >= 0; }
+  [[nodiscard]] std::uint64_t size() const {
+    struct stat facts {};
+    return ::fstat(descriptor_, &facts) == 0 && facts.st_size > 0 ? static_cast<std::uint64_t>(facts.st_size) : 0;
+  }
+  /// All of it or false.
+  [[nodiscard]] bool read(std::uint64_t offset, void* to, std::size_t bytes) const {
+    auto* at = static_cast<char*>(to);
+    while (bytes > 0) {
+      const ssize_t got = ::pread(descriptor_, at, bytes, static_cast<off_t>(offset));
+      if (got < 0 && errno == EINTR) continue;
+      if (got <= 0) return false;
+      at += got;
+      offset += static_cast<std::uint64_t>(got);
+      bytes -= static_cast<std::size_t>(got);
+    }
+    return true;
+  }
+
+ private:
+  int descriptor_;
+};
+
+/// Where a frame is in the file.
+struct FramePlace {
+  std::uint64_t offset = 0;  ///< of its payload
+  RecordHead head;
+};
+
+bool plausible(const FrameHead& head, std::uint32_t payload_bytes) {
+  return payload_bytes == sizeof(FrameHead) + std::size_t{2} * head.width * head.height && head.status <= 2 &&
+         head.correction <= 2 && head.significant_bits >= 1 && head.significant_bits <= 16;
+}
+
+Result<RecordedFrame> read_frame(const File& file, const FramePlace& place) {
+  FrameHead head;
+  if (!file.read(place.offset, &head, sizeof head)) return fail(ErrorCode::io, "the file became shorter");
+  RecordedFrame frame;
+  if (!plausible(head, place.head.payload_bytes)) {
+    frame.status = FrameStatus::incomplete;
+    return frame;
+  }
+  const std::size_t pixel_bytes = place.head.payload_bytes - sizeof head;
+  if (pixel_bytes > 0) {
+    frame.counts.create(head.height, head.width);
+    if (!file.read(place.offset + sizeof head, frame.counts.data, pixel_bytes))
+      return fail(ErrorCode::io, "the file became shorter");
+  }
+  std::uint32_t crc = crc_of(&head, sizeof head);
+  if (pixel_bytes > 0) crc = crc_of(frame.counts.data, pixel_bytes, crc);
+  if (crc != place.head.payload_crc) {
+    frame.status = FrameStatus::incomplete;
+    return frame;
+  }
+  frame.sequence = head.sequence;
+  frame.device_time_ns = head.device_time_ns;
+  frame.host_time_ns = head.host_time_ns;
+  frame.since_correction_s = head.since_correction_s;
+  frame.correction = static_cast<CorrectionState>(head.correction);
+  frame.significant_bits = head.significant_bits;
+  frame.status = static_cast<FrameStatus>(head.status);
+  return frame;
+}
+
+std::string payload_text(const File& file, std::uint64_t offset, std::size_t bytes) {
+  std::string text(bytes, '\0');
+  if (!file.read(offset, text.data(), bytes)) text.clear();
+  return text;
+}
+
+/// Walks over the records of a file; each kind into its place.
+class StreamIndex {
+ public:
+  StreamIndex(const File& file, std::uint64_t size) : file_(file), size_(size) {}
+
+  Result<void> walk() {
+    while (size_ - at_ >= sizeof(RecordHead)) {
+      RecordHead head;
+      if (!file_.read(at_, &head, sizeof head)) break;
+      if (head.head_crc != crc_of(head) || head.payload_bytes > size_ - at_ - sizeof head) break;
+      if (auto taken = take(head, at_ + sizeof head); !taken) return taken;
+      at_ += sizeof head + head.payload_bytes;
+    }
+    return {};
+  }
+
+  std::optional<StreamHeader> header;
+  std::vector<FramePlace> frames;
+  std::vector<RecordedFailure> failures;
+  std::vector<std::int64_t> readings;
+  [[nodiscard]] std::uint64_t torn_bytes() const { return size_ - at_; }
+
+ private:
+  [[nodiscard]] static bool is(const RecordHead& head, const char (&kind)[5]) {
+    return std::memcmp(head.kind.data(), kind, 4) == 0;
+  }
+
+  Result<void> take(const RecordHead& head, std::uint64_t offset) {
+    if (is(head, "FRAM") && head.payload_bytes >= sizeof(FrameHead) && head.payload_bytes <= most_payload) {
+      frames.push_back({offset, head});
+      return {};
+    }
+    // Kinds that are not known are from a later version and of no concern here.
+    const bool header_record = is(head, "HEAD") && !header && head.payload_bytes <= most_header;
+    const bool failure_record = is(head, "FAIL") && head.payload_bytes >= 4 && head.payload_bytes <= most_failure;
+    const bool reading_record = is(head, "READ") && head.payload_bytes == 8;
+    if (!header_record && !failure_record && !reading_record) return {};
+    const std::string payload = payload_text(file_, offset, head.payload_bytes);
+    if (crc_of(payload.data(), payload.size()) != head.payload_crc || payload.size() != head.payload_bytes) {
+      return header_record ? Result<void>(fail(ErrorCode::invalid_input, "the header is damaged")) : Result<void>();
+    }
+    if (header_record) {
+      auto read = parse_stream_header(payload);
+      if (!read) return tl::unexpected(read.error());
+      header = *std::move(read);
+    } else if (failure_record) {
+      std::uint32_t code = 0;
+      std::memcpy(&code, payload.data(), 4);
+      const auto last = static_cast<std::uint32_t>(ErrorCode::internal);
+      failures.push_back({frames.size(), {static_cast<ErrorCode>(std::min(code, last)), payload.substr(4)}});
+    } else {
+      std::memcpy(&readings.emplace_back(), payload.data(), 8);
+    }
+    return {};
+  }
+
+  const File& file_;
+  std::uint64_t size_;
+  std::uint64_t at_ = magic_bytes;
+};
+
+}  // namespace
+
+Result<FrameStreamWriter> FrameStreamWriter::create(const std::filesystem::path& file, const StreamHeader& header) {
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (descriptor < 0) return fail(ErrorCode::io, file.string() + ": cannot be created: " + reason());
+  FrameStreamWriter writer(file, descriptor);
+  if (auto written = writer.write_all(magic, magic_bytes); !written) return tl::unexpected(written.error());
+  const std::string text = stream_header_text(header);
+  if (auto written = writer.write_record("HEAD", text.data(), text.size(), nullptr, 0); !written)
+    return tl::unexpected(written.error());
+  return writer;
+}
+
+FrameStreamWriter::FrameStreamWriter(FrameStreamWriter&& other) noexcept
+    : path_(std::move(other.path_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      frames_(other.frames_),
+      bytes_(other.bytes_),
+      broken_(other.broken_) {}
+
+FrameStreamWriter& FrameStreamWriter::operator=(FrameStreamWriter&& other) noexcept {
+  std::swap(path_, other.path_);
+  std::swap(descriptor_, other.descriptor_);
+  std::swap(frames_, other.frames_);
+  std::swap(bytes_, other.bytes_);
+  std::swap(broken_, other.broken_);
+  return *this;
+}
+
+FrameStreamWriter::~FrameStreamWriter() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+Result<void> FrameStreamWriter::write_all(const void* data, std::size_t bytes) {
+  const auto* at = static_cast<const char*>(data);
+  while (bytes > 0) {
+    const ssize_t done = ::write(descriptor_, at, bytes);
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0) return fail(ErrorCode::io, path_.string() + ": " + (done < 0 ? reason() : "the disk is full"));
+    at += done;
+    bytes -= static_cast<std::size_t>(done);
+    bytes_ += static_cast<std::uint64_t>(done);
+  }
+  return {};
+}
+
+Result<void> FrameStreamWriter::write_record(const char (&kind)[5], const void* head, std::size_t head_bytes,
+                                             const void* body, std::size_t body_bytes) {
+  if (broken_) return fail(ErrorCode::io, path_.string() + ": ended where the disk refused to go on");
+  RecordHead record;
+  std::memcpy(record.kind.data(), kind, 4);
+  record.payload_bytes = static_cast<std::uint32_t>(head_bytes + body_bytes);
+  record.head_crc = crc_of(record);
+  record.payload_crc = crc_of(head, head_bytes);
+  if (body_bytes > 0) record.payload_crc = crc_of(body, body_bytes, record.payload_crc);
+  const std::uint64_t before = bytes_;
+  Result<void> written = write_all(&record, sizeof record);
+  if (written) written = write_all(head, head_bytes);
+  if (written && body_bytes > 0) written = write_all(body, body_bytes);
+  if (written) return {};
+  broken_ = true;
+  if (::ftruncate(descriptor_, static_cast<off_t>(before)) == 0 &&
+      ::lseek(descriptor_, static_cast<off_t>(before), SEEK_SET) >= 0) {
+    bytes_ = before;
+  }
+  return written;
+}
+
+Result<void> FrameStreamWriter::append(const Frame& frame) {
+  const std::size_t pixel_bytes = frame.counts.total() * 2;
+  if (pixel_bytes > most_payload - sizeof(FrameHead) || frame.counts.cols > 65535 || frame.counts.rows > 65535) {
+    return fail(ErrorCode::invalid_input, "a frame of " + std::to_string(frame.counts.cols) + " x " +
+                                              std::to_string(frame.counts.rows) + " is too large to be recorded");
+  }
+  FrameHead head;
+  head.sequence = frame.sequence;
+  head.device_time_ns = frame.device_time_ns;
+  head.host_time_ns = frame.host_time_ns;
+  head.since_correction_s = frame.since_correction_s;
+  head.width = static_cast<std::uint16_t>(frame.counts.cols);
+  head.height = static_cast<std::uint16_t>(frame.counts.rows);
+  head.status = static_cast<std::uint8_t>(frame.status);
+  head.correction = static_cast<std::uint8_t>(frame.correction);
+  head.significant_bits = static_cast<std::uint8_t>(frame.significant_bits);
+  const cv::Mat1w pixels = frame.counts.isContinuous() ? frame.counts : cv::Mat1w(frame.counts.clone());
+  auto written = write_record("FRAM", &head, sizeof head, pixels.data, pixel_bytes);
+  if (written) ++frames_;
+  return written;
+}
+
+Result<void> FrameStreamWriter::append_failure(const Error& error) {
+  const auto code = static_cast<std::uint32_t>(error.code);
+  const std::string message = error.message.substr(0, most_failure - 4);
+  return write_record("FAIL", &code, sizeof code, message.data(), message.size());
+}
+
+Result<void> FrameStreamWriter::append_reading(std::int64_t value) {
+  return write_record("READ", &value, sizeof value, nullptr, 0);
+}
+
+Result<void> FrameStreamWriter::sync() {
+  if (::fdatasync(descriptor_) != 0) return fail(ErrorCode::io, path_.string() + ": " + reason());
+  return {};
+}
+
+bool is_frame_stream(const std::filesystem::path& path) {
+  const File file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  char begin[magic_bytes] = {};
+  return file.open() && file.read(0, begin, sizeof begin) && std::memcmp(begin, magic, magic_bytes) == 0;
+}
+
+Result<FrameStream> open_frame_stream(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  const auto file = std::make_shared<const File>(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file->open()) return fail(ErrorCode::io, name + ": " + reason());
+  if (!is_frame_stream(path)) return fail(ErrorCode::invalid_input, name + ": not a recording of this program");
+  StreamIndex index(*file, file->size());
+  if (auto walked = index.walk(); !walked) return fail(name, walked.error());
+  if (!index.header) return fail(ErrorCode::invalid_input, name + ": the recording has no header");
+  FrameStream stream;
+  stream.header = *std::move(index.header);
+  stream.readings = std::move(index.readings);
+  stream.torn_bytes = index.torn_bytes();
+  stream.recording.info = stream.header.info;
+  stream.recording.info.id = "file:" + name;
+  stream.recording.info.transport = "recording";
+  if (stream.torn_bytes > 0) {
+    stream.recording.info.warnings.push_back("the recording was cut off: " + std::to_string(stream.torn_bytes) +
+                                             " bytes behind its last whole frame are left out");
+  }
+  stream.recording.frame_count = index.frames.size();
+  stream.recording.failures = std::move(index.failures);
+  stream.recording.read = [file, places = std::make_shared<const std::vector<FramePlace>>(std::move(index.frames))](
+                              std::uint64_t i) { return read_frame(*file, (*places)[i]); };
+  return stream;
+}
+
+}  // namespace todbench

@@ -1,0 +1,77 @@
+// Recordings as the bench writes them: everything a camera delivered, appended as it came. Format: docs/recordings.md.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "acquisition/core/frame_source.h"
+#include "acquisition/recording/recorded_source.h"
+
+namespace todbench {
+
+/// What a recording begins with.
+struct StreamHeader {
+  SourceInfo info;  ///< of the camera, as read back when the recording began
+  std::string created_utc;
+  std::int64_t created_host_ns = 0;                ///< CLOCK_MONOTONIC at `created_utc`
+  std::map<std::string, std::string> annotations;  ///< what else is to be known, e.g. what changed the target
+};
+
+/// Appends to a recording. Every record is handed to the system whole, with checksums, before the call returns: a crash
+/// of the program loses nothing, one of the machine at most what the system had not written yet. Move-only, one thread
+/// at a time. Errors: `io` with the path; what a full disk cut off is taken back, and nothing is appended any more: a
+/// recording has no holes.
+class FrameStreamWriter {
+ public:
+  /// Creates the file or empties it.
+  [[nodiscard]] static Result<FrameStreamWriter> create(const std::filesystem::path& file, const StreamHeader& header);
+  FrameStreamWriter(FrameStreamWriter&& other) noexcept;
+  FrameStreamWriter& operator=(FrameStreamWriter&& other) noexcept;
+  ~FrameStreamWriter();
+
+  /// A frame as it came, whatever its status; `invalid_input` for one of more than 2^29 pixels.
+  [[nodiscard]] Result<void> append(const Frame& frame);
+  /// Instead of a frame the camera failed.
+  [[nodiscard]] Result<void> append_failure(const Error& error);
+  /// What the measuring program read from its clock, or was told otherwise, between two frames.
+  [[nodiscard]] Result<void> append_reading(std::int64_t value);
+  /// Waits until everything is on the disk.
+  [[nodiscard]] Result<void> sync();
+
+  [[nodiscard]] std::uint64_t frames() const { return frames_; }
+  [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  FrameStreamWriter(std::filesystem::path path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {}
+  [[nodiscard]] Result<void> write_record(const char (&kind)[5], const void* head, std::size_t head_bytes,
+                                          const void* body, std::size_t body_bytes);
+  [[nodiscard]] Result<void> write_all(const void* data, std::size_t bytes);
+
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+  std::uint64_t frames_ = 0;
+  std::uint64_t bytes_ = 0;
+  bool broken_ = false;  ///< a record was refused by the disk
+};
+
+/// An opened recording. Readings and failures are in their order; a failure stands before the frame with its index.
+struct FrameStream {
+  StreamHeader header;
+  Recording recording;
+  std::vector<std::int64_t> readings;
+  std::uint64_t torn_bytes = 0;  ///< behind the last whole record: what a crash left of the next one
+};
+
+/// Whether a file begins like a recording of the bench.
+[[nodiscard]] bool is_frame_stream(const std::filesystem::path& file);
+
+/// Finds every record; pixels are read when they are asked for. A frame whose checksum does not fit is served as
+/// incomplete. Errors: `io`, `invalid_input` (not such a file, or damaged before its first record).
+[[nodiscard]] Result<FrameStream> open_frame_stream(const std::filesystem::path& file);
+
+}  // namespace todbench

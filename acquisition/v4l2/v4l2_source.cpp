@@ -1,0 +1,364 @@
+#include "acquisition/v4l2/v4l2_source.h"
+
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace todbench {
+namespace {
+
+/// How often a waiting reader looks by itself, for a driver that wakes nobody when its device has gone.
+constexpr std::chrono::milliseconds longest_nap{250};
+/// A Lepton that corrects itself at the start of a stream is silent for up to 3 s.
+constexpr std::chrono::seconds patience_with_first_frame{5};
+/// Frames between the receiving thread and the reader: 5 s of a 50 Hz camera, 37 MiB of 320 x 240.
+constexpr std::size_t most_arrivals = 256;
+
+std::int64_t monotonic_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+std::optional<double> number(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::string text_of(double value) {
+  std::array<char, 40> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} ? std::string(text.data(), end) : std::string();
+}
+
+std::string kernel_version(std::uint32_t version) {
+  return std::to_string(version >> 16U & 0xFFU) + "." + std::to_string(version >> 8U & 0xFFU) + "." +
+         std::to_string(version & 0xFFU);
+}
+
+}  // namespace
+
+V4l2Source::V4l2Source(VideoNode node, V4l2Options options, VideoDevice device, VideoWatch watch, FileDescriptor wake)
+    : node_(std::move(node)),
+      options_(std::move(options)),
+      watch_(std::move(watch)),
+      wake_(std::move(wake)),
+      device_(std::move(device)) {}
+
+V4l2Source::~V4l2Source() {
+  stop();
+}
+
+Result<std::unique_ptr<FrameSource>> V4l2Source::create(const VideoNode& node, const V4l2Options& options) {
+  // The watch begins before the node is opened, so that no removal falls between.
+  auto watch = VideoWatch::create();
+  if (!watch) return tl::unexpected(watch.error());
+  auto device = VideoDevice::open(node.node);
+  if (!device) return tl::unexpected(device.error());
+  FileDescriptor wake(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
+  if (!wake.valid()) return fail(ErrorCode::io, "no event descriptor can be made");
+  auto source = std::unique_ptr<V4l2Source>(
+      new V4l2Source(node, options, std::move(*device), std::move(*watch), std::move(wake)));
+  if (const auto set = source->take_layout(options.pixel_format); !set) return tl::unexpected(set.error());
+  source->controls_ = list_controls(source->device_);
+  source->refresh();
+  if (const auto learnt = source->learn_scale(); !learnt) return tl::unexpected(learnt.error());
+  return source;
+}
+
+Result<void> V4l2Source::take_layout(const std::string& wanted) {
+  auto layout = choose_layout(device_.modes(), node_.family(), wanted);
+  if (!layout) return tl::unexpected(layout.error());
+  layout = device_.set_format(*layout);
+  if (!layout) return tl::unexpected(layout.error());
+  layout_ = *layout;
+  return {};
+}
+
+void V4l2Source::refresh() {
+  info_.id = node_.id;
+  info_.vendor = node_.vendor;
+  info_.model = node_.model;
+  info_.serial = node_.serial;
+  info_.firmware = node_.firmware;
+  info_.transport = "V4L2 (" + device_.capability().driver + ")";
+  info_.width = layout_.picture.width;
+  info_.height = layout_.picture.height;
+  info_.pixel_format = layout_.pixel_format;
+  info_.significant_bits = layout_.significant_bits;
+  info_.frame_rate_hz = device_.frame_rate_hz();
+  info_.settings = {{"VideoFormat", fourcc_text(layout_.mode.fourcc) + " " + std::to_string(layout_.mode.width) + "x" +
+                                        std::to_string(layout_.mode.height)},
+                    {"TelemetryRows", std::to_string(layout_.telemetry_rows)},
+                    {"DriverVersion", kernel_version(device_.capability().version)}};
+  for (const auto& control : controls_) {
+    if (!control.readable) continue;
+    if (const auto value = get_control(device_, control)) info_.settings[control.name] = *value;
+  }
+  info_.warnings.clear();
+  if (node_.serial.empty()) {
+    info_.warnings.emplace_back("The camera has no serial number: it is known by the port it is plugged into.");
+  }
+  if (layout_.significant_bits == 8) {
+    info_.warnings.emplace_back("The camera sends 8 bits: its steps may be coarser than its noise.");
+  }
+  const double kelvin_per_count = stated_kelvin_per_count_.value_or(layout_.kelvin_per_count);
+  // What telemetry told stays true until it tells otherwise.
+  RadiometricScale scale = layout_.telemetry_rows > 0 ? info_.scale : RadiometricScale();
+  if (kelvin_per_count > 0) {
+    scale =
+        RadiometricScale::linear({.kelvin_per_count = kelvin_per_count, .offset_k = stated_offset_k_}).value_or(scale);
+  }
+  set_scale(scale);
+}
+
+void V4l2Source::set_scale(const RadiometricScale& scale) {
+  info_.scale = scale;
+  scale_ = std::make_shared<const RadiometricScale>(scale);
+}
+
+Result<void> V4l2Source::start() {
+  const std::lock_guard control(control_);
+  if (is_lost()) return tl::unexpected(disconnected());
+  if (receiver_.joinable()) return {};
+  if (!device_.check_format(layout_)) {
+    // Another program may have used the camera since; its format is set again.
+    if (const auto set = device_.set_format(layout_); !set) return fail("starting " + info_.id, noted(set.error()));
+  }
+  std::uint64_t stale = 0;
+  static_cast<void>(!::read(wake_.get(), &stale, sizeof stale));
+  first_sequence_.reset();
+  last_counter_.reset();
+  repeated_ = 0;
+  if (const auto started = device_.start(options_.buffers); !started) {
+    return fail("starting " + info_.id, noted(started.error()));
+  }
+  {
+    const std::lock_guard lock(inbox_.mutex);
+    inbox_.arrivals.clear();
+    inbox_.running = true;
+  }
+  receiver_ = std::jthread([this](const std::stop_token& stop) { receive(stop); });
+  return {};
+}
+
+void V4l2Source::stop() {
+  {
+    const std::lock_guard lock(inbox_.mutex);
+    inbox_.running = false;
+  }
+  inbox_.changed.notify_all();
+  const std::lock_guard control(control_);
+  if (!receiver_.joinable()) return;
+  receiver_.request_stop();
+  const std::uint64_t one = 1;
+  static_cast<void>(!::write(wake_.get(), &one, sizeof one));
+  receiver_.join();
+  device_.stop();
+  const std::lock_guard lock(inbox_.mutex);
+  inbox_.running = false;
+  inbox_.arrivals.clear();
+}
+
+void V4l2Source::receive(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    const auto taken = device_.take([this](const VideoBuffer& buffer) { keep(buffer); });
+    if (!taken) {
+      // Every failure of a stream ends it: only opening the camera again mends it.
+      mark_lost();
+      return;
+    }
+    if (*taken) continue;
+    std::array<pollfd, 3> waiting{{{.fd = device_.fd(), .events = POLLIN, .revents = 0},
+                                   {.fd = wake_.get(), .events = POLLIN, .revents = 0},
+                                   {.fd = watch_.fd(), .events = POLLIN, .revents = 0}}};
+    static_cast<void>(::poll(waiting.data(), waiting.size(), static_cast<int>(longest_nap.count())));
+    if (device_has_gone()) {
+      mark_lost();
+      return;
+    }
+  }
+}
+
+bool V4l2Source::device_has_gone() {
+  bool gone = false;
+  while (const auto event = watch_.next(std::chrono::milliseconds(0))) {
+    gone = gone || (event->kind == VideoEvent::Kind::removed && event->sys_path == node_.sys_path);
+  }
+  return gone;
+}
+
+void V4l2Source::keep(const VideoBuffer& buffer) {
+  Arrival arrival;
+  arrival.sequence = buffer.sequence;
+  Frame& frame = arrival.frame;
+  frame.host_time_ns = monotonic_ns();
+  frame.device_time_ns = buffer.time_ns;
+  frame.significant_bits = layout_.significant_bits;
+  auto picture = read_video_frame(buffer.bytes, layout_);
+  if (picture) {
+    frame.counts = picture->counts;
+    arrival.telemetry = picture->telemetry;
+  } else {
+    frame.counts = cv::Mat1w::zeros(layout_.picture.size());
+    frame.status = FrameStatus::wrong_size;
+  }
+  // UVC marks a frame with missing packets so.
+  if (buffer.damaged) frame.status = FrameStatus::incomplete;
+  {
+    const std::lock_guard lock(inbox_.mutex);
+    // A reader that is this far behind loses the newest, which shows as a gap.
+    if (inbox_.arrivals.size() < most_arrivals) inbox_.arrivals.push_back(std::move(arrival));
+  }
+  inbox_.changed.notify_all();
+}
+
+std::optional<Frame> V4l2Source::finished(Arrival arrival) {
+  Frame& frame = arrival.frame;
+  if (!first_sequence_) first_sequence_ = arrival.sequence;
+  if (arrival.telemetry) {
+    const LeptonTelemetry& telemetry = *arrival.telemetry;
+    // A Lepton exposes 26 times a second and sends every third; its bridge may send one twice.
+    if (last_counter_ == telemetry.frame_counter) {
+      ++repeated_;
+      return std::nullopt;
+    }
+    last_counter_ = telemetry.frame_counter;
+    frame.device_time_ns = std::int64_t{telemetry.time_ms} * 1'000'000;
+    const bool corrects = telemetry.ffc_state() == FfcState::imminent || telemetry.ffc_state() == FfcState::in_progress;
+    frame.correction = corrects ? CorrectionState::running : CorrectionState::idle;
+    frame.since_correction_s = telemetry.since_ffc_s().value_or(-1);
+    if (const auto scale = scale_of(telemetry); scale != info_.scale) set_scale(scale);
+  }
+  frame.sequence = arrival.sequence - *first_sequence_ - repeated_;
+  frame.scale = scale_;
+  return std::move(frame);
+}
+
+RadiometricScale V4l2Source::scale_of(const LeptonTelemetry& telemetry) const {
+  if (stated_kelvin_per_count_) return info_.scale;
+  if (!telemetry.kelvin_per_count || telemetry.agc()) return {};
+  return RadiometricScale::linear({.kelvin_per_count = *telemetry.kelvin_per_count}).value_or(RadiometricScale());
+}
+
+Result<void> V4l2Source::learn_scale() {
+  if (layout_.telemetry_rows == 0) return {};
+  if (const auto started = start(); !started) return started;
+  const auto frame = next(patience_with_first_frame);
+  stop();
+  if (!frame) return fail("reading the telemetry", frame.error());
+  return {};
+}
+
+Result<Frame> V4l2Source::next(std::chrono::milliseconds timeout) {
+  const auto deadline = Clock::now() + timeout;
+  for (;;) {
+    Arrival arrival;
+    {
+      std::unique_lock lock(inbox_.mutex);
+      const auto ready = [&] { return !inbox_.running || inbox_.lost || !inbox_.arrivals.empty(); };
+      if (!inbox_.changed.wait_until(lock, deadline, ready)) {
+        return fail(ErrorCode::timeout,
+                    "no frame from " + info_.id + " within " + std::to_string(timeout.count()) + " ms");
+      }
+      if (inbox_.lost && (inbox_.arrivals.empty() || !inbox_.running)) return tl::unexpected(disconnected());
+      if (!inbox_.running) return fail(ErrorCode::interrupted, info_.id + " is stopped");
+      arrival = std::move(inbox_.arrivals.front());
+      inbox_.arrivals.pop_front();
+    }
+    if (auto frame = finished(std::move(arrival))) return std::move(*frame);
+  }
+}
+
+bool V4l2Source::is_lost() const {
+  const std::lock_guard lock(inbox_.mutex);
+  return inbox_.lost;
+}
+
+void V4l2Source::mark_lost() {
+  {
+    const std::lock_guard lock(inbox_.mutex);
+    inbox_.lost = true;
+  }
+  inbox_.changed.notify_all();
+}
+
+Error V4l2Source::noted(const Error& error) {
+  if (error.code == ErrorCode::disconnected) mark_lost();
+  return error;
+}
+
+Error V4l2Source::disconnected() const {
+  return {ErrorCode::disconnected, "camera " + info_.id + " has gone"};
+}
+
+Result<std::string> V4l2Source::get(const std::string& feature) {
+  const std::lock_guard control(control_);
+  if (is_lost()) return tl::unexpected(disconnected());
+  if (feature == "PixelFormat") return info_.pixel_format;
+  if (feature == "Width") return std::to_string(info_.width);
+  if (feature == "Height") return std::to_string(info_.height);
+  if (feature == "DeviceVendorName") return info_.vendor;
+  if (feature == "DeviceModelName") return info_.model;
+  if (feature == "DeviceSerialNumber") return info_.serial;
+  if (feature == "AcquisitionFrameRate") return text_of(info_.frame_rate_hz);
+  if (feature == "TemperatureLinearScale") return text_of(info_.scale.kelvin_per_count(0).value_or(0));
+  if (feature == "TemperatureLinearOffset") return text_of(info_.scale.kelvin(0).value_or(0));
+  const VideoControl* known = find_control(controls_, feature);
+  if (known == nullptr)
+    return fail(ErrorCode::invalid_input, "camera " + info_.id + " has no feature '" + feature + "'");
+  return get_control(device_, *known);
+}
+
+Result<void> V4l2Source::set(const std::string& feature, const std::string& value) {
+  const std::lock_guard control(control_);
+  if (is_lost()) return tl::unexpected(disconnected());
+  const auto refused = [&](const std::string& expected) {
+    return fail(ErrorCode::invalid_input, feature + " = " + value + ": expected " + expected);
+  };
+  Result<void> done;
+  if (feature == "TemperatureLinearScale" || feature == "TemperatureLinearOffset") {
+    const auto kelvin = number(value);
+    const bool is_scale = feature == "TemperatureLinearScale";
+    if (!kelvin || (is_scale && !(*kelvin > 0))) return refused(is_scale ? "kelvin per count, above 0" : "kelvin");
+    (is_scale ? stated_kelvin_per_count_.emplace() : stated_offset_k_) = *kelvin;
+  } else if (feature == "PixelFormat" || feature == "AcquisitionFrameRate") {
+    if (receiver_.joinable())
+      return fail(ErrorCode::invalid_input, feature + " cannot change while the camera streams");
+    const auto rate = number(value);
+    if (feature == "PixelFormat") {
+      done = take_layout(value);
+      if (!done && done.error().code == ErrorCode::not_found) return refused(done.error().message);
+    } else if (!rate) {
+      return refused("frames per second");
+    } else {
+      done = device_.set_frame_rate(*rate);
+    }
+  } else if (const VideoControl* known = find_control(controls_, feature)) {
+    done = set_control(device_, *known, value);
+  } else {
+    return fail(ErrorCode::invalid_input, "camera " + info_.id + " has no feature '" + feature + "'");
+  }
+  if (!done) return tl::unexpected(noted(done.error()));
+  refresh();
+  return {};
+}
+
+Result<void> V4l2Source::correct_nonuniformity() {
+  const std::lock_guard control(control_);
+  if (is_lost()) return tl::unexpected(disconnected());
+  const VideoControl* button = nonuniformity_button(controls_);
+  if (button == nullptr) {
+    return fail(ErrorCode::invalid_input, "camera " + info_.id + " has no control that corrects its non-uniformity");
+  }
+  if (const auto done = set_control(device_, *button, "1"); !done) return tl::unexpected(noted(done.error()));
+  return {};
+}
+
+}  // namespace todbench

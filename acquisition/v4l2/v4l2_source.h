@@ -1,0 +1,99 @@
+// One open camera as a FrameSource. Private to the V4L2 back end.
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "acquisition/core/frame_source.h"
+#include "acquisition/v4l2/v4l2_backend.h"
+#include "acquisition/v4l2/video_controls.h"
+#include "acquisition/v4l2/video_device.h"
+#include "acquisition/v4l2/video_listing.h"
+
+namespace todbench {
+
+class V4l2Source final : public FrameSource {
+ public:
+  /// Sets the format and reads back what the camera became. Errors: `not_found`.
+  [[nodiscard]] static Result<std::unique_ptr<FrameSource>> create(const VideoNode& node, const V4l2Options& options);
+  ~V4l2Source() override;
+
+  [[nodiscard]] const SourceInfo& info() const override { return info_; }
+  [[nodiscard]] Result<void> start() override;
+  [[nodiscard]] Result<Frame> next(std::chrono::milliseconds timeout) override;
+  void stop() override;
+  [[nodiscard]] Result<std::string> get(const std::string& feature) override;
+  [[nodiscard]] Result<void> set(const std::string& feature, const std::string& value) override;
+  [[nodiscard]] Result<void> correct_nonuniformity() override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// A frame as the receiving thread read it.
+  struct Arrival {
+    Frame frame;  ///< without sequence and scale
+    std::uint32_t sequence = 0;
+    std::optional<LeptonTelemetry> telemetry;
+  };
+
+  /// What the receiving thread and the reader share.
+  struct Inbox {
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::deque<Arrival> arrivals;
+    bool running = false;
+    bool lost = false;
+  };
+
+  V4l2Source(VideoNode node, V4l2Options options, VideoDevice device, VideoWatch watch, FileDescriptor wake);
+
+  [[nodiscard]] Result<void> take_layout(const std::string& wanted);
+  void refresh();
+  void set_scale(const RadiometricScale& scale);
+  [[nodiscard]] RadiometricScale scale_of(const LeptonTelemetry& telemetry) const;
+  /// Reads one frame of a camera that tells its scale only there.
+  [[nodiscard]] Result<void> learn_scale();
+
+  /// The receiving thread: takes every frame at once, so that its host time is that of its arrival and the driver never
+  /// lacks a buffer.
+  void receive(const std::stop_token& stop);
+  void keep(const VideoBuffer& buffer);
+  [[nodiscard]] bool device_has_gone();
+  /// Sequence and scale; nothing when the camera sent the same frame twice.
+  [[nodiscard]] std::optional<Frame> finished(Arrival arrival);
+
+  [[nodiscard]] bool is_lost() const;
+  void mark_lost();
+  [[nodiscard]] Error disconnected() const;
+  /// Passes an error on, and remembers a loss.
+  [[nodiscard]] Error noted(const Error& error);
+
+  VideoNode node_;
+  V4l2Options options_;
+  VideoWatch watch_;     ///< of the receiving thread
+  FileDescriptor wake_;  ///< eventfd that ends its poll()
+  SourceInfo info_;
+  std::shared_ptr<const RadiometricScale> scale_;
+  VideoLayout layout_;
+  std::optional<double> stated_kelvin_per_count_;  ///< by the user, for cameras that do not say
+  double stated_offset_k_ = 0;
+
+  // Of the reader, over one run.
+  std::optional<std::uint32_t> first_sequence_;
+  std::uint32_t repeated_ = 0;  ///< frames that the camera sent twice, taken out of the sequence
+  std::optional<std::uint32_t> last_counter_;
+
+  std::mutex control_;  ///< one of start, stop, get, set at a time; taken before inbox_.mutex
+  VideoDevice device_;  ///< of the receiving thread while it runs, except its controls
+  std::vector<VideoControl> controls_;
+  mutable Inbox inbox_;
+  std::jthread receiver_;
+};
+
+}  // namespace todbench

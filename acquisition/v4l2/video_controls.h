@@ -1,0 +1,36 @@
+// Controls of a V4L2 device by name, values as text. Private to the V4L2 back end.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "acquisition/core/result.h"
+#include "acquisition/v4l2/video_device.h"
+
+namespace todbench {
+
+struct VideoControl {
+  std::string name;  ///< the driver's, letters and digits only: "White Balance, Automatic" is "WhiteBalanceAutomatic"
+  std::uint32_t id = 0, type = 0;
+  std::int64_t minimum = 0, maximum = 0;
+  bool readable = false, writable = false;
+  std::map<std::int64_t, std::string> menu;  ///< value -> entry, of menus
+};
+
+/// Integers, booleans, menus and buttons of a device; other kinds are passed over.
+[[nodiscard]] std::vector<VideoControl> list_controls(const VideoDevice& device);
+[[nodiscard]] const VideoControl* find_control(const std::vector<VideoControl>& controls, const std::string& name);
+
+/// Menus read as their entry. `invalid_input`: not readable.
+[[nodiscard]] Result<std::string> get_control(const VideoDevice& device, const VideoControl& control);
+/// Menus take an entry or its number, buttons anything. `invalid_input`: not a value of this control, or refused.
+[[nodiscard]] Result<void> set_control(const VideoDevice& device, const VideoControl& control,
+                                       const std::string& value);
+
+/// The button that corrects the non-uniformity: a name with NUC, FFC, shutter, flat field or calibration in it.
+[[nodiscard]] const VideoControl* nonuniformity_button(const std::vector<VideoControl>& controls);
+
+}  // namespace todbench

@@ -1,0 +1,188 @@
+// todbench record
+#include <cctype>
+#include <memory>
+
+#include "acquisition/core/integrity_gate.h"
+#include "acquisition/recording/frame_stream.h"
+#include "acquisition/recording/tiff_stack.h"
+#include "bench/cli/commands.h"
+#include "bench/run/devices.h"
+#include "bench/session/provenance.h"
+#include "bench/session/verdict.h"
+
+namespace todbench {
+namespace {
+
+struct RecordArguments {
+  std::string camera;
+  std::string out;
+  std::string format = "recording";
+  bool overwrite = false;
+  std::int64_t frames = 0;  ///< 0: no limit
+  double seconds = 0;       ///< 0: no limit
+  double timeout_s = 2;
+  std::vector<std::string> settings;  ///< "FEATURE=VALUE"
+};
+
+/// Where frames go: a recording or a TIFF stack.
+class Sink {
+ public:
+  static Result<Sink> create(const std::filesystem::path& file, const std::string& format, const SourceInfo& info) {
+    Sink sink;
+    if (format == "tiff") {
+      auto tiff = TiffWriter::create(file);
+      if (!tiff) return tl::unexpected(tiff.error());
+      sink.tiff_ = *std::move(tiff);
+      return sink;
+    }
+    StreamHeader header;
+    header.info = info;
+    header.created_utc = utc_now();
+    header.created_host_ns = monotonic_ns();
+    auto stream = FrameStreamWriter::create(file, header);
+    if (!stream) return tl::unexpected(stream.error());
+    sink.stream_ = *std::move(stream);
+    return sink;
+  }
+  /// A TIFF holds complete frames only: there is no place in it to say that one is not.
+  Result<void> append(const Frame& frame) {
+    if (stream_) return stream_->append(frame);
+    return frame.status == FrameStatus::complete ? tiff_->append(frame.counts) : Result<void>();
+  }
+  Result<void> finish() { return stream_ ? stream_->sync() : tiff_->finish(); }
+
+ private:
+  std::optional<FrameStreamWriter> stream_;
+  std::optional<TiffWriter> tiff_;
+};
+
+/// What came of it.
+struct Recorded {
+  std::uint64_t frames = 0;
+  std::map<std::string, std::uint64_t> rejected;
+  std::uint64_t lost = 0;
+  std::optional<Error> ended_by;
+};
+
+Result<void> apply_settings(FrameSource& camera, const std::vector<std::string>& settings) {
+  for (const auto& setting : settings) {
+    const std::size_t equals = setting.find('=');
+    if (equals == std::string::npos || equals == 0)
+      return fail(ErrorCode::invalid_input, "--set " + setting + ": expected FEATURE=VALUE");
+    if (auto set = camera.set(setting.substr(0, equals), setting.substr(equals + 1)); !set)
+      return fail("setting " + setting, set.error());
+  }
+  return {};
+}
+
+Recorded take_frames(FrameSource& camera, Sink& sink, const RecordArguments& a, Console& console, StopSignals& stop) {
+  Recorded recorded;
+  const SourceInfo& info = camera.info();
+  IntegrityGate gate({.width = info.width, .height = info.height});
+  const std::stop_callback wake(stop.token(), [&camera] { camera.stop(); });
+  const auto timeout = std::chrono::milliseconds(static_cast<long>(a.timeout_s * 1000));
+  const std::int64_t end_ns = monotonic_ns() + static_cast<std::int64_t>(a.seconds * 1e9);
+  const auto limit = static_cast<std::uint64_t>(a.frames);
+  if (auto started = camera.start(); !started) {
+    recorded.ended_by = started.error();
+    return recorded;
+  }
+  while ((limit == 0 || recorded.frames < limit) && (a.seconds == 0 || monotonic_ns() < end_ns)) {
+    Result<Frame> frame = stop.token().stop_requested()
+                              ? Result<Frame>(fail(ErrorCode::interrupted, "stopped on request"))
+                              : camera.next(timeout);
+    if (frame) {
+      (void)gate.judge(*frame);
+      auto written = sink.append(*frame);
+      if (written) {
+        ++recorded.frames;
+        if (limit > 0) console.progress(recorded.frames, limit);
+        continue;
+      }
+      recorded.ended_by = written.error();
+    } else {
+      recorded.ended_by = frame.error();
+    }
+    break;
+  }
+  camera.stop();
+  for (const auto& [reason, count] : gate.rejected_by_reason())
+    recorded.rejected[std::string(to_string(reason))] = count;
+  recorded.lost = gate.lost();
+  return recorded;
+}
+
+std::string default_file(const RecordArguments& a) {
+  std::string name = "recording-";
+  for (const char c : utc_now()) {
+    if (c != '-' && c != ':') name += c;
+  }
+  return name + (a.format == "tiff" ? ".tif" : ".todrec");
+}
+
+/// Without a limit Ctrl-C is how a recording ends, and a recording that is recorded ends where it ends.
+bool as_wanted(const Recorded& recorded, const RecordArguments& a) {
+  if (!recorded.ended_by) return true;
+  const bool limited = a.frames > 0 || a.seconds > 0;
+  if (recorded.ended_by->code == ErrorCode::interrupted) return !limited;
+  return recorded.ended_by->code == ErrorCode::disconnected && a.camera.starts_with("file:") && a.frames == 0 &&
+         recorded.frames > 0;
+}
+
+int run_record(Console& console, const RecordArguments& a, StopSignals& stop) {
+  const std::filesystem::path file = a.out.empty() ? default_file(a) : a.out;
+  std::error_code problem;
+  if (std::filesystem::exists(file, problem) && !a.overwrite) {
+    return report_error(console, {ErrorCode::invalid_input,
+                                  file.string() + ": exists already; choose another or allow overwriting (--force)"});
+  }
+  auto camera = camera_registry().open(a.camera);
+  if (!camera) return report_error(console, camera.error());
+  if (auto set = apply_settings(**camera, a.settings); !set) return report_error(console, set.error());
+  const SourceInfo info = (*camera)->info();
+  for (const auto& warning : info.warnings) console.note(warning);
+  auto sink = Sink::create(file, a.format, info);
+  if (!sink) return report_error(console, sink.error());
+  console.phase("recording " + info.id);
+  Recorded recorded = take_frames(**camera, *sink, a, console, stop);
+  console.end_progress();
+  if (auto finished = sink->finish(); !finished && !recorded.ended_by) recorded.ended_by = finished.error();
+  if (console.json()) {
+    console.object({{"recording", file.string()},
+                    {"camera", info.id},
+                    {"frames", recorded.frames},
+                    {"lost", recorded.lost},
+                    {"rejected", recorded.rejected}});
+  } else {
+    std::string doubtful;
+    for (const auto& [reason, count] : recorded.rejected) doubtful += ", " + std::to_string(count) + " " + reason;
+    console.text(file.string() + ": " + std::to_string(recorded.frames) + " frames, " + std::to_string(recorded.lost) +
+                 " lost" + doubtful);
+  }
+  if (as_wanted(recorded, a)) return 0;
+  console.error("ended early: " + recorded.ended_by->message + "; the frames so far are in " + file.string());
+  return exit_code(recorded.ended_by->code);
+}
+
+}  // namespace
+
+void add_record_command(CLI::App& app, Program& program) {
+  auto* command = app.add_subcommand("record", "records the frames of a camera (or of a recording) to a file");
+  auto a = std::make_shared<RecordArguments>();
+  command->add_option("CAMERA", a->camera, "id as todbench devices lists it, or file:PATH")->required();
+  command->add_option("--out", a->out, "file; default: recording-TIME.todrec in the current folder");
+  command
+      ->add_option("--format", a->format, "recording (everything that came) or tiff (16-bit stack of complete frames)")
+      ->check(CLI::IsMember({"recording", "tiff"}))
+      ->capture_default_str();
+  command->add_option("--frames", a->frames, "end after this many")->check(whole_number(1, 1'000'000'000));
+  command->add_option("--seconds", a->seconds, "end after this time")->check(number_in(0.001, 1e7));
+  command->add_option("--timeout-s", a->timeout_s, "a camera that is silent for so long is lost")
+      ->check(number_in(0.001, 600))
+      ->capture_default_str();
+  command->add_option("--set", a->settings, "FEATURE=VALUE, written before the first frame; may be repeated");
+  command->add_flag("--force", a->overwrite, "overwrite an existing file");
+  finish_command(*command, program, [a, &program](Console& console) { return run_record(console, *a, *program.stop); });
+}
+
+}  // namespace todbench

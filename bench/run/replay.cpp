@@ -1,0 +1,56 @@
+#include "bench/run/replay.h"
+
+#include "bench/run/recorded_bench.h"
+#include "bench/session/files.h"
+#include "bench/session/fit_record.h"
+#include "bench/session/manifest.h"
+#include "bench/session/text.h"
+
+namespace todbench {
+namespace {
+
+/// Frames and plan have to be those of the run. A session that was cut off has no manifest to tell.
+Result<void> check_unchanged(const std::filesystem::path& session) {
+  std::error_code problem;
+  if (!std::filesystem::exists(session / "manifest.json", problem)) return {};
+  auto changes = verify_manifest(session);
+  if (!changes) return tl::unexpected(changes.error());
+  if (changes->empty()) return {};
+  return fail(ErrorCode::invalid_input, session.string() + ": the session was changed: " + changes->front());
+}
+
+/// Equal files; of a session that was cut off, in which frames and trials need not end together, equal as far as both
+/// go.
+Result<bool> same_trials(const std::filesystem::path& session, const std::filesystem::path& replay, bool cut_off) {
+  const auto then = read_text_file(session / "trials.csv");
+  if (!then) return tl::unexpected(then.error());
+  const auto now = read_text_file(replay / "trials.csv");
+  if (!now) return tl::unexpected(now.error());
+  return *now == *then || (cut_off && (now->starts_with(*then) || then->starts_with(*now)));
+}
+
+}  // namespace
+
+Result<ReplayOutcome> replay_session(const std::filesystem::path& session, const ExperimentOptions& options,
+                                     const ExperimentListener& listener, std::stop_token stop) {
+  if (auto unchanged = check_unchanged(session); !unchanged) return tl::unexpected(unchanged.error());
+  auto recorded = read_session(session);
+  if (!recorded) return tl::unexpected(recorded.error());
+  auto bench = open_recorded_bench(session);
+  if (!bench) return tl::unexpected(bench.error());
+  Plan plan = recorded->plan;
+  plan.measurement.record_frames = false;
+  auto inputs = read_inputs(plan);
+  if (!inputs) return tl::unexpected(inputs.error());
+  auto run = measure_on_bench(plan, *inputs, *std::move(bench), options, listener, std::move(stop));
+  if (!run) return tl::unexpected(run.error());
+
+  const bool cut_off = recorded->provenance.state == SessionState::running;
+  auto trials = same_trials(session, run->folder, cut_off);
+  if (!trials) return tl::unexpected(trials.error());
+  ReplayOutcome outcome{.run = *std::move(run), .same_trials = *trials, .same_fits = std::nullopt};
+  if (recorded->curve) outcome.same_fits = curve_record(*recorded->curve) == curve_record(outcome.run.curve);
+  return outcome;
+}
+
+}  // namespace todbench

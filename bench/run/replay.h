@@ -1,0 +1,25 @@
+// A session measured again from its recorded frames.
+#pragma once
+
+#include <optional>
+
+#include "bench/run/experiment.h"
+
+namespace todbench {
+
+struct ReplayOutcome {
+  ExperimentOutcome run;  ///< its session folder is a new one
+  bool same_trials = false;
+  /// Of the measured curve; nothing where the session ended before it was fitted.
+  std::optional<bool> same_fits;
+};
+
+/// Measures again with the plan of the session and the frames in it, simulates the twin again, and compares trials and
+/// fits byte for byte. A session that was cut off is replayed as far as its frames go, and compared as far as its
+/// trials go. Errors: `invalid_input` (not a session, no recording in it, files that were changed since), those of
+/// measure_plan().
+[[nodiscard]] Result<ReplayOutcome> replay_session(const std::filesystem::path& session,
+                                                   const ExperimentOptions& options, const ExperimentListener& listener,
+                                                   std::stop_token stop);
+
+}  // namespace todbench

@@ -1,0 +1,19 @@
+// The emulated laboratory with a V4L2 camera in it.
+#pragma once
+
+#include <memory>
+
+#include "sim_devices/lab/laboratory_camera.h"
+#include "sim_devices/lab/mock_system.h"
+#include "sim_devices/lab/video_frames.h"
+
+namespace todbench {
+
+/// The sensor with the counts that a camera of this kind sends: 0.01 or 1/64 K per count from 0 K, 16 bits. Kinds that
+/// say nothing of temperature keep the sensor's scale.
+[[nodiscard]] SensorSpec with_counts_of(VideoCameraKind kind, SensorSpec sensor);
+
+/// Plugs a camera into `system`; geometry and rate are filled in from the sensor.
+[[nodiscard]] ConnectCamera connect_v4l2(std::shared_ptr<MockSystem> system, VideoCameraConfig config);
+
+}  // namespace todbench

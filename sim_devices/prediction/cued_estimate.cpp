@@ -1,0 +1,115 @@
+#include "sim_devices/prediction/cued_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "hvs/polygon_spectrum.h"
+#include "sim_devices/sensor/transfer_functions.h"
+#include "tod/test_pattern.h"
+
+namespace todbench {
+namespace {
+
+constexpr double size_step = 1.08;
+constexpr int smallest_index = -20, largest_index = 48;
+constexpr int quadrature_nodes = 16;  // 1e-3 of probability at worst: 0.1 % of size
+
+double logit(double p) {
+  const double inside = std::clamp(p, 0.25 + 1e-6, 1 - 1e-6);
+  return std::log((inside - 0.25) / (1 - inside));
+}
+
+Accuracy planning_accuracy() {
+  Accuracy accuracy = Accuracy::normal();
+  accuracy.wavelengths = 4;
+  accuracy.phases_per_axis = 4;
+  return accuracy;
+}
+
+}  // namespace
+
+CuedEstimate::CuedEstimate(const SensorSpec& sensor, const SensorPlan& plan, TemplateObserver& observer,
+                           SceneMotion motion)
+    : observer_(observer),
+      chain_(sensor, plan, planning_accuracy(), motion),
+      conditions_{.sensor = as_planned(sensor, plan),
+                  .motion = motion,
+                  .samples_per_pitch = as_planned(sensor, plan).samples_per_pitch(),
+                  .phases_per_axis = planning_accuracy().phases_per_axis,
+                  .search_step_samples = observer.spec().search_step_samples} {}
+
+Result<const SizeTrial*> CuedEstimate::trial_at(int index) {
+  auto& slot = trials_[index];
+  if (slot == nullptr) {
+    const double size = std::pow(size_step, index);
+    auto bank = observer_.bank(size * conditions_.samples_per_pitch, conditions_.samples_per_pitch);
+    if (!bank) return tl::unexpected(bank.error());
+    slot = std::make_unique<SizeTrial>(chain_, *bank, size, conditions_, RandomStream(1, "unused"));
+  }
+  return slot.get();
+}
+
+Result<const SizeTrial*> CuedEstimate::trial(double size_pitch) {
+  return trial_at(std::clamp(static_cast<int>(std::lround(std::log(size_pitch) / std::log(size_step))), smallest_index,
+                             largest_index));
+}
+
+Result<double> CuedEstimate::s75_pitch(double q) {
+  std::map<int, double> known;
+  std::optional<Error> error;
+  const auto at = [&](int index) {
+    if (const auto found = known.find(index); found != known.end()) return found->second;
+    const auto t = trial_at(index);
+    if (!t) error = t.error();
+    return known[index] = t ? logit((*t)->known_position_proportion(q, quadrature_nodes)) : 0;
+  };
+  const double target = std::numbers::ln2;  // logit(0.75)
+  int above = 9;
+  while (!error && at(above) < target) {
+    if (above >= largest_index)
+      return fail(ErrorCode::invalid_input, "no size up to 40 pitches is judged 75 % correct");
+    above = std::min(above + 4, largest_index);
+  }
+  int below = above - 1;
+  while (!error && at(below) >= target) {
+    if (below <= smallest_index) return fail(ErrorCode::invalid_input, "even the smallest target is judged correctly");
+    --below;
+  }
+  if (error) return tl::unexpected(*error);
+  const double share = (target - at(below)) / (at(below + 1) - at(below));
+  return std::pow(size_step, below + share);
+}
+
+Result<double> CuedEstimate::sensitivity(double q) {
+  // A fifth each way: several sizes of the ladder, so that its interpolation does not show.
+  const auto more = s75_pitch(q * 1.2);
+  if (!more) return more;
+  const auto less = s75_pitch(q / 1.2);
+  if (!less) return less;
+  return std::log(*more / *less) / (2 * std::log(1.2));
+}
+
+double discriminability(const SensorSpec& sensor, const SensorPlan& plan, double size_pitch, int wavelengths,
+                        SceneMotion motion) {
+  const int period = 2 * static_cast<int>(std::ceil(2 * size_pitch)) + 8;
+  double highest = 8;  // what is beyond carries less than 1 % of the differences of triangles of a pitch
+  if (plan.simulates(Effect::diffraction))
+    highest = std::min(highest, sensor.pitch_um / (sensor.wavelength_min_um * sensor.f_number));
+  const FrequencyLattice lattice{.period = period, .band = static_cast<int>(highest * period)};
+  const auto up = polygon_spectrum(triangle(size_pitch, Apex::up), lattice);
+  const auto right = polygon_spectrum(triangle(size_pitch, Apex::right), lattice);
+  const auto down = polygon_spectrum(triangle(size_pitch, Apex::down), lattice);
+  const TransferFunction transfer = sensor_transfer(sensor, plan, wavelengths, motion);
+  double sum = 0;
+  for (int r = 0; r < up.rows; ++r) {
+    for (int c = 0; c < up.cols; ++c) {
+      const double difference = std::norm(up(r, c) - down(r, c)) + std::norm(up(r, c) - right(r, c));
+      const double u = static_cast<double>(c) / period, w = static_cast<double>(r - lattice.band) / period;
+      sum += difference * std::norm(transfer(u, w));
+    }
+  }
+  return std::sqrt(sum) / period;
+}
+
+}  // namespace todbench

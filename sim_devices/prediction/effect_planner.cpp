@@ -1,0 +1,269 @@
+#include "sim_devices/prediction/effect_planner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <optional>
+
+#include "sim_devices/prediction/cued_estimate.h"
+#include "sim_devices/sensor/transfer_functions.h"
+
+namespace todbench {
+namespace {
+
+constexpr int planning_wavelengths = 4;
+constexpr double budget_share = 0.8;      // of the tolerance; the rest is for numerical errors
+constexpr double strongest_motion = 0.5;  // pitches per time constant; beyond it the bound does not hold
+
+std::string formatted(const char* format, auto... values) {
+  char text[256];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+/// Variances per sample in units of the contrast squared.
+struct NoiseBudget {
+  double temporal = 0, quantisation = 0, internal = 0, pattern = 0, lines = 0;
+  [[nodiscard]] double white() const { return temporal + quantisation + internal; }
+  [[nodiscard]] double total() const { return white() + pattern + lines; }
+};
+
+/// One contrast with everything that the criteria ask of it.
+struct Contrast {
+  ContrastOutlook outlook;
+  NoiseBudget noise;
+};
+
+NoiseBudget noise_of(const SensorSpec& sensor, const TemplateObserverSpec& observer, double contrast_k) {
+  const double c2 = contrast_k * contrast_k;
+  const double netd = sensor.netd_k * observer.sensor_noise_factor;
+  const double step = sensor.kelvin_per_count;
+  return {.temporal = netd * netd / sensor.exposures_per_sample() / c2,
+          .quantisation = step * step / 12 / c2,
+          .internal = observer.internal_noise * observer.internal_noise,
+          .pattern = 0,
+          .lines = 0};
+}
+
+/// Fixed pattern and lines count as much white noise as they move the differences between templates. The search may
+/// find places where they move them more: half as much again; at least the bound n^2 for a pattern shared by n x n
+/// samples.
+void add_coloured(NoiseBudget& noise, const SensorSpec& sensor, const SizeTrial& trial, double contrast_k) {
+  const double c2 = contrast_k * contrast_k;
+  const double n2 = sensor.samples_per_pitch() * sensor.samples_per_pitch();
+  if (sensor.fixed_pattern_k > 0) noise.pattern = n2 * sensor.fixed_pattern_k * sensor.fixed_pattern_k / c2;
+  const double exposures = sensor.exposures_per_sample();
+  if (sensor.row_noise_k > 0)
+    noise.lines +=
+        1.5 * trial.variance_ratio(SizeTrial::Coloured::rows) * std::pow(sensor.row_noise_k, 2) / exposures / c2;
+  if (sensor.column_noise_k > 0)
+    noise.lines +=
+        1.5 * trial.variance_ratio(SizeTrial::Coloured::columns) * std::pow(sensor.column_noise_k, 2) / exposures / c2;
+}
+
+Result<Contrast> contrast_of(CuedEstimate& cued, const SensorSpec& sensor, const SensorPlan& everything,
+                             const TemplateObserverSpec& observer, double delta_t_k) {
+  Contrast out;
+  out.outlook.delta_t_k = delta_t_k;
+  out.noise = noise_of(sensor, observer, delta_t_k);
+  out.outlook.q_eff = std::sqrt(out.noise.white());
+  auto size = cued.s75_pitch(out.outlook.q_eff);
+  if (!size) return tl::unexpected(size.error());
+  const auto trial = cued.trial(*size);
+  if (!trial) return tl::unexpected(trial.error());
+  add_coloured(out.noise, sensor, **trial, delta_t_k);
+  if (out.noise.total() > out.noise.white()) {
+    size = cued.s75_pitch(std::sqrt(out.noise.total()));
+    if (!size) return tl::unexpected(size.error());
+  }
+  const auto exponent = cued.sensitivity(std::sqrt(out.noise.total()));
+  if (!exponent) return tl::unexpected(exponent.error());
+  out.outlook.s75_pitch = *size;
+  // The searching observer loses faster than the one that knows the position: its S75 is up to 1.06 times larger at
+  // q = 0.3 and 1.12 at 0.7.
+  out.outlook.noise_exponent = 1.25 * *exponent + 0.05;
+  const auto d = [&](double factor) {
+    return std::log(discriminability(sensor, everything, factor * *size, planning_wavelengths));
+  };
+  out.outlook.blur_exponent = (d(1.05) - d(1 / 1.05)) / (2 * std::log(1.05));
+  return out;
+}
+
+/// Change of ln S75 when the variance changes by a share of what there is.
+double noise_change(const Contrast& c, double variance_change) {
+  const double share = std::max(variance_change / c.noise.total(), -1 + 1e-9);
+  return std::abs(c.outlook.noise_exponent * 0.5 * std::log1p(share));
+}
+
+SensorPlan without(SensorPlan plan, Effect effect) {
+  for (auto& d : plan.decisions) {
+    if (d.effect == effect) d.decision = Decision::skip;
+  }
+  return plan;
+}
+
+/// Change by the ratio of discriminabilities, for blurs whose extent has no finite mean square.
+double discriminability_change(const Contrast& c, const SensorSpec& sensor, const SensorPlan& everything,
+                               Effect effect) {
+  const double with = discriminability(sensor, everything, c.outlook.s75_pitch, planning_wavelengths);
+  const double less = discriminability(sensor, without(everything, effect), c.outlook.s75_pitch, planning_wavelengths);
+  return std::abs(std::log(with / less)) / c.outlook.blur_exponent;
+}
+
+/// A bound on the change of ln S75 that skipping the effect makes at one contrast; nothing where none can be promised.
+std::optional<double> bound(Effect effect, const Contrast& c, const SensorSpec& sensor, const SensorPlan& everything,
+                            SceneMotion motion) {
+  const double s2 = c.outlook.s75_pitch * c.outlook.s75_pitch;
+  const double n = sensor.samples_per_pitch();
+  switch (effect) {
+    case Effect::detector:
+    case Effect::microscan:
+    case Effect::super_resolution:
+      return std::nullopt;
+    case Effect::diffraction:
+      // An upper bound for the undersampled sensor, within 0.02 of the truth for a finer sampled one.
+      return discriminability_change(c, sensor, everything, effect) + (n > 1 ? 0.02 : 0);
+    case Effect::spectral_band:
+      return 2 * discriminability_change(c, sensor, everything, effect);
+    case Effect::aberration:
+      return 12 * sensor.aberration_sigma_pitch * sensor.aberration_sigma_pitch / s2;
+    case Effect::motion: {
+      const cv::Point2d smear = smear_pitch(sensor, everything, motion);
+      const double v_tau = std::hypot(smear.x, smear.y);
+      if (v_tau >= strongest_motion) return std::nullopt;
+      return 12 * v_tau * v_tau / 2 / s2;
+    }
+    case Effect::temporal_noise:
+      return noise_change(c, -c.noise.temporal);
+    case Effect::fixed_pattern:
+      return noise_change(c, -c.noise.pattern);
+    case Effect::row_column_noise:
+      return noise_change(c, -c.noise.lines);
+    case Effect::quantisation:
+      return noise_change(c, -c.noise.quantisation);
+    case Effect::frame_averaging:
+      // Without it the noise is larger: the bound has the sign the other way.
+      return noise_change(c, (sensor.frames_averaged - 1) * (c.noise.temporal + c.noise.lines));
+    case Effect::dead_pixels:
+      // What replaces a pixel at an edge is off by a third of the contrast, in all of a detector's samples.
+      return noise_change(c, sensor.dead_pixel_share * n * n / 9.0);
+    case Effect::display:
+      // 1.1 % for a blur of 0.2 samples and as its square; 2.7 % for bilinear interpolation.
+      return 0.0125 * std::pow(sensor.display_blur_samples / 0.2, 2) +
+             (sensor.display == DisplayReconstruction::bilinear ? 0.027 : 0);
+  }
+  return std::nullopt;
+}
+
+std::string_view why_never(Effect effect) {
+  switch (effect) {
+    case Effect::detector:
+      return "always simulated: without the footprint aliasing changes the acuity in either direction";
+    case Effect::microscan:
+    case Effect::super_resolution:
+      return "always simulated: it changes the sampling, for which there is no criterion";
+    default:
+      return "always simulated: half a pitch and more per time constant is beyond the criterion";
+  }
+}
+
+struct Candidate {
+  std::size_t index = 0;
+  double percent = 0;
+};
+
+bool contains(const std::vector<Effect>& effects, Effect effect) {
+  return std::find(effects.begin(), effects.end(), effect) != effects.end();
+}
+
+/// Skips the cheapest candidates as long as the budget lasts. Returns what is used of it.
+double share_budget(std::vector<Candidate> candidates, double tolerance_percent, SensorPlan& plan) {
+  std::sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.percent < b.percent; });
+  const double budget = budget_share * tolerance_percent;
+  double used = 0;
+  for (const auto& candidate : candidates) {
+    auto& decision = plan.decisions[candidate.index];
+    if (used + candidate.percent <= budget) {
+      used += candidate.percent;
+      decision.decision = Decision::skip;
+      decision.reason = formatted("changes the acuity by at most %.2g %%; %.2g %% of the %.3g %% tolerance are used up",
+                                  candidate.percent, used, tolerance_percent);
+    } else {
+      decision.reason = formatted("may change the acuity by %.2g %%, more than is left of the %.3g %% tolerance",
+                                  candidate.percent, tolerance_percent);
+    }
+  }
+  return used;
+}
+
+void obey(const EffectPlannerOptions& options, EffectPlan& out) {
+  for (auto& d : out.plan.decisions) {
+    if (contains(options.skip, d.effect)) {
+      d.decision = Decision::skip;
+      d.reason = "skipped on request; " + (d.predicted_change_percent
+                                               ? formatted("predicted change %.2g %%", *d.predicted_change_percent)
+                                               : std::string("no criterion bounds the change"));
+      out.requested_change_percent += d.predicted_change_percent.value_or(0);
+      if (!d.predicted_change_percent)
+        out.warnings.push_back("effect " + std::string(to_string(d.effect)) +
+                               " is skipped on request: the tolerance is not kept");
+    }
+    if (contains(options.force, d.effect)) {
+      d.decision = Decision::simulate;
+      d.reason = "simulated on request";
+    }
+  }
+}
+
+}  // namespace
+
+Result<EffectPlan> plan_effects(const SensorSpec& sensor, TemplateObserver& observer, const EffectScene& scene,
+                                const EffectPlannerOptions& options) {
+  const SensorPlan everything = full_plan(sensor, {}, {}, scene.motion);
+  EffectPlan out{
+      .plan = everything, .skipped_change_percent = 0, .requested_change_percent = 0, .outlooks = {}, .warnings = {}};
+  CuedEstimate cued(sensor, everything, observer, scene.motion);
+  std::vector<Contrast> contrasts;
+  for (const double delta_t_k : scene.delta_t_k) {
+    auto contrast = contrast_of(cued, sensor, everything, observer.spec(), delta_t_k);
+    if (contrast) {
+      out.outlooks.push_back(contrast->outlook);
+      contrasts.push_back(*contrast);
+    } else {
+      out.warnings.push_back(formatted("at %g K: ", delta_t_k) + contrast.error().message);
+    }
+  }
+  if (contrasts.empty()) {
+    return fail(ErrorCode::invalid_input,
+                "the plan has no identifiable threshold: " +
+                    (out.warnings.empty() ? std::string("no contrast") : out.warnings.front()));
+  }
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < out.plan.decisions.size(); ++i) {
+    auto& decision = out.plan.decisions[i];
+    if (decision.decision == Decision::skip) continue;  // neutral
+    std::optional<double> largest = 0.0;
+    for (const auto& c : contrasts) {
+      const auto change = bound(decision.effect, c, sensor, everything, scene.motion);
+      largest = change && largest ? std::optional(std::max(*largest, *change)) : std::nullopt;
+    }
+    if (!largest) {
+      decision.reason = why_never(decision.effect);
+      continue;
+    }
+    // Acuity is 1 / S75: the change of the logarithm as a percentage, in the direction in which it is larger.
+    decision.predicted_change_percent = 100 * std::expm1(std::min(*largest, 5.0));
+    if (decision.effect == Effect::diffraction) {
+      decision.reason = "simulated: it ends the band, so leaving it out would cost more than it saves";
+      continue;
+    }
+    if (!contains(options.skip, decision.effect) && !contains(options.force, decision.effect))
+      candidates.push_back({i, *decision.predicted_change_percent});
+  }
+  out.skipped_change_percent = share_budget(std::move(candidates), options.tolerance_percent, out.plan);
+  obey(options, out);
+  return out;
+}
+
+}  // namespace todbench

@@ -1,0 +1,51 @@
+// Which effects a scene calls for, decided before anything is simulated.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "acquisition/core/result.h"
+#include "hvs/template_observer.h"
+#include "sim_devices/sensor/sensor_plan.h"
+#include "sim_devices/sensor/sensor_spec.h"
+
+namespace todbench {
+
+/// What will be looked at.
+struct EffectScene {
+  std::vector<double> delta_t_k;  ///< never 0
+  SceneMotion motion{};
+};
+
+struct EffectPlannerOptions {
+  double tolerance_percent = 1;     ///< of the 75 % acuity: what all skipped effects together may change
+  std::vector<Effect> skip, force;  ///< obeyed whatever is predicted; the reasons say so
+};
+
+/// What is expected at one contrast before simulating.
+struct ContrastOutlook {
+  double delta_t_k = 0;
+  double q_eff = 0;           ///< white noise per sample over the contrast, internal noise included
+  double s75_pitch = 0;       ///< of the observer that knows the position
+  double noise_exponent = 0;  ///< d ln S75 / d ln q_eff
+  double blur_exponent = 0;   ///< d ln D / d ln S
+};
+
+struct EffectPlan {
+  SensorPlan plan;                        ///< one decision per effect, in the order of the chain
+  double skipped_change_percent = 0;      ///< bound on the change by all effects that the criteria skip, together
+  double requested_change_percent = 0;    ///< predicted for those skipped on request, where a criterion exists
+  std::vector<ContrastOutlook> outlooks;  ///< per contrast of the scene that has a threshold
+  std::vector<std::string> warnings;      ///< sentences: contrasts without threshold, skipped effects without criterion
+};
+
+/// The decisions; the criteria are those of docs/effect-planning.md. The change that skipping an effect makes is
+/// bounded at every contrast and the largest is taken. The effects with the smallest bounds are skipped as long as
+/// their sum stays within four fifths of the tolerance; the rest is for numerical errors. Detector footprint,
+/// microscan, super-resolution and motion by half a pitch and more per time constant have no criterion and are always
+/// simulated. Deterministic; costs some tens of milliseconds, most of them for template banks which the observer keeps.
+/// `invalid_input`: no contrast has a threshold.
+[[nodiscard]] Result<EffectPlan> plan_effects(const SensorSpec& sensor, TemplateObserver& observer,
+                                              const EffectScene& scene, const EffectPlannerOptions& options);
+
+}  // namespace todbench

@@ -1,0 +1,249 @@
+#include "sim_devices/prediction/size_trial.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "hvs/known_position.h"
+#include "hvs/observer.h"
+#include "hvs/score_maxima.h"
+#include "sim_devices/sensor/picture_stages.h"
+#include "tod/test_pattern.h"
+
+namespace todbench {
+namespace {
+
+// Sub-streams of one draw; each kind of noise has its own.
+std::uint64_t white_part(std::uint64_t draw) {
+  return 2 * draw;
+}
+std::uint64_t pattern_part(std::uint64_t draw) {
+  return 2 * draw + 1;
+}
+enum class Rare : std::uint64_t { rows, columns, dead };
+std::uint64_t rare_part(std::uint64_t draw, Rare part) {
+  return (std::uint64_t{1} << 40) + 3 * draw + static_cast<std::uint64_t>(part);
+}
+
+}  // namespace
+
+SizeTrial::SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank> bank, double size_pitch,
+                     const TrialConditions& conditions, RandomStream stream)
+    : bank_(std::move(bank)), conditions_(conditions), stream_(stream) {
+  const SensorSpec& sensor = conditions_.sensor;
+  const bool lines = sensor.row_noise_k > 0 || sensor.column_noise_k > 0;
+  has_coloured_ = sensor.fixed_pattern_k > 0 || lines;
+  if (has_display(sensor)) display_taps_ = taps_of([&](double f) { return display_response(sensor, f); });
+  // The sampling grid and everything else but motion and lines look the same from all four sides.
+  const bool alike = !lines && !(conditions_.motion.moving() && sensor.time_constant_ms > 0);
+  const int per_axis = std::max(1, conditions_.phases_per_axis / conditions_.samples_per_pitch);
+  for (int truth = 0; truth < (alike ? 1 : bank_->alternatives()); ++truth) {
+    const cv::Mat1d fine = chain.image(triangle(size_pitch, all_apexes[static_cast<std::size_t>(truth)]))
+                               .fine_image(chain.points_per_pitch());
+    for (int j = 0; j < per_axis; ++j) {
+      for (int i = 0; i < per_axis; ++i) {
+        responses_.push_back(response(fine, chain.points_per_pitch(), {i, j}, per_axis));
+        responses_.back().truth = truth;
+      }
+    }
+  }
+}
+
+SizeTrial::Response SizeTrial::response(const cv::Mat1d& fine, int per_pitch, cv::Point phase, int per_axis) const {
+  const int window = bank_->window_samples();
+  const int stride = per_pitch / conditions_.samples_per_pitch;
+  const int n = fine.rows;
+  const int margin = static_cast<int>(display_taps_.size()) / 2;
+  // Window centre relative to the centroid: -1/2 + (i + 1/2) / per_axis samples; samples at k + 1/2 from it.
+  const auto first = [&](int p) { return (2 * p + 1) * stride / (2 * per_axis) - (window / 2 + margin) * stride; };
+  cv::Mat1f samples(window + 2 * margin, window + 2 * margin);
+  for (int row = 0; row < samples.rows; ++row) {
+    const int y = ((first(phase.y) + row * stride) % n + n) % n;
+    for (int column = 0; column < samples.cols; ++column) {
+      const int x = ((first(phase.x) + column * stride) % n + n) % n;
+      samples(row, column) = static_cast<float>(fine(y, x));
+    }
+  }
+  if (margin > 0) samples = filtered(samples, display_taps_)(cv::Rect(margin, margin, window, window)).clone();
+  Response out;
+  out.scores = projected(samples);
+  const int side = static_cast<int>(std::lround(std::sqrt(bank_->places())));
+  const auto step = [&](int p) {
+    const double offset = 0.5 - (p + 0.5) / per_axis;  // centroid from the window's centre, in samples
+    return std::clamp(static_cast<int>(std::lround(offset / conditions_.search_step_samples)), -(side / 2), side / 2);
+  };
+  out.place = (step(phase.y) + side / 2) * side + step(phase.x) + side / 2;
+  if (conditions_.sensor.dead_pixel_share > 0) out.patch.assign(samples.begin(), samples.end());
+  return out;
+}
+
+std::vector<float> SizeTrial::projected(const cv::Mat1f& samples) const {
+  std::vector<float> scores(bank_->padded_templates());
+  bank_->project(std::span(samples.ptr<float>(), samples.total()), scores);
+  return scores;
+}
+
+double SizeTrial::known_position_proportion(double noise, int nodes) const {
+  CV_Assert(bank_->alternatives() == 4);
+  std::map<int, std::array<std::array<double, 4>, 4>> grams;  // by place
+  double sum = 0;
+  for (const auto& response : responses_) {
+    auto [slot, is_new] = grams.try_emplace(response.place);
+    if (is_new) {
+      std::array<cv::Mat1f, 4> images;
+      for (std::size_t o = 0; o < 4; ++o) images[o] = bank_->image(static_cast<int>(o), response.place);
+      for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t j = 0; j < 4; ++j) slot->second[i][j] = images[i].dot(images[j]);
+      }
+    }
+    // The task wants the true alternative first.
+    KnownPositionTask task;
+    task.noise = noise;
+    std::array<std::size_t, 4> order{0, 1, 2, 3};
+    std::swap(order[0], order[static_cast<std::size_t>(response.truth)]);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto template_index =
+          order[i] * static_cast<std::size_t>(bank_->places()) + static_cast<std::size_t>(response.place);
+      task.mean[i] = static_cast<double>(response.scores[template_index]);
+      for (std::size_t j = 0; j < 4; ++j) task.gram[i][j] = slot->second[order[i]][order[j]];
+    }
+    sum += probability_correct(task, nodes);
+  }
+  return sum / static_cast<double>(responses_.size());
+}
+
+double SizeTrial::variance_ratio(Coloured kind) const {
+  const int n = conditions_.samples_per_pitch;
+  double largest = 0;
+  for (int first = 0; first < bank_->alternatives(); ++first) {
+    for (int other = first + 1; other < bank_->alternatives(); ++other) {
+      const cv::Mat1f d = bank_->image(first, bank_->central_place()) - bank_->image(other, bank_->central_place());
+      std::map<std::pair<int, int>, double> shared;  // samples with one common offset
+      for (int row = 0; row < d.rows; ++row) {
+        for (int column = 0; column < d.cols; ++column) {
+          const auto key = kind == Coloured::pattern ? std::pair(row / n, column / n)
+                           : kind == Coloured::rows  ? std::pair(row, column % n)
+                                                     : std::pair(column, row % n);
+          shared[key] += static_cast<double>(d(row, column));
+        }
+      }
+      double variance = 0;
+      for (const auto& [key, sum] : shared) variance += sum * sum;
+      largest = std::max(largest, variance / d.dot(d));
+    }
+  }
+  return largest;
+}
+
+/// Sensor's and internal noise together are white noise with the response sqrt((s^2 |D|^2 + i^2) / (s^2 + i^2)).
+void SizeTrial::shape_white(const WhiteNoise& white) {
+  if (display_taps_.empty()) return;
+  const double total = white.sensor * white.sensor + white.internal * white.internal;
+  const double ratio = total > 0 ? white.sensor * white.sensor / total : 0;
+  if (ratio == white_ratio_) return;
+  white_ratio_ = ratio;
+  noise_.clear();
+  coloured_.clear();
+  white_taps_ = taps_of([&](double f) {
+    const double display = display_response(conditions_.sensor, f);
+    return std::sqrt(ratio * display * display + 1 - ratio);
+  });
+}
+
+cv::Mat1b SizeTrial::dead(std::uint64_t index) const {
+  const double share = conditions_.sensor.dead_pixel_share;
+  if (share == 0) return {};
+  const int detectors = bank_->window_samples() / conditions_.samples_per_pitch;
+  cv::Mat1b map = dead_detectors({detectors, detectors}, share, stream_.sub(rare_part(index, Rare::dead)));
+  return cv::countNonZero(map) > 0 ? map : cv::Mat1b();
+}
+
+/// Fixed pattern and lines of one draw, in kelvin.
+cv::Mat1f SizeTrial::coloured(std::uint64_t index) const {
+  const SensorSpec& sensor = conditions_.sensor;
+  const int window = bank_->window_samples();
+  const int n = conditions_.samples_per_pitch;
+  cv::Mat1f samples = cv::Mat1f::zeros(window, window);
+  if (sensor.fixed_pattern_k > 0) {
+    const int detectors = window / n;
+    std::vector<float> offsets(static_cast<std::size_t>(detectors) * static_cast<std::size_t>(detectors));
+    stream_.sub(pattern_part(index)).fill_normal(offsets);
+    const auto sd = static_cast<float>(sensor.fixed_pattern_k);
+    for (int row = 0; row < window; ++row) {
+      for (int column = 0; column < window; ++column)
+        samples(row, column) = sd * offsets[static_cast<std::size_t>(row / n * detectors + column / n)];
+    }
+  }
+  add_line_noise(samples, sensor, stream_.sub(rare_part(index, Rare::rows)),
+                 stream_.sub(rare_part(index, Rare::columns)),
+                 1 / std::sqrt(static_cast<double>(sensor.exposures_per_sample())));
+  return samples;
+}
+
+void SizeTrial::draw(std::uint64_t index) {
+  const int window = bank_->window_samples();
+  const cv::Mat1b defects = dead(index);
+  const auto add = [&](std::vector<std::vector<float>>& to, cv::Mat1f samples, const std::vector<double>& taps) {
+    if (!defects.empty()) replace_dead(samples, defects, conditions_.samples_per_pitch);
+    to.push_back(projected(taps.empty() ? samples : filtered(samples, taps)));
+  };
+  cv::Mat1f white(window, window);
+  stream_.sub(white_part(index)).fill_normal(std::span(white.ptr<float>(), white.total()));
+  add(noise_, white, white_taps_);
+  if (has_coloured_) add(coloured_, coloured(index), display_taps_);
+}
+
+Proportion SizeTrial::proportion(const WhiteNoise& white, double contrast_k, int draws) {
+  shape_white(white);
+  for (auto index = noise_.size(); index < static_cast<std::size_t>(draws); ++index) draw(index);
+  const double total = std::hypot(white.sensor, white.internal);
+  // In units of the white noise, or of the contrast where there is none.
+  const auto scale = static_cast<float>(total > 0 ? total : 1);
+  const auto ratio = static_cast<float>(1 / (contrast_k * static_cast<double>(scale)));
+  const float own = total > 0 ? 1.0F : 0.0F;
+  double sum = 0, squares = 0;
+  std::vector<float> mixed(bank_->padded_templates());
+  for (std::size_t d = 0; d < static_cast<std::size_t>(draws); ++d) {
+    std::span<const float> noise(noise_[d]);
+    if (has_coloured_ || total == 0) {
+      for (std::size_t t = 0; t < mixed.size(); ++t)
+        mixed[t] = own * noise_[d][t] + (has_coloured_ ? ratio * coloured_[d][t] : 0.0F);
+      noise = mixed;
+    }
+    const double p = correct_share(noise, scale, dead(d));
+    sum += p;
+    squares += p * p;
+  }
+  const double mean = sum / draws;
+  return {mean, std::max(0.0, squares / draws - mean * mean) / std::max(1, draws - 1)};
+}
+
+double SizeTrial::correct_share(std::span<const float> noise, float scale, const cv::Mat1b& defects) const {
+  float maxima[Choice::max_alternatives];
+  const std::span<float> tops(maxima, static_cast<std::size_t>(bank_->alternatives()));
+  const int window = bank_->window_samples();
+  double correct = 0;
+  std::vector<float> changed;
+  for (const auto& response : responses_) {
+    std::span<const float> signal(response.scores);
+    if (!defects.empty()) {
+      cv::Mat1f patch(window, window);
+      std::copy(response.patch.begin(), response.patch.end(), patch.begin());
+      replace_dead(patch, defects, conditions_.samples_per_pitch);
+      changed = response.scores;
+      for (std::size_t s = 0; s < response.patch.size(); ++s) {
+        const float amount = patch(static_cast<int>(s) / window, static_cast<int>(s) % window) - response.patch[s];
+        if (amount != 0) bank_->add_sample(s, amount, changed);
+      }
+      signal = changed;
+    }
+    score_maxima(signal, noise, scale, bank_->places(), tops);
+    const float best = *std::max_element(tops.begin(), tops.end());
+    if (tops[static_cast<std::size_t>(response.truth)] == best)
+      correct += 1.0 / static_cast<double>(std::count(tops.begin(), tops.end(), best));
+  }
+  return correct / static_cast<double>(responses_.size());
+}
+
+}  // namespace todbench

@@ -1,0 +1,81 @@
+// One target size before a simulated sensor and a searching observer: proportion correct without frames.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "acquisition/core/rng.h"
+#include "hvs/template_bank.h"
+#include "sim_devices/sensor/image_chain.h"
+
+namespace todbench {
+
+/// Proportion correct at one size with its variance.
+struct Proportion {
+  double mean = 0, variance = 0;
+};
+
+/// What is the same for all sizes and contrasts.
+struct TrialConditions {
+  SensorSpec sensor;  ///< as planned
+  SceneMotion motion{};
+  int samples_per_pitch = 1;
+  int phases_per_axis = 8;  ///< per pitch
+  double search_step_samples = 0.125;
+};
+
+/// Noise of the white kind per sample, relative to the contrast.
+struct WhiteNoise {
+  double sensor = 0;    ///< temporal, averaged, and quantisation: passes the display
+  double internal = 0;  ///< of the observer
+};
+
+/// Responses to the signal for every sampling phase, and projected noise, each formed once and shared by contrasts.
+/// Every kind of noise has numbers of its own, so that leaving one out never changes another. One thread at a time.
+class SizeTrial {
+ public:
+  SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank> bank, double size_pitch,
+            const TrialConditions& conditions, RandomStream stream);
+
+  /// At a contrast of `contrast_k` > 0, to which `white` is relative.
+  [[nodiscard]] Proportion proportion(const WhiteNoise& white, double contrast_k, int draws);
+
+  /// The proportion of an observer that knows the position (to half a search step) in white noise of sd `noise`
+  /// relative to the contrast: exact, without draws (known_position.h).
+  [[nodiscard]] double known_position_proportion(double noise, int nodes) const;
+
+  /// Variance of the difference between the true template's score and another's, for fixed pattern or line noise of
+  /// sd 1, over that for white noise of sd 1: the largest over the alternatives, at the middle of the search.
+  enum class Coloured { pattern, rows, columns };
+  [[nodiscard]] double variance_ratio(Coloured kind) const;
+
+ private:
+  struct Response {
+    int truth = 0;              ///< the alternative that is shown
+    int place = 0;              ///< search place next to the true position
+    std::vector<float> patch;   ///< samples; only where detectors are dead
+    std::vector<float> scores;  ///< of all templates
+  };
+  [[nodiscard]] Response response(const cv::Mat1d& fine, int per_pitch, cv::Point phase, int per_axis) const;
+  void draw(std::uint64_t index);
+  [[nodiscard]] cv::Mat1f coloured(std::uint64_t index) const;
+  [[nodiscard]] cv::Mat1b dead(std::uint64_t index) const;
+  [[nodiscard]] std::vector<float> projected(const cv::Mat1f& samples) const;
+  void shape_white(const WhiteNoise& white);
+  /// Share of the phases at which the true alternative wins; a tie counts its fair part.
+  [[nodiscard]] double correct_share(std::span<const float> noise, float scale, const cv::Mat1b& dead) const;
+
+  std::shared_ptr<const TemplateBank> bank_;
+  TrialConditions conditions_;
+  RandomStream stream_;
+  bool has_coloured_ = false;
+  std::vector<double> display_taps_;          ///< empty for sample and hold
+  std::vector<double> white_taps_;            ///< of sensor's and internal noise together; empty without display
+  double white_ratio_ = -1;                   ///< for which white_taps_ are
+  std::vector<Response> responses_;           ///< per orientation that counts and phase
+  std::vector<std::vector<float>> noise_;     ///< per draw, unit white noise projected
+  std::vector<std::vector<float>> coloured_;  ///< per draw, fixed pattern and line noise in kelvin projected
+};
+
+}  // namespace todbench

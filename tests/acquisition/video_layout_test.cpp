@@ -1,0 +1,126 @@
+// Which rows of a video frame are measured, and how they are read.
+#include "acquisition/v4l2/video_layout.h"
+
+#include <gmock/gmock.h>
+
+namespace todbench {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::uint32_t code(const char (&text)[5]) {
+  std::uint32_t value = 0;
+  for (unsigned i = 0; i < 4; ++i) value |= static_cast<std::uint32_t>(text[i]) << (8 * i);
+  return value;
+}
+constexpr auto y16 = code("Y16 "), y14 = code("Y14 "), grey = code("GREY"), yuyv = code("YUYV"), mjpg = code("MJPG");
+
+TEST(VideoLayout, PrefersTheFormatWithMostBits) {
+  const auto layout =
+      choose_layout({{mjpg, 640, 480}, {grey, 640, 512}, {y14, 320, 256}, {y16, 320, 256}}, VideoFamily::plain, "");
+
+  ASSERT_TRUE(layout) << layout.error().message;
+  EXPECT_EQ(layout->mode, (VideoMode{y16, 320, 256}));
+  EXPECT_EQ(layout->pixel_format, "Mono16");
+}
+
+TEST(VideoLayout, ChoosesTheFormatThatIsWanted) {
+  const auto layout = choose_layout({{y14, 320, 256}, {y16, 320, 256}}, VideoFamily::plain, "Mono14");
+
+  ASSERT_TRUE(layout);
+  EXPECT_EQ(layout->mode.fourcc, y14);
+  EXPECT_EQ(layout->significant_bits, 14);
+}
+
+TEST(VideoLayout, TemperaturesAreTheLowerHalfOfTheDoubleFrame) {
+  const auto layout = choose_layout({{yuyv, 256, 192}, {yuyv, 256, 384}}, VideoFamily::temperature_rows, "");
+
+  ASSERT_TRUE(layout);
+  EXPECT_EQ(layout->mode, (VideoMode{yuyv, 256, 384}));
+  EXPECT_EQ(layout->picture, cv::Rect(0, 192, 256, 192));
+  EXPECT_EQ(layout->kelvin_per_count, 1.0 / 64);
+}
+
+TEST(VideoLayout, APictureForPeopleIsNotMeasured) {
+  const auto webcam = choose_layout({{yuyv, 640, 480}, {mjpg, 640, 480}}, VideoFamily::plain, "");
+  const auto tiny1_without_double = choose_layout({{yuyv, 256, 192}}, VideoFamily::temperature_rows, "");
+
+  ASSERT_FALSE(webcam);
+  EXPECT_EQ(webcam.error().code, ErrorCode::not_found);
+  EXPECT_THAT(webcam.error().message, HasSubstr("YUYV 640x480"));
+  EXPECT_FALSE(tiny1_without_double);
+}
+
+TEST(VideoLayout, ALeptonIsReadWithItsTelemetry) {
+  const auto layout = choose_layout({{y16, 160, 120}, {y16, 160, 122}, {y16, 80, 60}, {y16, 80, 63}, {yuyv, 160, 120}},
+                                    VideoFamily::lepton, "");
+
+  ASSERT_TRUE(layout);
+  EXPECT_EQ(layout->mode.height, 122);
+  EXPECT_EQ(layout->picture, cv::Rect(0, 0, 160, 120));
+  EXPECT_EQ(layout->telemetry_rows, 2);
+}
+
+TEST(VideoLayout, OfAPlainCameraHasNoTelemetryWhateverItsSizes) {
+  const auto layout = choose_layout({{y16, 160, 120}, {y16, 160, 122}}, VideoFamily::plain, "");
+
+  ASSERT_TRUE(layout);
+  EXPECT_EQ(layout->picture.height, 122);
+}
+
+TEST(VideoLayout, WithoutModesSaysSo) {
+  EXPECT_THAT(choose_layout({}, VideoFamily::plain, "").error().message, HasSubstr("offers none"));
+}
+
+TEST(VideoFamilies, AreToldByTheirUsbNumbers) {
+  EXPECT_EQ(video_family(0x1e4e, 0x0100), VideoFamily::lepton);
+  EXPECT_EQ(video_family(0x0bda, 0x5830), VideoFamily::temperature_rows);
+  EXPECT_EQ(video_family(0x046d, 0x0825), VideoFamily::plain);
+}
+
+TEST(VideoFrames, RowsWithPaddingAreReadWithoutIt) {
+  auto layout = choose_layout({{y16, 2, 2}}, VideoFamily::plain, "").value();
+  layout.row_bytes = 6;
+  const std::vector<std::uint8_t> bytes{1, 0, 2, 0, 9, 9, 3, 0, 4, 1, 9, 9};
+
+  const auto picture = read_video_frame(bytes, layout);
+
+  ASSERT_TRUE(picture) << picture.error().message;
+  EXPECT_EQ(cv::countNonZero(picture->counts != (cv::Mat1w(2, 2) << 1, 2, 3, 260)), 0);
+}
+
+TEST(VideoFrames, BigEndianCountsAreTurned) {
+  const auto layout = choose_layout({{y16 | 1U << 31U, 2, 1}}, VideoFamily::plain, "").value();
+  const std::vector<std::uint8_t> bytes{1, 2, 3, 4};
+
+  EXPECT_EQ(read_video_frame(bytes, layout)->counts(0, 1), 0x0304);
+}
+
+TEST(VideoFrames, TemperaturesAreReadBelowThePictureLowByteFirst) {
+  const auto layout = choose_layout({{yuyv, 2, 4}}, VideoFamily::temperature_rows, "").value();
+  const std::vector<std::uint8_t> bytes{200,  128,  201,  128,  202,  128,  203,  128,
+                                        0x10, 0x4A, 0x11, 0x4A, 0x12, 0x4A, 0x13, 0x4B};
+
+  const auto picture = read_video_frame(bytes, layout);
+
+  ASSERT_TRUE(picture);
+  EXPECT_EQ(cv::countNonZero(picture->counts != (cv::Mat1w(2, 2) << 0x4A10, 0x4A11, 0x4A12, 0x4B13)), 0);
+}
+
+TEST(VideoFrames, WithTooFewBytesAreRefused) {
+  const auto layout = choose_layout({{y16, 160, 120}, {y16, 160, 122}}, VideoFamily::lepton, "").value();
+
+  EXPECT_EQ(read_video_frame(std::vector<std::uint8_t>(2 * 160 * 122 - 1), layout).error().code,
+            ErrorCode::invalid_input);
+  EXPECT_FALSE(read_video_frame({}, layout));
+  EXPECT_TRUE(read_video_frame(std::vector<std::uint8_t>(2 * 160 * 122), layout));
+}
+
+TEST(VideoFrames, WithoutTelemetryInItsRowsAreStillPictures) {
+  const auto layout = choose_layout({{y16, 160, 120}, {y16, 160, 122}}, VideoFamily::lepton, "").value();
+
+  EXPECT_EQ(read_video_frame(std::vector<std::uint8_t>(2 * 160 * 122), layout)->telemetry, std::nullopt);
+}
+
+}  // namespace
+}  // namespace todbench

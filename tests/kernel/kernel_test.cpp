@@ -1,0 +1,167 @@
+// Runs as the first program of a virtual machine, as root: emulated cameras are plugged into the kernel's virtual USB
+// host controller, and the real uvcvideo driver stands between them and the V4L2 back end.
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <thread>
+
+#include "acquisition/v4l2/v4l2_backend.h"
+#include "acquisition/v4l2/video_listing.h"
+#include "sim_devices/lab/usbip_server.h"
+#include "sim_devices/lab/uvc_camera.h"
+
+namespace todbench {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A virtual machine without hardware support is thirty times slower than its host.
+constexpr auto patience = 60s;
+
+cv::Mat1w picture(std::uint64_t index, int width, int height) {
+  cv::Mat1w out(height, width);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      out(y, x) = static_cast<ushort>(257U * static_cast<unsigned>(index) + 7U * static_cast<unsigned>(x) +
+                                      1031U * static_cast<unsigned>(y));
+    }
+  }
+  return out;
+}
+
+/// 257 * 65281 = 1 modulo 2^16: the first pixel tells which exposure a picture is.
+std::uint64_t exposure_of(const cv::Mat1w& counts) {
+  return (counts(0, 0) * 65281U) & 0xFFFFU;
+}
+
+/// A camera plugged into a port, and what sees it.
+struct Plugged {
+  std::shared_ptr<UvcCamera> camera;
+  std::unique_ptr<UsbIpServer> server;
+};
+
+VideoCameraConfig config_of(VideoCameraKind kind, int width, int height) {
+  VideoCameraConfig config;
+  config.kind = kind;
+  config.width = width;
+  config.height = height;
+  config.frame_rate_hz = 25;
+  config.model = "Emulated UVC";
+  config.serial = "K0001";
+  return config;
+}
+
+Plugged plug(const VideoCameraConfig& config, int port) {
+  auto camera =
+      UvcCamera::create(config, [w = config.width, h = config.height](std::uint64_t k) { return picture(k, w, h); });
+  EXPECT_TRUE(camera) << camera.error().message;
+  Plugged plugged{.camera = std::move(*camera), .server = nullptr};
+  auto server = plug_into_kernel(plugged.camera, port);
+  EXPECT_TRUE(server) << server.error().message;
+  if (server) plugged.server = std::move(*server);
+  return plugged;
+}
+
+/// Opens as soon as the kernel has made the device; its arrival wakes the wait.
+std::unique_ptr<FrameSource> open_when_there(VideoWatch& arrivals, const std::string& id) {
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  std::string last;
+  while (std::chrono::steady_clock::now() < deadline) {
+    auto source = v4l2_backend()->open(id);
+    if (source) return std::move(*source);
+    last = source.error().message;
+    static_cast<void>(arrivals.next(1s));
+  }
+  ADD_FAILURE() << last;
+  return nullptr;
+}
+
+void expect_frames_equal_their_exposures(FrameSource& source, int count) {
+  const auto started = source.start();
+  ASSERT_TRUE(started) << started.error().message;
+  std::optional<std::uint64_t> last;
+  for (int k = 0; k < count; ++k) {
+    const auto frame = source.next(patience);
+
+    ASSERT_TRUE(frame) << frame.error().message;
+    ASSERT_EQ(frame->status, FrameStatus::complete);
+    const auto exposure = exposure_of(frame->counts);
+    const cv::Mat1w expected = picture(exposure, frame->counts.cols, frame->counts.rows);
+    ASSERT_EQ(cv::countNonZero(frame->counts != expected), 0) << "exposure " << exposure;
+    if (last) {
+      ASSERT_EQ(exposure, *last + 1);
+    }
+    last = exposure;
+  }
+}
+
+class Kernel : public testing::Test {
+ protected:
+  VideoWatch arrivals_ = std::move(*VideoWatch::create());
+};
+
+TEST_F(Kernel, UvcvideoDeliversTheFramesOfALeptonByteForByte) {
+  const auto config = config_of(VideoCameraKind::lepton, 160, 120);
+  const Plugged plugged = plug(config, 0);
+  ASSERT_TRUE(plugged.server);
+
+  const auto source = open_when_there(arrivals_, "v4l2:todbench-Emulated_UVC-K0001");
+
+  ASSERT_TRUE(source);
+  EXPECT_THAT(source->info().transport, testing::HasSubstr("uvcvideo"));
+  EXPECT_EQ(source->info().height, 120);
+  EXPECT_EQ(source->info().scale, RadiometricScale::linear({.kelvin_per_count = 0.01}).value());
+  EXPECT_NEAR(source->info().frame_rate_hz, 25, 0.01);
+  expect_frames_equal_their_exposures(*source, 50);
+}
+
+TEST_F(Kernel, UvcvideoDeliversTemperatureRowsByteForByte) {
+  auto config = config_of(VideoCameraKind::temperature_rows, 256, 192);
+  config.serial = "K0002";
+  const Plugged plugged = plug(config, 1);
+  ASSERT_TRUE(plugged.server);
+
+  const auto source = open_when_there(arrivals_, "v4l2:todbench-Emulated_UVC-K0002");
+
+  ASSERT_TRUE(source);
+  EXPECT_EQ(source->info().width, 256);
+  EXPECT_EQ(source->info().height, 192);
+  EXPECT_EQ(source->info().scale, RadiometricScale::linear({.kelvin_per_count = 1.0 / 64}).value());
+  expect_frames_equal_their_exposures(*source, 25);
+}
+
+TEST_F(Kernel, ACameraStartsAgainAfterStop) {
+  auto config = config_of(VideoCameraKind::y16, 160, 120);
+  config.serial = "K0003";
+  const Plugged plugged = plug(config, 2);
+  const auto source = open_when_there(arrivals_, "v4l2:todbench-Emulated_UVC-K0003");
+  ASSERT_TRUE(source);
+  expect_frames_equal_their_exposures(*source, 5);
+
+  source->stop();
+
+  EXPECT_EQ(source->next(0ms).error().code, ErrorCode::interrupted);
+  expect_frames_equal_their_exposures(*source, 5);
+}
+
+TEST_F(Kernel, AnUnpluggedCameraIsDisconnectedAndFoundAgainBySerial) {
+  auto config = config_of(VideoCameraKind::y16, 160, 120);
+  config.serial = "K0004";
+  Plugged plugged = plug(config, 3);
+  const auto source = open_when_there(arrivals_, "v4l2:todbench-Emulated_UVC-K0004");
+  ASSERT_TRUE(source && source->start());
+  ASSERT_TRUE(source->next(patience));
+
+  plugged.server.reset();
+
+  auto next = source->next(patience);
+  while (next) next = source->next(patience);
+  EXPECT_EQ(next.error().code, ErrorCode::disconnected);
+  const Plugged again = plug(config, 4);
+  const auto found = open_when_there(arrivals_, "v4l2:todbench-Emulated_UVC-K0004");
+  ASSERT_TRUE(found);
+  expect_frames_equal_their_exposures(*found, 5);
+}
+
+}  // namespace
+}  // namespace todbench

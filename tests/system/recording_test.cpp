@@ -1,0 +1,125 @@
+// Recording and replay as a user has them: the same answers bit for bit, also of a run that did not end well.
+#include "bench/session/files.h"
+#include "bench/session/session_folder.h"
+#include "bench/session/text.h"
+#include "tests/system/system_test_support.h"
+
+namespace todbench::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+class Replays : public ::testing::Test {
+ protected:
+  Ended run(const std::vector<std::string>& arguments) {
+    ChildOptions options;
+    options.folder = folder_.path();
+    return todbench(arguments, options);
+  }
+  std::filesystem::path at(const std::string& name) const { return folder_.path() / name; }
+  void write(const std::string& name, const std::string& text) { folder_.write(name, text); }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(Replays, OfASessionHaveTheSameTrialsAndFitsBitForBit) {
+  write("plan.toml",
+        small_measurement(4, "nuc_interval_s = 0.2\nnuc_wait_s = 0.05\n[measurement]\nrecord_frames = true\n"));
+  ASSERT_TRUE(completed(run({"measure", "./plan.toml", "--out", "m"})));
+
+  const Ended ended = run({"replay", "m", "--out", "r", "--json"});
+
+  EXPECT_TRUE(completed(ended)) << ended.err;
+  const Json json = one_object(ended);
+  EXPECT_EQ(json["same_trials"], true);
+  EXPECT_EQ(json["same_fits"], true);
+  for (const char* file : {"trials.csv", "trials_simulated.csv", "fits.json", "curve.csv", "comparison.json"}) {
+    EXPECT_TRUE(same_content(at("m") / file, at("r") / file)) << file;
+  }
+  expect_whole_session(at("m"), "complete");
+  expect_whole_session(at("r"), "complete");
+  EXPECT_TRUE(std::filesystem::exists(at("m") / "frames" / "camera.todrec"));
+  EXPECT_FALSE(std::filesystem::exists(at("r") / "frames" / "camera.todrec"));
+}
+
+TEST_F(Replays, GoAsFarAsTheFramesOfASessionThatWasCutOff) {
+  write("plan.toml", small_measurement(8));
+  ASSERT_TRUE(completed(run({"measure", "./plan.toml", "--record-frames", "--out", "m"})));
+  // What a crash leaves: frames up to somewhere within one, no manifest, the state "running", trials up to then.
+  const auto frames = at("m") / "frames" / "camera.todrec";
+  std::filesystem::resize_file(frames, std::filesystem::file_size(frames) * 9 / 10);
+  std::filesystem::remove(at("m") / "manifest.json");
+  std::filesystem::remove(at("m") / "fits.json");
+  std::string provenance = *read_text_file(at("m") / "provenance.json");
+  provenance.replace(provenance.find("\"complete\""), 10, "\"running\"");
+  ASSERT_TRUE(write_file_atomically(at("m") / "provenance.json", provenance).has_value());
+
+  const Ended ended = run({"replay", "m", "--out", "r"});
+
+  EXPECT_EQ(ended.code, 5) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr("ends after"));
+  expect_whole_session(at("r"), "interrupted");
+  EXPECT_GT(rows_in(at("r") / "trials.csv"), 0u);
+}
+
+TEST_F(Replays, RefuseSessionsWithoutFramesAndFramesThatWereChanged) {
+  write("plan.toml", small_measurement(2));
+  ASSERT_TRUE(completed(run({"measure", "./plan.toml", "--out", "without"})));
+  ASSERT_TRUE(completed(run({"measure", "./plan.toml", "--record-frames", "--out", "changed"})));
+  const auto frames = at("changed") / "frames" / "camera.todrec";
+  std::filesystem::resize_file(frames, std::filesystem::file_size(frames) - 1);
+
+  expect_refused(run({"replay", "without"}), 2, "no frames were recorded in this session");
+  expect_refused(run({"replay", "changed"}), 2, "the session was changed");
+}
+
+TEST_F(Replays, OfASessionWhoseAnswersWereEditedAreReportedAsDifferent) {
+  write("plan.toml", small_measurement(2));
+  ASSERT_TRUE(completed(run({"measure", "./plan.toml", "--record-frames", "--out", "m"})));
+  auto trials = *read_trials(at("m") / "trials.csv");
+  trials.front().scores[0] += 1e-9;
+  {
+    auto writer = TrialsWriter::create(at("m") / "trials.csv");
+    for (const auto& trial : trials) ASSERT_TRUE(writer->append(trial).has_value());
+  }
+  ASSERT_TRUE(write_manifest(at("m")).has_value());
+
+  const Ended ended = run({"replay", "m", "--out", "r"});
+
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_THAT(ended.err, HasSubstr("answers differently"));
+}
+
+TEST_F(Replays, RecordedFramesAreACamera) {
+  const Ended recorded = run({"record", "sim:sc2000", "--frames", "12", "--out", "a.todrec", "--json"});
+  ASSERT_EQ(recorded.code, 0) << recorded.err;
+  EXPECT_EQ(one_object(recorded)["frames"], 12);
+
+  const Ended copied = run({"record", "file:a.todrec", "--out", "b.todrec", "--json"});
+
+  ASSERT_EQ(copied.code, 0) << copied.err;
+  EXPECT_EQ(one_object(copied)["frames"], 12);
+  EXPECT_EQ(one_object(copied)["lost"], 0);
+}
+
+TEST_F(Replays, RecordedFramesGoThroughTiffAndBack) {
+  ASSERT_EQ(run({"record", "sim:sc2000", "--frames", "5", "--out", "a.todrec"}).code, 0);
+  ASSERT_EQ(run({"record", "file:a.todrec", "--format", "tiff", "--out", "a.tif"}).code, 0);
+
+  const Ended back = run({"record", "file:a.tif?bits=14", "--format", "tiff", "--out", "b.tif", "--json"});
+
+  ASSERT_EQ(back.code, 0) << back.err;
+  EXPECT_EQ(one_object(back)["frames"], 5);
+  EXPECT_TRUE(same_content(at("a.tif"), at("b.tif")));
+}
+
+TEST_F(Replays, RecordRefusesAnExistingFileAndACameraThatIsNotThere) {
+  write("there.todrec", "precious");
+
+  expect_refused(run({"record", "sim:sc2000", "--frames", "1", "--out", "there.todrec"}), 2, "exists already");
+  expect_refused(run({"record", "file:absent.todrec"}), 4, "no such file");
+}
+
+}  // namespace
+}  // namespace todbench::testing
