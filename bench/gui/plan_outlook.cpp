@@ -131,7 +131,7 @@ PlanOutlook outlook(const Plan& plan, const std::vector<TargetPlate>& plates,
   out.duration_s = duration_s(plan.target, static_cast<double>(out.presentations),
                               plan.measurement.registration_frames + plan.measurement.contrast_frames, frame_rate_hz);
   for (const double contrast : plan.target.delta_t_k) {
-    ContrastOutlook entry{.delta_t_k = contrast, .s75_mrad = {}, .uncertainty_percent = {}};
+    PlannedContrast entry{.delta_t_k = contrast, .s75_mrad = {}, .uncertainty_percent = {}};
     for (const auto& e : expected) {
       if (e.delta_t_k != contrast || !e.s75_mrad) continue;
       entry.s75_mrad = e.s75_mrad;
@@ -150,7 +150,7 @@ int phases_for(Plan plan, const std::vector<TargetPlate>& plates, const std::vec
   const auto sure_enough = [&](int phases) {
     plan.target.phases = phases;
     const PlanOutlook seen = outlook(plan, plates, expected, 50);
-    return std::all_of(seen.contrasts.begin(), seen.contrasts.end(), [&](const ContrastOutlook& c) {
+    return std::all_of(seen.contrasts.begin(), seen.contrasts.end(), [&](const PlannedContrast& c) {
       return !c.uncertainty_percent || *c.uncertainty_percent <= tolerance_percent;
     });
   };

@@ -26,7 +26,7 @@ struct ExpectedThreshold {
 /// The same as a curve without intervals.
 [[nodiscard]] TodCurve as_curve(const std::vector<ExpectedThreshold>& expected);
 
-struct ContrastOutlook {
+struct PlannedContrast {
   double delta_t_k = 0;
   std::optional<double> s75_mrad;
   std::optional<double> uncertainty_percent;  ///< half width of the 95 % interval of S75, relative
@@ -35,7 +35,7 @@ struct ContrastOutlook {
 struct PlanOutlook {
   std::uint64_t presentations = 0, trials = 0;
   double duration_s = 0;  ///< of the measurement: changes of the target and frames; without the twin
-  std::vector<ContrastOutlook> contrasts;
+  std::vector<PlannedContrast> contrasts;
   /// The largest of the contrasts; nothing when one has no threshold.
   [[nodiscard]] std::optional<double> uncertainty_percent() const;
 };
