@@ -6,8 +6,8 @@
 
 #include "bench/report/report.h"
 #include "bench/run/experiment_inputs.h"
-#include "bench/run/recorded_bench.h"
 #include "bench/run/observed_source.h"
+#include "bench/run/recorded_bench.h"
 #include "bench/run/report_data.h"
 #include "sim_devices/prediction/contrast_response.h"
 #include "sim_devices/prediction/direct_estimate.h"
