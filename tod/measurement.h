@@ -55,22 +55,17 @@ struct Interruption {
   bool operator==(const Interruption&) const = default;
 };
 
-/// Registration and contrast of one set-up (plate and mounting), for the report.
-struct SetUpRecord {
-  std::string plate;
-  Mounting mounting = Mounting::identity;
-  Registration registration;
-};
+struct SetUpRecord;
 
 /// What the run says while it goes on. Called from the measuring thread; a slow listener slows the measurement, it
 /// never loses trials.
 struct MeasurementListener {
   std::function<void(const Trial&)> on_trial;
   /// After on_trial: what the observer saw; lent for the call.
-  std::function<void(const Trial&, const Patch&)> on_patch;
-  std::function<void(const SetUpRecord&)> on_set_up;
+  std::function<void(const Trial&, const Patch&)> on_patch{};
+  std::function<void(const SetUpRecord&)> on_set_up{};
   /// Asked before every presentation and again while it says true; may take a tenth of a second to answer.
-  std::function<bool()> paused;
+  std::function<bool()> paused{};
   std::function<void(std::size_t done, std::size_t planned)> on_progress;
   std::function<void(const std::string& sentence)> on_note;
   std::function<void(const RejectedFrame&)> on_rejected{};  ///< every frame that was not used, with the reason
@@ -79,6 +74,13 @@ struct MeasurementListener {
   std::function<Result<void>(const Error& why, std::stop_token stop)> on_lost{};
   /// The plate was found again after a loss, and the presentation was made.
   std::function<void()> on_resumed{};
+};
+
+/// Registration and contrast of one set-up (plate and mounting), for the report.
+struct SetUpRecord {
+  std::string plate;
+  Mounting mounting = Mounting::identity;
+  Registration registration;
 };
 
 struct MeasurementResult {

@@ -161,8 +161,10 @@ Result<std::vector<StagePicture>> chain_pictures(const ChainOptions& options) {
   const Setting& s = *setting;
   const double per_pitch = s.sensor.microscan;
   const SensorPlan& plan = s.effects;
-  const cv::Mat1d samples =
-      modelled(s, without(plan, {Effect::temporal_noise, Effect::fixed_pattern, Effect::quantisation}), options);
+  cv::Mat1d samples;
+  SensorModel(s.sensor, plan, Accuracy::normal(), options.seed)
+      .unit_signal(s.scene)
+      ->convertTo(samples, CV_64F, options.delta_t_k);
   const cv::Mat1d noisy = modelled(s, without(plan, {Effect::quantisation}), options);
   const cv::Mat1d quantised = modelled(s, plan, options);
   const double k = options.delta_t_k;

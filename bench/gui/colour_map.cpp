@@ -77,7 +77,7 @@ LevelSpan automatic_level(const cv::Mat1w& counts, double least_span) {
     }
     return 65535.0;
   };
-  LevelSpan level{quantile(0.005), quantile(0.995)};
+  LevelSpan level{quantile(0.0005), quantile(0.9995)};
   if (level.span() < least_span) {
     const double middle = level.level();
     level = {middle - least_span / 2, middle + least_span / 2};
@@ -130,10 +130,14 @@ std::vector<cv::Point> dead_pixels(const cv::Mat1w& counts, double limit_counts)
           if (x != 0 || y != 0) around[n++] = counts(row + y, column + x);
         }
       }
+      std::nth_element(around.begin(), around.begin() + 4, around.end());
+      const double middle = around[4];
+      const double excess = std::abs(counts(row, column) - middle);
       const auto [low, high] = std::minmax_element(around.begin(), around.end());
-      const double value = counts(row, column);
-      // Beyond every neighbour by the limit: a stuck pixel, never the edge of a blurred triangle.
-      if (value > *high + limit_counts || value < *low - limit_counts) out.emplace_back(column, row);
+      // The smallest triangle, blurred by optics and detector, leaves more than this in a neighbour; a stuck pixel
+      // nothing.
+      const double spread = std::max(*high - middle, middle - *low);
+      if (excess > limit_counts && spread < 0.05 * excess) out.emplace_back(column, row);
     }
   }
   return out;

@@ -22,7 +22,8 @@ struct LevelSpan {
   [[nodiscard]] double span() const { return high - low; }
 };
 
-/// From the 0.5 to the 99.5 % quantile, at least `least_span` wide: noise alone does not fill the map.
+/// From the 0.05 to the 99.95 % quantile (a few bad pixels do not count, the triangles of a plate do), at least
+/// `least_span` wide: noise alone does not fill the map.
 [[nodiscard]] LevelSpan automatic_level(const cv::Mat1w& counts, double least_span);
 
 /// Marks over a picture.
@@ -37,7 +38,8 @@ struct PictureMarks {
 /// Pixels per bin between the ends of `level`; those outside are in the first and last bin.
 [[nodiscard]] std::vector<int> histogram(const cv::Mat1w& counts, const LevelSpan& level, int bins);
 
-/// Pixels that are stuck: above or below all of their eight neighbours by more than `limit_counts`.
+/// Pixels that are stuck: more than `limit_counts` from the median of their eight neighbours, of which none shares in
+/// it by a twentieth.
 [[nodiscard]] std::vector<cv::Point> dead_pixels(const cv::Mat1w& counts, double limit_counts);
 
 }  // namespace todbench

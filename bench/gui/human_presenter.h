@@ -16,7 +16,7 @@ namespace todbench {
 struct HumanOptions {
   int per_size = 8;             ///< patches per contrast and size, or all where there are fewer
   std::optional<int> shown_ms;  ///< nothing: until answered
-  int magnification = 16;       ///< screen pixels per displayed sample: far above what display and eye resolve
+  int magnification = 24;       ///< screen pixels per displayed sample: far above what display and eye resolve
   std::uint64_t seed = 1;
 };
 

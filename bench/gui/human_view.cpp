@@ -22,6 +22,8 @@ HumanView::HumanView(Workbench& bench, HumanPresenter& presenter, MeasurePresent
   picture_ = new PictureView;
   picture_->setObjectName("humanPicture");
   picture_->setFocusPolicy(Qt::NoFocus);
+  // The grey of the surround of every patch: the eye adapts to one luminance.
+  picture_->set_surround(QColor(128, 128, 128));
   picture_->setToolTip({});
   layout->addWidget(picture_, 1);
   auto* panel = new QWidget;

@@ -14,7 +14,8 @@ constexpr int picture_period_ms = 40;
 constexpr double least_span_counts = 40;
 constexpr double dead_pixel_counts = 400;  ///< 4 K at 10 mK per count: fifty times the noise of a good camera
 constexpr int histogram_bins = 64;
-constexpr std::chrono::milliseconds frame_timeout{2000};
+/// An emulated camera computes a plate before its first exposure; on a busy machine that takes seconds.
+constexpr std::chrono::milliseconds frame_timeout{6000};
 
 Result<void> show_first_state(const Plan& plan, const std::vector<TargetPlate>& plates, Target& target,
                               const std::stop_token& stop) {

@@ -31,7 +31,7 @@ QIcon badge(DeviceHealth health) {
       painter.drawEllipse(3, 3, 10, 10);
       break;
     case DeviceHealth::in_use:
-      painter.setPen(QPen(QColor(0, 114, 178), 3));
+      painter.setPen(QPen(QColor(230, 159, 0), 3));
       painter.drawEllipse(4, 4, 8, 8);
       break;
     case DeviceHealth::lost:
@@ -66,6 +66,8 @@ LookView::LookView(Workbench& bench, LookPresenter& presenter, QWidget* parent)
   layout->addLayout(middle, 1);
   layout->addWidget(display_panel());
   connect(&bench_, &Workbench::devices_changed, this, &LookView::list_devices);
+  // Queued: the tree may be what the device was selected with.
+  connect(&bench_, &Workbench::device_selected, this, &LookView::list_devices, Qt::QueuedConnection);
   connect(&bench_, &Workbench::activity_changed, this, &LookView::show_activity);
   connect(&presenter_, &LookPresenter::updated, this, &LookView::show_frame);
   connect(picture_, &PictureView::hovered, this, &LookView::show_reading);
@@ -83,6 +85,7 @@ QWidget* LookView::device_panel() {
   devices_->setObjectName("deviceTree");
   devices_->setHeaderHidden(true);
   devices_->setRootIsDecorated(false);
+  devices_->setIndentation(10);
   devices_->setAccessibleName("Cameras");
   layout->addWidget(devices_, 1);
   camera_ = hint_label();

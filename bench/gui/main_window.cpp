@@ -162,6 +162,7 @@ void MainWindow::connect_parts() {
     show_state();
   });
   connect(&bench_, &Workbench::device_selected, this, &MainWindow::show_state);
+  connect(&bench_, &Workbench::devices_changed, this, &MainWindow::show_state);
   connect(retry_, &QPushButton::clicked, this, [this] {
     message_->hide();
     if (last_activity_ == Activity::measuring) measure_.start();

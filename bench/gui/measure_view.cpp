@@ -118,18 +118,17 @@ QWidget* MeasureView::log_panel() {
   auto* panel = new QWidget;
   auto* layout = new QHBoxLayout(panel);
   layout->setContentsMargins(0, 0, 0, 0);
-  log_ =
-      plain_table({"ΔT (K)", "Size (mrad)", "Truth", "Answer", "up", "right", "down", "left", "Triangle"}, "trialLog");
-  const std::vector<int> widths{58, 76, 50, 58, 54, 54, 54, 54};
+  log_ = plain_table({"ΔT (K)", "S (mrad)", "Truth", "Answer", "up", "right", "down", "left", "Triangle"}, "trialLog");
+  const std::vector<int> widths{52, 56, 46, 60, 40, 40, 42, 40};
   for (std::size_t i = 0; i < widths.size(); ++i) log_->setColumnWidth(static_cast<int>(i), widths[i]);
   layout->addWidget(log_, 1);
   auto* side = new QVBoxLayout;
   judged_ = new PictureView;
   judged_->setObjectName("judgedPatch");
   judged_->set_placeholder("Patch");
-  judged_->setFixedSize(150, 150);
+  judged_->setFixedSize(130, 130);
   judged_text_ = hint_label("The patch of the answer that is selected, or of the last one");
-  judged_text_->setFixedWidth(150);
+  judged_text_->setFixedWidth(130);
   side->addWidget(judged_);
   side->addWidget(judged_text_);
   side->addStretch();
@@ -191,9 +190,9 @@ void MeasureView::show_log() {
   const auto& recent = presenter_.recent();
   for (std::size_t i = 0; i < std::min(shown, recent.size()); ++i) {
     const Trial& t = recent[i].trial;
-    QStringList row{QString::number(t.delta_t_k, 'f', 3), QString::number(t.size_mrad, 'f', 3),
+    QStringList row{QString::number(t.delta_t_k, 'f', 3), QString::number(t.size_mrad, 'f', 2),
                     text_of(to_string(t.truth)), text_of(to_string(t.answer)) + (t.correct() ? " ✓" : " ✗")};
-    for (const double score : t.scores) row << QString::number(score, 'f', 3);
+    for (const double score : t.scores) row << QString::number(score, 'f', 2);
     row << text_of(recent[i].curve == SessionCurve::main ? "" : "simulated: ") +
                QString::fromStdString(t.plate + ", " + t.triangle);
     rows << row;

@@ -42,6 +42,11 @@ void PictureView::set_placeholder(const QString& text) {
   update();
 }
 
+void PictureView::set_surround(const QColor& colour) {
+  surround_ = colour;
+  update();
+}
+
 void PictureView::set_zoom(double zoom) {
   zoom_ = zoom <= 0 ? 0 : std::clamp(zoom, least_zoom, largest_zoom);
   if (zoom_ == 0) shift_ = {};
@@ -67,9 +72,9 @@ QPoint PictureView::pixel_at(const QPointF& place) const {
 
 void PictureView::paintEvent(QPaintEvent* /*event*/) {
   QPainter painter(this);
-  painter.fillRect(rect(), palette().color(QPalette::Base));
+  painter.fillRect(rect(), surround_.value_or(palette().color(QPalette::Base)));
   if (image_.isNull()) {
-    painter.setPen(palette().color(QPalette::PlaceholderText));
+    painter.setPen(surround_ ? QColor(Qt::white) : palette().color(QPalette::PlaceholderText));
     painter.drawText(rect().adjusted(20, 20, -20, -20), Qt::AlignCenter | Qt::TextWordWrap, placeholder_);
     return;
   }

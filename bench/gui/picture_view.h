@@ -4,6 +4,7 @@
 #include <QImage>
 #include <QPolygonF>
 #include <QWidget>
+#include <optional>
 #include <vector>
 
 namespace todbench {
@@ -26,6 +27,8 @@ class PictureView final : public QWidget {
   [[nodiscard]] const std::vector<PictureOutline>& outlines() const { return outlines_; }
   /// Pixels with a ring round them.
   void set_rings(std::vector<QPoint> rings);
+  /// What surrounds a picture; default: the base colour of the theme.
+  void set_surround(const QColor& colour);
   /// What stands in place of a picture.
   void set_placeholder(const QString& text);
 
@@ -58,6 +61,7 @@ class PictureView final : public QWidget {
   std::vector<PictureOutline> outlines_;
   std::vector<QPoint> rings_;
   QString placeholder_;
+  std::optional<QColor> surround_;
   double zoom_ = 0;
   QPointF shift_;  ///< of the middle, in screen pixels
   QPointF dragged_from_;

@@ -6,6 +6,7 @@
 #include "bench/session/descriptions.h"
 #include "bench/session/plan_options.h"
 #include "sim_devices/prediction/direct_estimate.h"
+#include "tod/planning.h"
 #include "tod/test_pattern.h"
 
 namespace todbench {
@@ -31,26 +32,24 @@ double weibull_slope(const DirectPoint& point, double fallback) {
   return slope > 0.3 && slope < 30 ? slope : fallback;
 }
 
-/// Standard error of ln S75 from the expected information in (ln S75, ln slope).
-std::optional<double> se_ln_threshold(const std::vector<double>& sizes_mrad, double trials_per_size, double s75,
-                                      double slope) {
-  // psi = 1 - (1 - g) exp(-L (x/s)^b), L = ln((1 - g) / 0.25): 0.75 at x = s.
-  const double log_level = std::log((1 - chance) / 0.25);
-  double aa = 0, ab = 0, bb = 0;
-  for (const double size : sizes_mrad) {
-    const double ratio = std::pow(size / s75, slope);
-    const double tail = (1 - chance) * std::exp(-log_level * ratio);
-    const double psi = 1 - tail;
-    const double weight = trials_per_size / std::max(psi * (1 - psi), 1e-12);
-    const double by_threshold = -tail * log_level * ratio * slope;
-    const double by_slope = tail * log_level * ratio * slope * std::log(size / s75);
-    aa += weight * by_threshold * by_threshold;
-    ab += weight * by_threshold * by_slope;
-    bb += weight * by_slope * by_slope;
+/// Standard error of ln S75 with one presentation of every plate: that of many, scaled.
+std::optional<double> se_ln_once(const Plan& plan, const std::vector<double>& sizes_mrad, double s75, double slope) {
+  constexpr double many = 100;
+  std::vector<Level> totals;
+  for (const double size : sizes_mrad) totals.push_back({.size = size, .correct = 0, .total = many});
+  const FitOptions options = fit_options(plan);
+  const auto design = design_at(totals, options.form, s75, slope, options.fixed_lapse.value_or(0));
+  const auto expected = expected_fit(design, options);
+  if (!expected) return std::nullopt;
+  return expected->se_ln_threshold * std::sqrt(many * variance_inflation);
+}
+
+std::vector<double> sizes_of(const Plan& plan, const std::vector<TargetPlate>& plates) {
+  std::vector<double> sizes_mrad;
+  for (const auto& plate : plates) {
+    for (const auto& t : plate.triangles) sizes_mrad.push_back(t.size_mm / plan.target.distance_m);
   }
-  const double determinant = aa * bb - ab * ab;
-  if (!(determinant > 1e-12 * aa * bb) || !(aa > 0)) return std::nullopt;
-  return std::sqrt(variance_inflation * bb / determinant);
+  return sizes_mrad;
 }
 
 double duration_s(const TargetPlan& target, double presentations, double frames_per_set_up, double frame_rate_hz) {
@@ -76,13 +75,15 @@ double duration_s(const TargetPlan& target, double presentations, double frames_
 Result<std::vector<ExpectedThreshold>> expected_thresholds(const Plan& plan, std::stop_token stop) {
   auto sensor = sensor_of(plan);
   if (!sensor) return tl::unexpected(sensor.error());
+  auto plates = plates_of(plan);
+  if (!plates) return tl::unexpected(plates.error());
   auto spec = load_observer(plan.observer);
   if (!spec) return tl::unexpected(spec.error());
   TemplateObserver observer(*spec, triangle_alternatives());
   const SensorPlan effects = full_plan(*sensor, plan.simulation.skip, plan.simulation.force);
   std::vector<ExpectedThreshold> out;
   for (const double contrast : plan.target.delta_t_k) {
-    ExpectedThreshold expected{.delta_t_k = contrast, .s75_mrad = {}};
+    ExpectedThreshold expected{.delta_t_k = contrast, .s75_mrad = {}, .se_ln_once = {}};
     const auto point =
         direct_estimate(*sensor, effects, observer, {std::abs(contrast)},
                         {.samples_per_pitch = sensor->microscan, .accuracy = Accuracy::draft(), .stop = stop});
@@ -90,6 +91,7 @@ Result<std::vector<ExpectedThreshold>> expected_thresholds(const Plan& plan, std
     if (point) {
       expected.s75_mrad = point->front().s75_pitch * sensor->ifov_mrad();
       expected.slope = weibull_slope(point->front(), expected.slope);
+      expected.se_ln_once = se_ln_once(plan, sizes_of(plan, *plates), *expected.s75_mrad, expected.slope);
     }
     out.push_back(expected);
   }
@@ -120,10 +122,7 @@ std::optional<double> PlanOutlook::uncertainty_percent() const {
 PlanOutlook outlook(const Plan& plan, const std::vector<TargetPlate>& plates,
                     const std::vector<ExpectedThreshold>& expected, double frame_rate_hz) {
   PlanOutlook out;
-  std::vector<double> sizes_mrad;
-  for (const auto& plate : plates) {
-    for (const auto& t : plate.triangles) sizes_mrad.push_back(t.size_mm / plan.target.distance_m);
-  }
+  const std::vector<double> sizes_mrad = sizes_of(plan, plates);
   const auto repeats = static_cast<std::uint64_t>(plan.target.mountings.size()) *
                        static_cast<std::uint64_t>(std::max(plan.target.phases, 0));
   const auto contrasts = static_cast<std::uint64_t>(plan.target.delta_t_k.size());
@@ -132,12 +131,13 @@ PlanOutlook outlook(const Plan& plan, const std::vector<TargetPlate>& plates,
   out.duration_s = duration_s(plan.target, static_cast<double>(out.presentations),
                               plan.measurement.registration_frames + plan.measurement.contrast_frames, frame_rate_hz);
   for (const double contrast : plan.target.delta_t_k) {
-    ContrastOutlook entry{.delta_t_k = contrast, .s75_mrad = {}, .uncertainty_percent = {}};
+    PlannedContrast entry{.delta_t_k = contrast, .s75_mrad = {}, .uncertainty_percent = {}};
     for (const auto& e : expected) {
       if (e.delta_t_k != contrast || !e.s75_mrad) continue;
       entry.s75_mrad = e.s75_mrad;
-      const auto se = se_ln_threshold(sizes_mrad, static_cast<double>(repeats), *e.s75_mrad, e.slope);
-      if (se) entry.uncertainty_percent = 100 * std::expm1(normal_95 * *se);
+      if (e.se_ln_once && repeats > 0)
+        entry.uncertainty_percent =
+            100 * std::expm1(normal_95 * *e.se_ln_once / std::sqrt(static_cast<double>(repeats)));
     }
     out.contrasts.push_back(entry);
   }
@@ -150,7 +150,7 @@ int phases_for(Plan plan, const std::vector<TargetPlate>& plates, const std::vec
   const auto sure_enough = [&](int phases) {
     plan.target.phases = phases;
     const PlanOutlook seen = outlook(plan, plates, expected, 50);
-    return std::all_of(seen.contrasts.begin(), seen.contrasts.end(), [&](const ContrastOutlook& c) {
+    return std::all_of(seen.contrasts.begin(), seen.contrasts.end(), [&](const PlannedContrast& c) {
       return !c.uncertainty_percent || *c.uncertainty_percent <= tolerance_percent;
     });
   };

@@ -16,6 +16,9 @@ struct ExpectedThreshold {
   double delta_t_k = 0;
   std::optional<double> s75_mrad;  ///< nothing: no size has a threshold at this contrast
   double slope = 2.5;              ///< Weibull
+  /// Of ln S75 for one presentation of every plate of the plan; it falls with the root of their number. Nothing where
+  /// the sizes on the plates do not determine it.
+  std::optional<double> se_ln_once;
 };
 
 /// By the direct estimate at draft accuracy: a second or so. Errors: as the loaders; `interrupted`.
@@ -23,7 +26,7 @@ struct ExpectedThreshold {
 /// The same as a curve without intervals.
 [[nodiscard]] TodCurve as_curve(const std::vector<ExpectedThreshold>& expected);
 
-struct ContrastOutlook {
+struct PlannedContrast {
   double delta_t_k = 0;
   std::optional<double> s75_mrad;
   std::optional<double> uncertainty_percent;  ///< half width of the 95 % interval of S75, relative
@@ -32,13 +35,12 @@ struct ContrastOutlook {
 struct PlanOutlook {
   std::uint64_t presentations = 0, trials = 0;
   double duration_s = 0;  ///< of the measurement: changes of the target and frames; without the twin
-  std::vector<ContrastOutlook> contrasts;
+  std::vector<PlannedContrast> contrasts;
   /// The largest of the contrasts; nothing when one has no threshold.
   [[nodiscard]] std::optional<double> uncertainty_percent() const;
 };
 
-/// Cheap enough to follow a slider. Uncertainty from the expected information of a Weibull function (chance 1/4) at the
-/// sizes on the plates, trials independent but for the inflation `variance_inflation` that clustered trials show.
+/// Cheap enough to follow a slider. Uncertainty of expected_fit(), widened by what clustered trials typically add.
 [[nodiscard]] PlanOutlook outlook(const Plan& plan, const std::vector<TargetPlate>& plates,
                                   const std::vector<ExpectedThreshold>& expected, double frame_rate_hz);
 

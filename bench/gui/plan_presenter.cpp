@@ -17,7 +17,8 @@ QString sentence(const Error& error) {
 
 /// Whether the expected thresholds of one plan hold for the other.
 bool same_thresholds(const Plan& a, const Plan& b) {
-  return a.target.delta_t_k == b.target.delta_t_k && a.observer == b.observer &&
+  return a.target.delta_t_k == b.target.delta_t_k && a.target.plates == b.target.plates &&
+         a.target.distance_m == b.target.distance_m && a.fit == b.fit && a.observer == b.observer &&
          a.simulation.sensor == b.simulation.sensor && a.simulation.microscan == b.simulation.microscan &&
          a.simulation.skip == b.simulation.skip && a.simulation.force == b.simulation.force;
 }

@@ -284,10 +284,13 @@ QWidget* PlanView::outlook_panel() {
   tolerance_->setRange(0, slider_steps);
   tolerance_->setAccessibleName("Tolerance of the 75 % size");
   tolerance_text_ = new QLabel;
-  line->addWidget(new QLabel("Tolerance of S75"));
+  line->addWidget(new QLabel("Tolerance"));
   line->addWidget(tolerance_, 1);
   line->addWidget(tolerance_text_);
   layout->addLayout(line);
+  layout->addWidget(
+      hint_label("Moving it sets the number of phases so that the 95 % interval is this narrow, and what "
+                 "the simulation may be wrong by."));
   cost_ = new QLabel;
   cost_->setObjectName("planCost");
   cost_->setWordWrap(true);

@@ -192,9 +192,8 @@ void PlotView::draw() {
   ground.setAlpha(215);
   legend->setBrush(ground);
   legend->setBorderPen(QPen(colours.grid));
-  const bool tod = plot_.y.scale == AxisScale::logarithmic;
-  axisRect()->insetLayout()->setInsetAlignment(
-      0, (tod ? Qt::AlignLeft : Qt::AlignRight) | (tod ? Qt::AlignTop : Qt::AlignBottom));
+  // Both kinds of curve rise to the right: the corner below them is free.
+  axisRect()->insetLayout()->setInsetAlignment(0, Qt::AlignRight | Qt::AlignBottom);
   replot(QCustomPlot::rpQueuedReplot);
 }
 

@@ -56,6 +56,7 @@ ReportView::ReportView(SessionPresenter& presenter, QWidget* parent) : QWidget(p
   splitter->addWidget(session_panel());
   splitter->setStretchFactor(0, 2);
   splitter->setStretchFactor(1, 5);
+  splitter->setSizes({360, 800});
   layout->addWidget(splitter);
   connect(&presenter_, &SessionPresenter::listed, this, &ReportView::list_sessions);
   connect(&presenter_, &SessionPresenter::opened, this, &ReportView::show_session);
@@ -71,9 +72,9 @@ QWidget* ReportView::browser() {
   auto* layout = new QVBoxLayout(panel);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(title_label("Sessions"));
-  sessions_ = plain_table({"Started (UTC)", "Session", "State", "Unit"}, "sessionTable");
+  sessions_ = plain_table({"Started (UTC)", "Session", "State", "Unit under test"}, "sessionTable");
   sessions_->setColumnWidth(0, 135);
-  sessions_->setColumnWidth(1, 150);
+  sessions_->setColumnWidth(1, 215);
   layout->addWidget(sessions_, 1);
   auto* buttons = new QHBoxLayout;
   auto* open = primary_button("Open", "openSession");
@@ -122,8 +123,8 @@ QWidget* ReportView::session_panel() {
   limits_ = plain_table({"Limit", "Result [95 %]", "Verdict", "Reason"}, "limitTable");
   ratios_->setColumnWidth(1, 160);
   ratios_->setColumnWidth(2, 160);
-  limits_->setColumnWidth(0, 250);
-  limits_->setColumnWidth(1, 170);
+  limits_->setColumnWidth(0, 230);
+  limits_->setColumnWidth(1, 200);
   for (QTableWidget* table : {ratios_, limits_}) {
     table->setMaximumHeight(132);
     layout->addWidget(table);

@@ -41,7 +41,7 @@ QString style_sheet(Theme theme) {
   const bool dark = theme == Theme::dark;
   return QString(R"(
     QListWidget#navigation { border: 0; background: %1; outline: 0; padding-top: 6px; }
-    QListWidget#navigation::item { padding: 9px 10px; }
+    QListWidget#navigation::item { padding: 9px 10px; border: 0; color: %8; }
     QListWidget#navigation::item:selected { background: %2; color: white; }
     QFrame#messageBar { background: %3; border: 1px solid %4; border-radius: 3px; }
     QFrame#messageBar QLabel { color: %5; }
@@ -53,7 +53,7 @@ QString style_sheet(Theme theme) {
   )")
       .arg(dark ? "#232529" : "#e6e8ec", dark ? "#2d6eaa" : "#0072b2", dark ? "#4a3420" : "#fdf0dc",
            dark ? "#b5702a" : "#d55e00", dark ? "#f2e6d8" : "#402000", dark ? "#b0b3b8" : "#55585e",
-           dark ? "#55585e" : "#a8abb0");
+           dark ? "#55585e" : "#a8abb0", dark ? "#e6e6e6" : "#1c1c1e");
 }
 
 }  // namespace todbench

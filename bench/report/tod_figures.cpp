@@ -182,7 +182,14 @@ Plot tod_figure(const NamedCurve& first, const NamedCurve& second, std::span<con
 Plot with_acuity_axis(Plot plot, AxisScale scale) {
   plot.x.scale = scale;
   plot.x.low = 0;
-  if (scale == AxisScale::linear) return plot;
+  if (scale == AxisScale::linear) {
+    // An interval that is far longer than its value must not squeeze the others into a corner.
+    Range points;
+    for (const PlotSeries& series : plot.series)
+      for (const PlotPoint& point : series.points) points.include(point.x);
+    if (!points.empty()) plot.x.high = std::min(plot.x.high, 2.5 * points.high);
+    return plot;
+  }
   Range acuities;
   for (const PlotSeries& series : plot.series) {
     for (const PlotPoint& point : series.points) {

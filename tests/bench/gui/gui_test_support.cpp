@@ -1,0 +1,53 @@
+#include "tests/bench/gui/gui_test_support.h"
+
+#include <QElapsedTimer>
+
+namespace todbench::testing {
+
+bool wait_until(const std::function<bool()>& so, int patience_ms) {
+  QElapsedTimer waited;
+  waited.start();
+  while (!so() && waited.elapsed() < patience_ms) {
+    // The loop sleeps until there is an event, at most as long as this timer.
+    QEventLoop loop;
+    QTimer::singleShot(10, &loop, &QEventLoop::quit);
+    loop.exec();
+  }
+  return so();
+}
+
+Plan small_plan(Plan plan, int phases) {
+  plan.target.plates = {"tcat-a"};
+  plan.target.mountings = {Mounting::identity};
+  plan.target.delta_t_k = {16.9, 0.23};
+  plan.target.phases = phases;
+  plan.simulation.phases = phases;
+  plan.measurement.registration_frames = 8;
+  plan.measurement.contrast_frames = 4;
+  plan.simulation.accuracy = "draft";
+  return plan;
+}
+
+ShownWindow::ShownWindow(const QString& device, int phases) : window_(folder_.path(), Memory::forget) {
+  EXPECT_TRUE(window_.bench().select_device(device));
+  window_.bench().set_plan(small_plan(window_.bench().plan(), phases));
+  window_.resize(1366, 700);
+  window_.show();
+  EXPECT_TRUE(QTest::qWaitForWindowExposed(&window_));
+}
+
+void ShownWindow::click(const char* name) {
+  auto& button = part<QPushButton>(name);
+  ASSERT_TRUE(button.isVisible()) << name;
+  ASSERT_TRUE(button.isEnabled()) << name;
+  QTest::mouseClick(&button, Qt::LeftButton);
+}
+
+void ShownWindow::measure() {
+  window_.show_view(View::measure);
+  click("startMeasuring");
+  ASSERT_TRUE(wait_until([&] { return window_.measure().state() == RunState::idle; }));
+  ASSERT_TRUE(window_.measure().outcome()) << window_.measure().phase().toStdString();
+}
+
+}  // namespace todbench::testing

@@ -1,0 +1,108 @@
+// A person at the window, by synthetic keys.
+#include <QLabel>
+#include <QSpinBox>
+#include <QStackedWidget>
+
+#include "bench/gui/human_view.h"
+#include "bench/gui/picture_view.h"
+#include "bench/session/trials_csv.h"
+#include "tests/bench/gui/gui_test_support.h"
+
+namespace todbench::testing {
+namespace {
+
+constexpr std::array keys{Qt::Key_Up, Qt::Key_Right, Qt::Key_Down, Qt::Key_Left};
+
+TEST(HumanObserver, LeavesItsAnswersBesideTheModelsInTheSameSession) {
+  ShownWindow window("sim:sc2000", 3);
+  window.measure();
+  window->show_view(View::human);
+  window.part<QSpinBox>("humanPerSize").setValue(2);
+
+  window.click("beginHuman");
+  HumanView* view = window->findChild<HumanView*>();
+  ASSERT_NE(view, nullptr);
+  // 2 contrasts, 5 sizes, 2 of each.
+  ASSERT_EQ(window->human().planned(), 20u);
+  std::vector<Apex> pressed;
+  for (std::size_t i = 0; i < 20; ++i) {
+    EXPECT_FALSE(window.part<PictureView>("humanPicture").image().isNull());
+    QTest::keyClick(view, keys[i % 4]);
+    pressed.push_back(all_apexes[i % 4]);
+  }
+
+  EXPECT_EQ(window->human().state(), HumanState::finished);
+  EXPECT_EQ(window->human().problem().toStdString(), "");
+  const auto folder = window->measure().folder();
+  const auto answers = read_trials(folder / "trials_human.csv");
+  ASSERT_TRUE(answers) << answers.error().message;
+  ASSERT_EQ(answers->size(), 20u);
+  for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ((*answers)[i].answer, pressed[i]);
+  const auto record = read_human(folder);
+  ASSERT_TRUE(record && *record) << (record ? "" : record.error().message);
+  EXPECT_EQ((*record)->curve.observer, "human");
+  const auto changed = verify_manifest(folder);
+  ASSERT_TRUE(changed) << changed.error().message;
+  EXPECT_THAT(*changed, ::testing::IsEmpty());
+  EXPECT_TRUE(wait_until([&] { return window->sessions().current() && window->sessions().current()->human; }));
+}
+
+TEST(HumanObserver, SeesThePatchesOfTheCameraInRandomOrderAndNothingElse) {
+  ShownWindow window("sim:sc2000", 2);
+  window.measure();
+  const auto& trials = window->measure().trials();
+
+  const auto once = patches_for_a_person(trials, {.per_size = 4, .shown_ms = {}, .seed = 1});
+  const auto again = patches_for_a_person(trials, {.per_size = 4, .shown_ms = {}, .seed = 1});
+  const auto other = patches_for_a_person(trials, {.per_size = 4, .shown_ms = {}, .seed = 2});
+
+  ASSERT_EQ(once.size(), 40u);
+  const auto order = [](const std::vector<JudgedTrial>& patches) {
+    std::vector<std::pair<std::int64_t, std::string>> out;
+    for (const auto& p : patches) out.emplace_back(p.trial.presentation, p.trial.triangle);
+    return out;
+  };
+  EXPECT_EQ(order(once), order(again));
+  EXPECT_NE(order(once), order(other));
+  auto sorted = order(once);
+  std::sort(sorted.begin(), sorted.end());
+  EXPECT_EQ(std::unique(sorted.begin(), sorted.end()), sorted.end()) << "no patch twice";
+}
+
+TEST(HumanObserver, SeesTheSameGreyOfTheSurroundWhateverTheAnswer) {
+  ShownWindow window("sim:sc2000", 1);
+  window.measure();
+
+  for (const auto& judged : window->measure().trials()) {
+    const QImage picture = picture_for_a_person(judged, 4);
+    EXPECT_EQ(picture.width(), 4 * judged.patch_k.cols);
+    // The median of the patch is the middle of the grey scale; noise of 0.07 K moves a corner at the lowest contrast.
+    if (judged.trial.delta_t_k < 10) continue;
+    EXPECT_NEAR(qGray(picture.pixel(0, 0)), 128, 6);
+  }
+}
+
+TEST(HumanObserver, HidesThePatchWhenItsTimeIsOverAndStillTakesTheAnswer) {
+  ShownWindow window("sim:sc2000", 1);
+  window.measure();
+
+  ASSERT_EQ(window->human()
+                .begin(window->measure().trials(), window->bench().plan(), window->measure().folder(),
+                       {.per_size = 1, .shown_ms = 50, .seed = 1})
+                .toStdString(),
+            "");
+  ASSERT_TRUE(wait_until([&] { return window->human().state() == HumanState::hidden; }));
+  window->human().answer(Apex::left);
+
+  EXPECT_EQ(window->human().done(), 1u);
+}
+
+TEST(HumanObserver, HasNothingToJudgeBeforeAMeasurement) {
+  ShownWindow window("sim:sc2000", 1);
+  window->show_view(View::human);
+
+  EXPECT_FALSE(window.part<QPushButton>("beginHuman").isEnabled());
+}
+
+}  // namespace
+}  // namespace todbench::testing

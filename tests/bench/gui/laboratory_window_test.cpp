@@ -1,0 +1,142 @@
+// The real window with the emulated laboratory: a GigE camera at 50 Hz, instruments on the network.
+#include <QLabel>
+#include <QListWidget>
+#include <QTableWidget>
+#include <QTreeWidget>
+
+#include "bench/gui/picture_view.h"
+#include "bench/gui/plot_view.h"
+#include "tests/bench/gui/gui_test_support.h"
+#include "tests/bench/gui/watched_application.h"
+
+namespace todbench::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+void click_item(QTreeWidget& tree, const QString& id) {
+  for (QTreeWidgetItemIterator item(&tree); *item != nullptr; ++item) {
+    if ((*item)->data(0, Qt::UserRole).toString() != id) continue;
+    QTest::mouseClick(tree.viewport(), Qt::LeftButton, {}, tree.visualItemRect(*item).center());
+    return;
+  }
+  FAIL() << "no device " << id.toStdString();
+}
+
+TEST(LaboratoryWindow, ThreeClicksToACurve) {
+  ShownWindow window("sim:sc2000", 2);
+
+  click_item(window.part<QTreeWidget>("deviceTree"), emulated_laboratory);
+  auto& navigation = window.part<QListWidget>("navigation");
+  QTest::mouseClick(navigation.viewport(), Qt::LeftButton, {},
+                    navigation.visualItemRect(navigation.item(static_cast<int>(View::measure))).center());
+  window.click("startMeasuring");
+  ASSERT_TRUE(wait_until([&] { return window->measure().state() == RunState::idle; }));
+
+  ASSERT_TRUE(window->measure().outcome()) << window->measure().phase().toStdString();
+  const auto session = read_session(window->measure().folder());
+  ASSERT_TRUE(session) << session.error().message;
+  EXPECT_TRUE(session->complete());
+  ASSERT_TRUE(session->provenance.camera);
+  EXPECT_EQ(session->provenance.camera->transport, "GigE Vision");
+  EXPECT_TRUE(session->comparison);
+  EXPECT_EQ(window.part<PlotView>("todPlot").points("measured").size(), 2);
+}
+
+TEST(LaboratoryWindow, AlignsThenMeasuresThenComparesAndWritesThePdf) {
+  ShownWindow window(emulated_laboratory, 2);
+
+  window->show_view(View::align);
+  window.click("startAligning");
+  ASSERT_TRUE(wait_until([&] { return window->align().looks() >= 2; }));
+  const Alignment alignment = *window->align().alignment();
+  ASSERT_TRUE(alignment.registration);
+  EXPECT_LT(alignment.registration->residual_px, 0.1);
+  EXPECT_NEAR(alignment.registration->rotation_deg, 0.4, 0.05);  // as the laboratory is set up
+  EXPECT_THAT(alignment.remarks, ::testing::IsEmpty());
+  EXPECT_EQ(alignment.triangles.size(), 20u);
+  // The edge of the plate, and outline and window of every triangle.
+  EXPECT_EQ(window.part<PictureView>("alignPicture").outlines().size(), 41u);
+  window.click("startAligning");
+  ASSERT_TRUE(wait_until([&] { return window->bench().activity() == Activity::idle; }));
+  window.measure();
+  ASSERT_TRUE(wait_until([&] { return window->sessions().current().has_value(); }));
+  window->show_view(View::report);
+  EXPECT_EQ(window.part<QTableWidget>("ratioTable").rowCount(), 2);
+  window.click("exportReports");
+  ASSERT_TRUE(wait_until([&] { return !window.part<QLabel>("exportedFiles").text().isEmpty(); }));
+
+  EXPECT_TRUE(std::filesystem::exists(window->measure().folder() / "report.pdf"));
+  EXPECT_THAT(window.part<QLabel>("sessionTitle").text().toStdString(), HasSubstr("TB0001"));
+}
+
+TEST(LaboratoryWindow, SaysThatTheCameraIsGoneAndMeasuresAgainWhenAskedTo) {
+  ShownWindow window(emulated_laboratory, 1000);
+  window->show_view(View::measure);
+  window.click("startMeasuring");
+  ASSERT_TRUE(wait_until([&] { return window->measure().trials().size() >= 40; }));
+
+  window->bench().switch_emulated_camera_off();
+  ASSERT_TRUE(wait_until([&] { return window->measure().state() == RunState::idle; }));
+
+  const auto lost = window->measure().folder();
+  ASSERT_TRUE(wait_until([&] { return window.part<QLabel>("messageText").isVisible(); }));
+  EXPECT_THAT(window.part<QLabel>("messageText").text().toStdString(), HasSubstr("camera"));
+  EXPECT_EQ(QApplication::activeModalWidget(), nullptr) << "a message, not a dialog";
+  EXPECT_EQ(window->bench().devices().front().health, DeviceHealth::lost);
+  const auto session = read_session(lost);
+  ASSERT_TRUE(session) << session.error().message;
+  EXPECT_EQ(session->provenance.state, SessionState::interrupted);
+  EXPECT_GE(session->trials.size(), 40u);
+  window.click("retry");
+  EXPECT_TRUE(wait_until([&] { return window->measure().trials().size() >= 20; })) << "the way back";
+  window.click("abortMeasuring");
+  EXPECT_TRUE(wait_until([&] { return window->bench().activity() == Activity::idle; }));
+}
+
+TEST(LaboratoryWindow, KeepsTheStreamWholeDuringAPause) {
+  ShownWindow window(emulated_laboratory, 1000);
+  window->show_view(View::measure);
+  window.click("startMeasuring");
+  ASSERT_TRUE(wait_until([&] { return window->measure().trials().size() >= 40; }));
+
+  window.click("pauseMeasuring");
+  // Far more frames than the queue of the camera holds.
+  QTest::qWait(3000);
+  const auto before = window->measure().trials().size();
+  window.click("pauseMeasuring");
+  ASSERT_TRUE(wait_until([&] { return window->measure().trials().size() >= before + 40; }))
+      << window.part<QLabel>("messageText").text().toStdString();
+  window.click("abortMeasuring");
+  ASSERT_TRUE(wait_until([&] { return window->bench().activity() == Activity::idle; }));
+
+  const auto session = read_session(window->measure().folder());
+  ASSERT_TRUE(session && session->provenance.run) << "ended with a run";
+  EXPECT_EQ(session->provenance.run->ended_by, "stopped on request");
+}
+
+TEST(LaboratoryWindow, NeverKeepsItsThreadForFiftyMillisecondsWhileItMeasures) {
+#ifdef TODBENCH_SANITIZED
+  GTEST_SKIP() << "sanitizers make everything slower by a factor that says nothing";
+#endif
+  ShownWindow window(emulated_laboratory, 8);
+  // Fonts and styles are loaded when a view is first shown.
+  for (const View view : all_views) {
+    window->show_view(view);
+    QApplication::processEvents();
+  }
+  window->show_view(View::look);
+  window.click("startLooking");
+  ASSERT_TRUE(wait_until([&] { return window->look().latest() && window->look().latest()->counters.good > 25; }));
+  window.click("startLooking");
+  ASSERT_TRUE(wait_until([&] { return window->bench().activity() == Activity::idle; }));
+
+  WatchedApplication::reset();
+  window.measure();
+
+  EXPECT_LT(WatchedApplication::longest_ms(), 50) << WatchedApplication::longest_event().toStdString();
+  RecordProperty("longest_ms", std::to_string(WatchedApplication::longest_ms()));
+}
+
+}  // namespace
+}  // namespace todbench::testing

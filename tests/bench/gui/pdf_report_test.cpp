@@ -1,0 +1,113 @@
+// The PDF, read back by other programs.
+#include "bench/gui/pdf_report.h"
+
+#include <QImage>
+#include <QProcess>
+#include <QRegularExpression>
+#include <QTextDocument>
+
+#include "tests/bench/gui/gui_test_support.h"
+
+namespace todbench::testing {
+namespace {
+
+/// Words without white space: lines break elsewhere on a page.
+QString squeezed(QString text) {
+  static const QRegularExpression blanks("[\\s\\x{00ad}\\x{2060}]+");
+  // A font may draw "ff" as one glyph, which is read back as one character.
+  text = text.normalized(QString::NormalizationForm_KC);
+  return text.replace(QChar(0xa0), ' ').remove(blanks);
+}
+
+QString output_of(const QString& program, const QStringList& arguments) {
+  QProcess process;
+  process.start(program, arguments);
+  EXPECT_TRUE(process.waitForStarted()) << program.toStdString() << " of poppler-utils is needed";
+  EXPECT_TRUE(process.waitForFinished(60'000));
+  EXPECT_EQ(process.exitCode(), 0) << process.readAllStandardError().toStdString();
+  return QString::fromUtf8(process.readAllStandardOutput());
+}
+
+/// The cells of every table of the page, as plain text.
+QStringList cells_of(const std::string& html) {
+  static const QRegularExpression cell("<t[dh][^>]*>(.*?)</t[dh]>", QRegularExpression::DotMatchesEverythingOption);
+  QStringList out;
+  auto found = cell.globalMatch(QString::fromStdString(html));
+  while (found.hasNext()) {
+    QTextDocument text;
+    text.setHtml(found.next().captured(1));
+    out << text.toPlainText();
+  }
+  return out;
+}
+
+class PdfReport : public ::testing::Test {
+ protected:
+  PdfReport() {
+    window_.measure();
+    auto opened = read_opened_session(window_->measure().folder());
+    EXPECT_TRUE(opened) << opened.error().message;
+    report_ = opened->report;
+    // A simulated camera has a serial number like any other.
+    EXPECT_TRUE(report_.camera && !report_.camera->serial.empty());
+    report_.camera->serial = "TB-0815";
+    file_ = window_.sessions() / "report.pdf";
+    const auto written = write_pdf_report(report_, file_);
+    EXPECT_TRUE(written) << written.error().message;
+  }
+  ShownWindow window_{"sim:sc2000", 3};
+  ReportData report_;
+  std::filesystem::path file_;
+};
+
+TEST_F(PdfReport, HoldsSerialNumberVerdictAndEveryValueOfEveryTable) {
+  const QString text = squeezed(output_of("pdftotext", {"-layout", QString::fromStdString(file_.string()), "-"}));
+  // In reading order cells of a row that break into lines stay together.
+  const QString raw = squeezed(output_of("pdftotext", {"-raw", QString::fromStdString(file_.string()), "-"}));
+
+  EXPECT_TRUE(text.contains("TB-0815"));
+  const QString verdict = report_verdict(report_) == ReportVerdict::pass   ? "PASS"
+                          : report_verdict(report_) == ReportVerdict::fail ? "FAIL"
+                                                                           : "INCONCLUSIVE";
+  EXPECT_TRUE(raw.contains(verdict)) << verdict.toStdString();
+  const QStringList cells = cells_of(render_report(report_));
+  EXPECT_GT(cells.size(), 100);
+  for (const QString& cell : cells)
+    EXPECT_TRUE(raw.contains(squeezed(cell)) || text.contains(squeezed(cell))) << cell.toStdString();
+}
+
+TEST_F(PdfReport, HasItsFiguresAsLinesAndNoPictures) {
+  const QString images = output_of("pdfimages", {"-list", QString::fromStdString(file_.string())});
+
+  // Two lines of heading and nothing below.
+  EXPECT_EQ(images.trimmed().split('\n').size(), 2) << images.toStdString();
+  const QString text = output_of("pdftotext", {"-raw", QString::fromStdString(file_.string()), "-"});
+  for (const char* label : {"Acuity 1/S", "Size S (mrad)", "25 % (chance)", "measured", "simulated"})
+    EXPECT_TRUE(text.contains(label)) << label;
+}
+
+TEST_F(PdfReport, KeepsEverythingInsideTheMarginsOfEveryPage) {
+  const QString stem = QString::fromStdString((window_.sessions() / "page").string());
+  (void)output_of("pdftoppm", {"-r", "50", "-png", QString::fromStdString(file_.string()), stem});
+
+  int pages = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(window_.sessions())) {
+    if (entry.path().extension() != ".png") continue;
+    ++pages;
+    const QImage page(QString::fromStdString(entry.path().string()));
+    ASSERT_FALSE(page.isNull());
+    // 8 mm of the 16 mm margin at 50 dpi.
+    const int margin = 15;
+    for (int y = 0; y < page.height(); ++y) {
+      for (int x = 0; x < page.width(); ++x) {
+        const bool inside = x >= margin && y >= margin && x < page.width() - margin && y < page.height() - margin;
+        if (inside) continue;
+        ASSERT_GT(qGray(page.pixel(x, y)), 250) << entry.path() << " at " << x << ", " << y;
+      }
+    }
+  }
+  EXPECT_GE(pages, 3);
+}
+
+}  // namespace
+}  // namespace todbench::testing

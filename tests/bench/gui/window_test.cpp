@@ -1,0 +1,167 @@
+// The real window, without a screen, with a simulated camera.
+#include <QLabel>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QPlainTextEdit>
+#include <QTableWidget>
+
+#include "bench/gui/picture_view.h"
+#include "bench/gui/plot_view.h"
+#include "tests/bench/gui/gui_test_support.h"
+
+namespace todbench::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(Window, ListsTheEmulatedLaboratoryFromTheStart) {
+  ShownWindow window("sim:sc2000");
+
+#ifdef TODBENCH_WITH_ARAVIS
+  EXPECT_EQ(window->bench().devices().front().id, QString(emulated_laboratory));
+#endif
+  EXPECT_FALSE(window->bench().devices().empty());
+}
+
+TEST(Window, ReachesEveryViewByKeyboard) {
+  ShownWindow window("sim:sc2000");
+  window->activateWindow();
+
+  int number = 0;
+  for (const View view : all_views) {
+    ++number;
+    QTest::keyClick(&*window, static_cast<Qt::Key>(Qt::Key_0 + number), Qt::ControlModifier);
+    EXPECT_TRUE(wait_until([&] { return window->view() == view; }, 5000)) << name_of(view).toStdString();
+  }
+}
+
+TEST(Window, FitsIntoASmallScreen) {
+  ShownWindow window("sim:sc2000");
+
+  for (const View view : all_views) {
+    window->show_view(view);
+    QApplication::processEvents();
+    // 1366 x 768 less a task bar.
+    EXPECT_LE(window->minimumSizeHint().width(), 1366) << name_of(view).toStdString();
+    EXPECT_LE(window->minimumSizeHint().height(), 728) << name_of(view).toStdString();
+  }
+}
+
+TEST(Window, ShowsTheLivePictureWithCountsAndKelvinUnderTheCursor) {
+  ShownWindow window("sim:sc2000");
+
+  window.click("startLooking");
+  ASSERT_TRUE(wait_until([&] { return window->look().latest().has_value(); }));
+  auto& picture = window.part<PictureView>("livePicture");
+  picture.set_zoom(1);
+  QTest::mouseMove(&picture, QPoint(picture.width() / 2, picture.height() / 2));
+  emit picture.hovered(160, 120);
+
+  EXPECT_EQ(picture.image().size(), QSize(320, 240));
+  const auto reading = window->look().reading(160, 120);
+  ASSERT_TRUE(reading && reading->kelvin);
+  EXPECT_EQ(reading->counts, window->look().latest()->frame.counts(120, 160));
+  EXPECT_THAT(window.part<QLabel>("pixelReading").text().toStdString(), HasSubstr("column 160, row 120"));
+  EXPECT_THAT(window.part<QLabel>("pixelReading").text().toStdString(), HasSubstr(" K"));
+  window.click("startLooking");
+  EXPECT_TRUE(wait_until([&] { return window->bench().activity() == Activity::idle; }));
+}
+
+TEST(Window, PlotsExactlyWhatTheSessionHolds) {
+  ShownWindow window("sim:sc2000", 8);
+
+  window.measure();
+
+  const auto session = read_session(window->measure().folder());
+  ASSERT_TRUE(session && session->curve && session->twin);
+  const auto points = window.part<PlotView>("todPlot").points("measured");
+  ASSERT_EQ(points.size(), static_cast<qsizetype>(session->curve->points.size()));
+  for (qsizetype i = 0; i < points.size(); ++i) {
+    const TodPoint& point = session->curve->points[static_cast<std::size_t>(i)];
+    ASSERT_TRUE(point.fit.threshold);
+    EXPECT_EQ(points[i].x(), 1 / *point.fit.threshold);
+    EXPECT_EQ(points[i].y(), point.delta_t_k);
+  }
+  EXPECT_EQ(window.part<PlotView>("todPlot").points("simulated").size(), points.size());
+  double trials = 0, correct = 0;
+  for (const auto& level : session->curve->points.front().levels) {
+    trials += level.total;
+    correct += level.correct;
+  }
+  const auto proportions = window.part<PlotView>("psychometricPlot0").points("measured");
+  EXPECT_EQ(proportions.size(), 5);  // sizes on the plate
+  double sum = 0;
+  for (const auto& p : proportions) sum += p.y();
+  EXPECT_NEAR(sum / 5, correct / trials, 1e-12);  // as many triangles of every size
+}
+
+TEST(Window, SaysWhatIsWrongWithAPlanAndKeepsIt) {
+  ShownWindow window("sim:sc2000");
+  window->show_view(View::plan);
+  auto& edit = window.part<QLineEdit>("planDistance");
+
+  edit.setFocus();
+  edit.selectAll();
+  QTest::keyClicks(&edit, "-3");
+  QTest::keyClick(&edit, Qt::Key_Return);
+
+  EXPECT_THAT(window.part<QLabel>("planProblem").text().toStdString(), HasSubstr("distance_m"));
+  EXPECT_EQ(window->bench().plan().target.distance_m, 2);
+}
+
+TEST(Window, ComparesTwoSessionsAndWritesBothReports) {
+  ShownWindow window("sim:sc2000", 3);
+  window.measure();
+  const auto first = window->measure().folder();
+  Plan plan = window->bench().plan();
+  plan.seed = 7;
+  window->bench().set_plan(plan);
+  window.measure();
+  ASSERT_TRUE(wait_until([&] { return window->sessions().current().has_value(); }));
+  window->show_view(View::report);
+  ASSERT_TRUE(wait_until([&] { return window->sessions().sessions().size() == 2; }));
+
+  window->sessions().compare_with(first);
+  ASSERT_TRUE(wait_until([&] { return window->sessions().compared_sessions().has_value(); }));
+  EXPECT_EQ(window.part<QTableWidget>("ratioTable").rowCount(), 2);
+  window.click("exportReports");
+  ASSERT_TRUE(wait_until([&] { return !window.part<QLabel>("exportedFiles").text().isEmpty(); }));
+
+  const auto folder = window->sessions().current()->folder;
+  EXPECT_TRUE(std::filesystem::exists(folder / "report.pdf"));
+  const auto changed = verify_manifest(folder);
+  ASSERT_TRUE(changed) << changed.error().message;
+  EXPECT_THAT(*changed, ::testing::IsEmpty());
+}
+
+TEST(Window, MeasuresThePlanOfASessionAgainBitForBit) {
+  ShownWindow window("sim:sc2000", 2);
+  window.measure();
+  const auto first = window->measure().folder();
+  ASSERT_TRUE(wait_until([&] { return window->sessions().current().has_value(); }));
+  window->show_view(View::report);
+
+  window.click("measureAgain");
+  window.measure();
+
+  const auto one = read_session(first);
+  const auto two = read_session(window->measure().folder());
+  ASSERT_TRUE(one && two && one->curve && two->curve);
+  EXPECT_NE(first, window->measure().folder());
+  EXPECT_EQ(one->curve->points.front().fit.threshold, two->curve->points.front().fit.threshold);
+}
+
+TEST(Window, ShowsItselfInLightAndDark) {
+  ShownWindow window("sim:sc2000");
+
+  window->set_theme(Theme::dark);
+  const QColor dark = window->palette().color(QPalette::Window);
+  window->set_theme(Theme::light);
+  const QColor light = window->palette().color(QPalette::Window);
+
+  EXPECT_LT(dark.lightness(), 100);
+  EXPECT_GT(light.lightness(), 200);
+}
+
+}  // namespace
+}  // namespace todbench::testing
