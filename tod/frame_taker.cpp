@@ -29,7 +29,7 @@ void FrameTaker::scene_changed() {
 Result<void> FrameTaker::correct_nonuniformity() {
   auto done = source_.correct_nonuniformity();
   if (!done) return fail("correcting the camera's non-uniformity", done.error());
-  nuc_ns_ = options_.now_ns();
+  nuc_ns_ = known_nuc_ns_ = options_.now_ns();
   watch_.scene_changed();
   return {};
 }
@@ -57,10 +57,11 @@ Result<void> FrameTaker::check_share() const {
 }
 
 void FrameTaker::note_told_correction(const Frame& frame) {
-  if (frame.correction == CorrectionState::running) nuc_ns_ = frame.host_time_ns;
+  if (frame.correction == CorrectionState::running) nuc_ns_ = known_nuc_ns_ = frame.host_time_ns;
   if (frame.since_correction_s < 0) return;
   const std::int64_t told = frame.host_time_ns - static_cast<std::int64_t>(frame.since_correction_s * 1e9);
   nuc_ns_ = std::max(nuc_ns_.value_or(told), told);
+  known_nuc_ns_ = std::max(known_nuc_ns_.value_or(told), told);
 }
 
 std::optional<CorrectionSign> FrameTaker::see_correction(const Frame& frame, std::optional<Rejection> rejection) {
@@ -77,6 +78,12 @@ std::optional<RejectedFrame> FrameTaker::judge(const Frame& frame) {
   note_told_correction(frame);
   const auto seen = see_correction(frame, rejection);
   if (seen) nuc_ns_ = frame.host_time_ns;
+  if (rejection == Rejection::frozen && known_nuc_ns_ &&
+      static_cast<double>(frame.host_time_ns - *known_nuc_ns_) * 1e-9 < options_.nuc_wait_s) {
+    // Cameras repeat their last picture while the shutter is closed: half a second after a command is no fault.
+    gate_.recount(Rejection::frozen, Rejection::nonuniformity_correction);
+    return RejectedFrame{.sequence = frame.sequence, .reason = Rejection::nonuniformity_correction, .seen = seen};
+  }
   if (rejection) return RejectedFrame{.sequence = frame.sequence, .reason = *rejection, .seen = seen};
   const bool settling = nuc_ns_ && since_nuc_s(frame) < options_.nuc_wait_s;
   if (!settling && !seen && frame.correction != CorrectionState::running) return std::nullopt;

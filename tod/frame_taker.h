@@ -77,9 +77,10 @@ class FrameTaker {
   FrameTakerOptions options_;
   IntegrityGate gate_;
   CorrectionWatch watch_{CorrectionWatchOptions{}};
-  std::int64_t valid_from_ns_ = 0;      ///< host time of the last change of scene
-  int to_discard_ = 0;                  ///< exposures still in flight after the change
-  std::optional<std::int64_t> nuc_ns_;  ///< host time of the last correction
+  std::int64_t valid_from_ns_ = 0;            ///< host time of the last change of scene
+  int to_discard_ = 0;                        ///< exposures still in flight after the change
+  std::optional<std::int64_t> nuc_ns_;        ///< host time of the last correction
+  std::optional<std::int64_t> known_nuc_ns_;  ///< of the last that was commanded, or that the camera told of
   std::uint64_t used_ = 0;
   std::uint64_t seen_ = 0;
 };

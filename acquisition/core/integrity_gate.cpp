@@ -1,6 +1,7 @@
 #include "acquisition/core/integrity_gate.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstring>
 
 #include "acquisition/core/byte_order.h"
@@ -108,6 +109,13 @@ std::optional<Rejection> IntegrityGate::judge(const Frame& frame) {
     ++accepted_;
   }
   return reason;
+}
+
+void IntegrityGate::recount(Rejection from, Rejection to) {
+  const auto found = rejected_.find(from);
+  assert(found != rejected_.end() && found->second > 0);
+  if (--found->second == 0) rejected_.erase(found);
+  ++rejected_[to];
 }
 
 void IntegrityGate::reject_accepted(Rejection reason) {

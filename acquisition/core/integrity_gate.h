@@ -46,6 +46,8 @@ class IntegrityGate {
   [[nodiscard]] std::optional<Rejection> judge(const Frame& frame);
   /// Takes back the acceptance of the last frame for a reason that only the caller knows (time since a correction).
   void reject_accepted(Rejection reason);
+  /// Moves a frame that judge() has just rejected for `from` to another reason, which only the caller knows.
+  void recount(Rejection from, Rejection to);
 
   [[nodiscard]] std::uint64_t accepted() const { return accepted_; }
   [[nodiscard]] std::uint64_t rejected() const;
