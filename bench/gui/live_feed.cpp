@@ -18,7 +18,9 @@ void LiveFeed::open(const SourceInfo& info) {
 void LiveFeed::put(const Frame& frame) {
   const std::lock_guard lock(mutex_);
   if (!gate_) gate_.emplace(IntegrityOptions{});
-  const bool good = !gate_->judge(frame).has_value();
+  const auto rejection = gate_->judge(frame);
+  // The first frame behind a gap is a whole picture: it is not measured, but may be looked at.
+  const bool showable = !rejection || *rejection == Rejection::gapped;
   arrivals_ns_.push_back(frame.host_time_ns);
   while (arrivals_ns_.size() > 2 && arrivals_ns_.front() < frame.host_time_ns - 1'000'000'000) arrivals_ns_.pop_front();
   FrameCounters counters{.good = gate_->accepted(), .lost = gate_->lost(), .rejected = {}, .rate_hz = 0};
@@ -27,7 +29,7 @@ void LiveFeed::put(const Frame& frame) {
   const auto span_ns = arrivals_ns_.back() - arrivals_ns_.front();
   if (span_ns > 0) counters.rate_hz = static_cast<double>(arrivals_ns_.size() - 1) * 1e9 / static_cast<double>(span_ns);
   // A frame that may not be measured is counted, not shown, unless nothing better has come.
-  if (good || !latest_) {
+  if (showable || !latest_) {
     latest_ = LiveFrame{frame, std::move(counters)};
   } else {
     latest_->counters = std::move(counters);

@@ -15,7 +15,7 @@
 namespace todbench {
 
 struct ReconnectionOptions {
-  std::chrono::milliseconds patience{60000};    ///< longer away than this is lost for good
+  std::chrono::milliseconds patience{60000};      ///< longer away than this is lost for good
   std::map<std::string, std::string> settings{};  ///< of the plan: written first
 };
 

@@ -242,10 +242,16 @@ Result<EffectPlan> plan_effects(const SensorSpec& sensor, TemplateObserver& obse
                 "the plan has no identifiable threshold: " +
                     (out.warnings.empty() ? std::string("no contrast") : out.warnings.front()));
   }
+  const bool one_without_threshold = contrasts.size() < scene.delta_t_k.size();
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < out.plan.decisions.size(); ++i) {
     auto& decision = out.plan.decisions[i];
     if (decision.decision == Decision::skip) continue;  // neutral
+    if (one_without_threshold) {
+      // Noise may be why there is none: without it the simulation would find one.
+      decision.reason = "simulated: a contrast of the scene has no threshold, so no criterion holds for it";
+      continue;
+    }
     std::optional<double> largest = 0.0;
     for (const auto& c : contrasts) {
       const auto change = bound(decision.effect, c, sensor, everything, scene.motion);

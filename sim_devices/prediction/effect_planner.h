@@ -43,8 +43,9 @@ struct EffectPlan {
 /// bounded at every contrast and the largest is taken. The effects with the smallest bounds are skipped as long as
 /// their sum stays within four fifths of the tolerance; the rest is for numerical errors. Detector footprint,
 /// microscan, super-resolution and motion by half a pitch and more per time constant have no criterion and are always
-/// simulated. Deterministic; costs some tens of milliseconds, most of them for template banks which the observer keeps.
-/// `invalid_input`: no contrast has a threshold.
+/// simulated, and so is everything where a contrast of the scene has no threshold. Deterministic; costs some tens of
+/// milliseconds, most of them for template banks which the observer keeps. `invalid_input`: no contrast has a
+/// threshold.
 [[nodiscard]] Result<EffectPlan> plan_effects(const SensorSpec& sensor, TemplateObserver& observer,
                                               const EffectScene& scene, const EffectPlannerOptions& options);
 

@@ -17,7 +17,7 @@ struct PlateScene {
   cv::Point2d shift_mm{0, 0};        ///< of the plate in its plane
   cv::Point2d centre_px{0.3, -0.2};  ///< where the plate's middle is, from the middle of the picture, at shift 0
   double rotation_deg = 0;           ///< of the plate about the line of sight, clockwise in the picture
-  SceneMotion motion{};                ///< of the whole plate; smears, where the sensor has a time constant
+  SceneMotion motion{};              ///< of the whole plate; smears, where the sensor has a time constant
 };
 
 /// Position in pixels (column, row; pixel centres at integers) of a place on the plate.

@@ -33,6 +33,18 @@ TEST(EffectPlanner, SkipsFourteenBitQuantisationAlwaysAndTemporalNoiseOnlyAtHigh
   EXPECT_EQ(decision_of(*low, Effect::temporal_noise).decision, Decision::simulate);
 }
 
+TEST(EffectPlanner, SimulatesEverythingWhereAContrastHasNoThreshold) {
+  // At 5 mK noise is why there is none; a simulation without it would find one.
+  const auto plan = plan_of(test::sc2000(), {16.9, 0.005});
+
+  ASSERT_TRUE(plan);
+  for (const Effect effect : {Effect::temporal_noise, Effect::quantisation, Effect::spectral_band}) {
+    EXPECT_EQ(decision_of(*plan, effect).decision, Decision::simulate) << to_string(effect);
+    EXPECT_FALSE(decision_of(*plan, effect).predicted_change_percent.has_value());
+  }
+  EXPECT_THAT(plan->warnings, ::testing::SizeIs(1));
+}
+
 TEST(EffectPlanner, NeverSkipsFootprintSamplingOrStrongMotion) {
   SensorSpec sensor = test::sensor_with_everything(1, 2);
   EffectPlannerOptions lax;

@@ -32,7 +32,8 @@ class EmulatedLaboratory {
 
   /// A plan for this laboratory: one plate, one mounting, 16.9 K.
   [[nodiscard]] std::string plan(int phases, const std::string& target = "", const std::string& camera = "") const {
-    return "name = \"laboratory\"\n[camera]\nid = \"gige:127.0.0.1\"\nifov_mrad = 1.3085399449\nreconnect_s = 1\n" + camera +
+    return "name = \"laboratory\"\n[camera]\nid = \"gige:127.0.0.1\"\nifov_mrad = 1.3085399449\nreconnect_s = 1\n" +
+           camera +
            "[simulation]\naccuracy = \"draft\"\nphases = 4\n[measurement]\nregistration_frames = 4\n"
            "contrast_frames = 4\n[target]\nkind = \"scpi\"\nblack_body = \"" +
            addresses_.at("black_body").get<std::string>() + "\"\nstage = \"" +

@@ -85,8 +85,9 @@ TEST(LiveFeed, CountsWhatItShowsAndWhatItDoesNot) {
 
   ASSERT_TRUE(latest);
   EXPECT_EQ(latest->frame.sequence, 7u);
-  EXPECT_EQ(latest->counters.good, 4u);
+  EXPECT_EQ(latest->counters.good, 3u);
   EXPECT_EQ(latest->counters.rejected.at("incomplete"), 1u);
+  EXPECT_EQ(latest->counters.rejected.at("gapped"), 1u);  // shown, though
   EXPECT_EQ(latest->counters.lost, 2u);
   // Five frames from 20 ms to 140 ms: four periods in 0.12 s.
   EXPECT_NEAR(latest->counters.rate_hz, 4 / 0.12, 1e-9);
