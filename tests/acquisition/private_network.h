@@ -7,5 +7,7 @@ namespace todbench::testing_support {
 /// emulated cameras meet nobody else's. Where the system does not permit that, the host's loopback is shared and a line
 /// on stderr says so.
 void enter_private_network();
+/// The same with a table of mounts of its own, none of which is seen outside.
+void enter_private_network_and_mounts();
 
 }  // namespace todbench::testing_support

@@ -2,6 +2,8 @@
 // note of them and let the simulated camera expose the same.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <chrono>
 #include <cmath>
 #include <functional>
@@ -11,6 +13,7 @@
 #include <vector>
 
 #include "sim_devices/sensor/simulated_camera.h"
+#include "tod/trial.h"
 
 namespace todbench::test {
 
@@ -121,5 +124,17 @@ class GivenExposures final : public PlainSource {
   std::vector<std::uint64_t> exposures_;
   std::size_t next_ = 0;
 };
+
+/// The same answers to the same pictures, scores bit for bit.
+inline void expect_same_decisions(const std::vector<Trial>& a, const std::vector<Trial>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].frame, b[i].frame) << i;
+    ASSERT_EQ(a[i].triangle, b[i].triangle) << i;
+    ASSERT_EQ(a[i].answer, b[i].answer) << i;
+    ASSERT_EQ(a[i].scores, b[i].scores) << i;
+    ASSERT_EQ(a[i].delta_t_k, b[i].delta_t_k) << i;
+  }
+}
 
 }  // namespace todbench::test

@@ -63,16 +63,7 @@ TEST_P(V4l2Measurement, DecidesAsTheSimulatedCameraForTheSameExposures) {
   ASSERT_TRUE(simulated) << simulated.error().message;
 
   ASSERT_GE(measured->trials.size(), 2U * 2 * 3 * 20);  // plates, contrasts, phases, triangles
-  ASSERT_EQ(measured->trials.size(), simulated->trials.size());
-  for (std::size_t i = 0; i < measured->trials.size(); ++i) {
-    const Trial& a = measured->trials[i];
-    const Trial& b = simulated->trials[i];
-    ASSERT_EQ(a.frame, b.frame) << i;
-    ASSERT_EQ(a.triangle, b.triangle) << i;
-    ASSERT_EQ(a.answer, b.answer) << i;
-    ASSERT_EQ(a.scores, b.scores) << i;
-    ASSERT_EQ(a.delta_t_k, b.delta_t_k) << i;
-  }
+  test::expect_same_decisions(measured->trials, simulated->trials);
 }
 
 std::string name_of(const testing::TestParamInfo<VideoCameraKind>& kind) {
