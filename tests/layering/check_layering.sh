@@ -1,5 +1,6 @@
 #!/bin/sh
-# Layering: which folder may include which, and which third-party headers belong to which folder. Usage: check_layering.sh ROOT
+# Layering: which folder may include which, which third-party headers belong to which folder, and that a source includes its own header
+# first. Usage: check_layering.sh ROOT
 # Prints each violation as FILE:LINE: reason; exit 1 when there is one.
 cd "$1" || exit 2
 find acquisition hvs tod sim_devices bench \( -name '*.h' -o -name '*.cpp' \) 2>/dev/null | sort | xargs awk '
@@ -36,6 +37,13 @@ FNR == 1 {
   layer = layer_of(FILENAME)
   own = layer == "acquisition/*" ? "acquisition/" : layer "/"
   allowed = split(own " " may[layer], prefixes, " ")
+  header = FILENAME
+  owed = sub(/\.cpp$/, ".h", header) && (getline line < header) >= 0
+  close(header)
+}
+owed && /^[ \t]*#[ \t]*include/ {
+  if (index($0, "\"" header "\"") == 0) { print FILENAME ":" FNR ": the first include is not \"" header "\""; bad = 1 }
+  owed = 0
 }
 /^[ \t]*#[ \t]*include[ \t]*"/ {
   path = $0; sub(/^[^"]*"/, "", path); sub(/".*/, "", path)
