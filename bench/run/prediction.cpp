@@ -14,8 +14,9 @@
 namespace todbench {
 namespace {
 
-// Weibull slope of the searching observer: dP/dlnS = (b/4) ln 3 at the threshold is 1.0 to 1.5, b 3.6 to 5.5.
-constexpr double expected_slope = 4;
+// Weibull slopes of the searching observer: 2.8 (noise rules) to 6.5 (microscan, no noise). The first tier finds them
+// within a quarter, except without noise, where it sees steps.
+constexpr double flattest = 2.5, steepest = 6;
 
 /// Trials per size at one contrast.
 std::vector<Level> levels_of(const Plan& plan, const std::vector<TargetPlate>& plates) {
@@ -31,8 +32,10 @@ std::vector<Level> levels_of(const Plan& plan, const std::vector<TargetPlate>& p
   return levels;
 }
 
-std::optional<double> uncertainty_percent(const Plan& plan, const std::vector<Level>& levels, double s75_mrad) {
-  const auto design = design_at(levels, plan.fit.form, s75_mrad, expected_slope, plan.fit.lapse.value_or(0.01));
+std::optional<double> uncertainty_percent(const Plan& plan, const std::vector<Level>& levels, double s75_mrad,
+                                          double slope) {
+  const auto design =
+      design_at(levels, plan.fit.form, s75_mrad, std::clamp(slope, flattest, steepest), plan.fit.lapse.value_or(0.01));
   const auto fit = expected_fit(design, fit_options(plan));
   if (!fit) return std::nullopt;
   return 100 * std::expm1(1.96 * fit->se_ln_threshold);
@@ -122,7 +125,7 @@ Result<PlanPrediction> predict_plan(const Plan& plan) {
     for (const auto& outlook : out.effects.outlooks) {
       if (outlook.delta_t_k != delta_t_k) continue;
       point.s75_mrad = outlook.s75_pitch * sensor->ifov_mrad();
-      point.uncertainty_percent = uncertainty_percent(plan, levels, *point.s75_mrad);
+      point.uncertainty_percent = uncertainty_percent(plan, levels, *point.s75_mrad, outlook.weibull_slope);
       seconds +=
           predicted_direct_seconds(*observer_spec, simulated, outlook.s75_pitch,
                                    static_cast<int>(needed_draws(*accuracy, outlook.q_eff)), accuracy->phases_per_axis);
