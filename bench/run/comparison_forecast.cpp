@@ -27,9 +27,11 @@ const TodPoint* point_at(const TodCurve& curve, double delta_t_k) {
 ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& prediction) {
   const double margin = comparison_options(plan).margin_percent;
   const std::string margin_text = number_text(margin) + " %";
-  const double trials_b =
-      static_cast<double>(prediction.figures.trials) / static_cast<double>(plan.target.delta_t_k.size());
-  const double share = static_cast<double>(plan.target.phases) / plan.simulation.phases;  // of the camera's trials
+  // Of the twin's trials the camera makes so many; an adaptive schedule is the same for both.
+  const double share = plan.schedule.kind == ScheduleKind::adaptive
+                           ? 1.0
+                           : static_cast<double>(plan.target.phases) / plan.simulation.phases;
+  double planned = 0;
   std::vector<PlannedComparison> contrasts;
   for (const ContrastPrediction& contrast : prediction.contrasts) {
     if (!contrast.uncertainty_percent || !(*contrast.uncertainty_percent > 0)) {
@@ -40,21 +42,22 @@ ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& p
     contrasts.push_back({.delta_t_k = contrast.delta_t_k,
                          .se_ln_a = se_b / std::sqrt(share),
                          .se_ln_b = se_b,
-                         .trials_a = trials_b * share,
-                         .trials_b = trials_b});
+                         .trials_a = contrast.trials * share,
+                         .trials_b = contrast.trials});
+    planned = std::max(planned, contrast.trials * share);
   }
   if (contrasts.empty()) return {};
   const ComparisonOutlook outlook = comparison_outlook(contrasts, margin);
   const std::string power = number_text(std::round(100 * outlook.power)) + " %";
-  const std::string needed = number_text(outlook.trials_needed_a) + " trials per contrast (" +
-                             number_text(std::round(trials_b * share)) + " planned)";
+  const std::string needed =
+      number_text(outlook.trials_needed_a) + " trials per contrast (" + number_text(std::round(planned)) + " planned)";
   if (outlook.reaches_80_percent()) {
     return {outlook, "if camera and twin are equal, the comparison finds them equivalent within " + margin_text +
-                         " with a probability of " + power + " at best; 80 % would need " + needed};
+                         " with a probability of at least " + power + "; 80 % would need " + needed};
   }
   return {outlook, "warning: the plan can hardly show equivalence within " + margin_text +
-                       ": equal acuities would be found equivalent with a probability of " + power +
-                       " at best; 80 % needs " + needed};
+                       ": equal acuities would be found equivalent with a probability of " + power + "; 80 % needs " +
+                       needed};
 }
 
 ComparisonForecast comparison_forecast(const TodCurve& a, const TodCurve& b, const Comparison& comparison) {
