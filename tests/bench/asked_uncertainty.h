@@ -23,6 +23,12 @@ struct AskedAndAchieved {
   double achieved_percent = 0;   ///< half of the 95 % interval; 1000 where a side is open
 };
 
+/// One run: its curve, and every contrast of it.
+struct StudiedRun {
+  TodCurve curve;
+  std::vector<AskedAndAchieved> contrasts;
+};
+
 /// Both plates in all mountings, so often that a constant design has 128 presentations; the simulated SC2000.
 inline Plan plan_to_study(ScheduleKind kind, double half_width_percent) {
   Plan plan;
@@ -35,12 +41,12 @@ inline Plan plan_to_study(ScheduleKind kind, double half_width_percent) {
   return plan;
 }
 
-inline std::vector<AskedAndAchieved> run_of(Plan plan, std::uint64_t seed) {
+inline StudiedRun run_of(Plan plan, std::uint64_t seed) {
   plan.seed = seed;
   const auto prediction = predict_plan(plan);
   const TemporaryFolder folder;
   const auto outcome = simulate_plan(plan, {.folder = folder.path() / "s"}, {}, {});
-  std::vector<AskedAndAchieved> found;
+  StudiedRun found;
   if (!prediction || !outcome) {
     ADD_FAILURE() << (prediction ? outcome.error().message : prediction.error().message);
     return found;
@@ -53,8 +59,9 @@ inline std::vector<AskedAndAchieved> run_of(Plan plan, std::uint64_t seed) {
     }
     const Interval& ci = point.fit.ci95;
     if (ci.low && ci.high) one.achieved_percent = 100 * std::log(*ci.high / *ci.low) / 2;
-    found.push_back(one);
+    found.contrasts.push_back(one);
   }
+  found.curve = outcome->curve;
   return found;
 }
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "tests/bench/asked_uncertainty.h"
+#include "tod/planning.h"
 
 namespace todbench::testing {
 namespace {
@@ -28,16 +29,42 @@ void print_and_expect(const char* what, double delta_t_k, const std::vector<Aske
   EXPECT_GE(kept / count, 0.95) << what << " " << delta_t_k;
 }
 
+/// Curves of one truth in pairs: how often each contrast is found equivalent, against the power that was predicted from
+/// uncertainties which most runs do not reach.
+void expect_power(const std::vector<TodCurve>& curves, const std::vector<AskedAndAchieved>& runs) {
+  for (const double margin_percent : {7.0, 10.0}) {
+    for (std::size_t contrast = 0; contrast < 2; ++contrast) {
+      int found = 0;
+      const int pairs = static_cast<int>(curves.size() / 2);
+      for (std::size_t i = 0; i + 1 < curves.size(); i += 2) {
+        const auto comparison = compare(curves[i], curves[i + 1], {.margin_percent = margin_percent, .fit = {}});
+        ASSERT_TRUE(comparison);
+        found += comparison->points[contrast].verdict == ComparisonVerdict::equivalent ? 1 : 0;
+      }
+      const double se = runs[contrast].predicted_percent / 196;
+      const double promised = equivalence_power(std::sqrt(2.0) * se, margin_percent, 0);
+      const double share = found / static_cast<double>(pairs);
+      std::printf("| equivalent within %g %% | %g K | %d pairs | promised %.2f | found %.2f |\n", margin_percent,
+                  runs[contrast].delta_t_k, pairs, promised, share);
+      EXPECT_GE(share, promised - 3.5 * std::sqrt(promised * (1 - promised) / pairs)) << margin_percent;
+    }
+  }
+  std::fflush(stdout);
+}
+
 TEST(AskedUncertainty, IsNotExceededInNineteenOfTwentyRuns) {
   std::printf("| design | contrast | runs | mean achieved / asked | largest | share not above |\n");
   for (const auto& [kind, asked] : {std::pair(ScheduleKind::constant, 0.0), std::pair(ScheduleKind::adaptive, 8.0)}) {
     std::vector<AskedAndAchieved> runs;
+    std::vector<TodCurve> curves;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-      const auto found = run_of(plan_to_study(kind, 8), seed);
-      runs.insert(runs.end(), found.begin(), found.end());
+      auto found = run_of(plan_to_study(kind, 8), seed);
+      runs.insert(runs.end(), found.contrasts.begin(), found.contrasts.end());
+      curves.push_back(std::move(found.curve));
     }
     const char* what = kind == ScheduleKind::constant ? "constant, against the prediction" : "adaptive, 8 % asked";
     for (const double delta_t_k : {1.93, 0.23}) print_and_expect(what, delta_t_k, runs, asked);
+    if (kind == ScheduleKind::constant) expect_power(curves, runs);
   }
 }
 

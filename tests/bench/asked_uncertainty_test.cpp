@@ -15,7 +15,7 @@ TEST(AskedUncertainty, OfConstantAndAdaptiveRunsIsHardlyEverExceeded) {
       plan.measurement.registration_frames = 4;
       plan.measurement.contrast_frames = 4;
 
-      for (const AskedAndAchieved& one : run_of(plan, seed)) {
+      for (const AskedAndAchieved& one : run_of(plan, seed).contrasts) {
         const double asked = kind == ScheduleKind::adaptive ? 12 : one.predicted_percent;
         kept += one.achieved_percent <= asked ? 1 : 0;
       }
