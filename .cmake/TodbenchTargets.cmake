@@ -5,7 +5,7 @@ target_include_directories(todbench_options INTERFACE "${CMAKE_SOURCE_DIR}")
 # -ffp-contract=off: the same sums on every compiler and instruction set, so that results repeat bit for bit.
 target_compile_options(todbench_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wunused
-  -ffp-contract=off $<$<BOOL:${TODBENCH_WERROR}>:-Werror>)
+  -ffp-contract=off $<$<CXX_COMPILER_ID:Clang>:-ffp-exception-behavior=maytrap;-Wno-overriding-t-option> $<$<BOOL:${TODBENCH_WERROR}>:-Werror>)
 if(TODBENCH_SANITIZE)
   target_compile_options(todbench_options INTERFACE -fsanitize=${TODBENCH_SANITIZE} -fno-omit-frame-pointer
     -fno-sanitize-recover=all

@@ -86,8 +86,8 @@ void add_edge(const double* kx, double ky, cv::Point2d d, const double* vr, cons
     const double kd = kx[m] * d.x + ky * d.y;
     const double kn = kx[m] * d.y - ky * d.x;
     const bool unsafe = std::abs(kd) < series_limit;
-    const double quotient = kn / (unsafe ? 1.0 : kd);
-    const double ratio = unsafe ? 0.0 : quotient;
+    // Both selected before the division: a compiler may divide first and select afterwards, and by zero then.
+    const double ratio = (unsafe ? 0.0 : kn) / (unsafe ? 1.0 : kd);
     re[m] += ratio * (vr[m] - wr[m]);
     im[m] += ratio * (vi[m] - wi[m]);
   }

@@ -20,6 +20,10 @@ struct NoiseArguments {
   RealNoiseOptions study;
 };
 
+/// Neighbours that correlate by more than this change together: the scene moved, and nothing of it is the camera's
+/// noise.
+constexpr double moved_scene = 0.8;
+
 struct Frames {
   std::vector<cv::Mat1f> pictures;
   bool kelvin = false;
@@ -28,7 +32,8 @@ struct Frames {
 /// All complete frames, in kelvin where the recording says how, else in counts.
 Result<Frames> frames_of(const std::string& id) {
   auto source = recording_backend()->open(id.starts_with("file:") ? id : "file:" + id);
-  if (!source) return tl::unexpected(source.error());
+  // Here a recording is an input file and no device.
+  if (!source) return fail(ErrorCode::invalid_input, source.error().message);
   if (auto started = (*source)->start(); !started) return tl::unexpected(started.error());
   Frames frames;
   frames.kelvin = (*source)->info().scale.calibrated();
@@ -48,6 +53,10 @@ Result<Frames> frames_of(const std::string& id) {
     }
     frames.pictures.push_back(picture);
   }
+}
+
+bool moved(const RecordedNoise& noise) {
+  return std::max(noise.correlation_x, noise.correlation_y) > moved_scene;
 }
 
 Json components_json(const ThreeDNoise& c) {
@@ -84,34 +93,39 @@ Json noise_json(const RecordedNoise& noise, const std::vector<NoiseAcuity>& poin
           {"correlation_y", json_number(noise.correlation_y)},
           {"observer", arguments.observer},
           {"sensor", arguments.sensor},
+          {"verdict", moved(noise) ? "scene_moved" : "ok"},
           {"points", list}};
 }
 
-void print_noise(Console& console, const RecordedNoise& noise, const std::vector<NoiseAcuity>& points, bool kelvin) {
+void print_components(Console& console, const RecordedNoise& noise, bool kelvin) {
   const auto& c = noise.components;
-  const std::string unit = kelvin ? " K" : " counts";
-  console.text("temporal noise " + fixed(noise.temporal_noise, 4) + unit + " over " +
+  const std::string unit = kelvin ? "K" : "counts";
+  console.text("temporal noise " + fixed(noise.temporal_noise, 4) + " " + unit + " over " +
                fixed(100 * noise.usable_share, 1) + " % of the pixels; neighbours correlate by " +
                fixed(noise.correlation_x, 3) + " in a row, " + fixed(noise.correlation_y, 3) + " in a column");
-  console.table({"component", "sd [" + std::string(kelvin ? "K" : "counts") + "]"},
-                {{"pixels in time (tvh)", fixed(c.tvh, 4)},
-                 {"rows in time (tv)", fixed(c.tv, 4)},
-                 {"columns in time (th)", fixed(c.th, 4)},
-                 {"frames in time (t)", fixed(c.t, 4)},
-                 {"fixed pattern and scene (vh)", fixed(c.vh, 4)},
-                 {"fixed rows (v)", fixed(c.v, 4)},
-                 {"fixed columns (h)", fixed(c.h, 4)}});
-  console.text("");
-  std::vector<TableRow> rows;
+  console.table({"component", "sd [" + unit + "]"}, {{"pixels in time (tvh)", fixed(c.tvh, 4)},
+                                                     {"rows in time (tv)", fixed(c.tv, 4)},
+                                                     {"columns in time (th)", fixed(c.th, 4)},
+                                                     {"frames in time (t)", fixed(c.t, 4)},
+                                                     {"fixed pattern and scene (vh)", fixed(c.vh, 4)},
+                                                     {"fixed rows (v)", fixed(c.v, 4)},
+                                                     {"fixed columns (h)", fixed(c.h, 4)}});
+}
+
+void print_acuities(Console& console, const std::vector<NoiseAcuity>& points) {
+  std::vector<TableRow> rows, why;
   for (const auto& p : points) {
     rows.push_back({fixed(p.contrast_over_noise, 1), fixed(p.real.s75_pitch, 3), fixed(p.white.s75_pitch, 3),
-                    fixed(p.acuity_ratio, 3), range(p.ratio_ci95, 3), fixed(p.template_noise_ratio, 3),
-                    fixed(p.predicted_ratio, 3), fixed(p.pixel_share, 3), fixed(p.row_share, 3),
-                    fixed(p.column_share, 3), fixed(p.correlated_share, 3)});
+                    fixed(p.acuity_ratio, 3), range(p.ratio_ci95, 3), fixed(p.predicted_ratio, 3)});
+    why.push_back({fixed(p.contrast_over_noise, 1), fixed(p.template_noise_ratio, 3), fixed(p.pixel_share, 3),
+                   fixed(p.row_share, 3), fixed(p.column_share, 3), fixed(p.correlated_share, 3)});
   }
-  console.table({"dT / noise", "S75 [pitch]", "S75 white", "acuity real / white", "95 %", "template noise", "predicted",
-                 "pixels", "rows", "columns", "correlated"},
-                rows);
+  console.text("");
+  console.text("75 % sizes under this noise and under white noise of the same strength");
+  console.table({"dT / noise", "S75 [pitch]", "S75 white", "acuity real / white", "95 %", "predicted from r"}, rows);
+  console.text("");
+  console.text("what moves the decision: r^2, the variance in the templates' differences over that of white noise");
+  console.table({"dT / noise", "r", "pixels", "rows", "columns", "correlated"}, why);
 }
 
 int run_noise(Console& console, NoiseArguments arguments, const Program& program) {
@@ -128,8 +142,16 @@ int run_noise(Console& console, NoiseArguments arguments, const Program& program
   }
   auto noise = recorded_noise(frames->pictures, arguments.block_frames);
   if (!noise) return report_error(console, {noise.error().code, arguments.recording + ": " + noise.error().message});
-  if (std::max(noise->correlation_x, noise->correlation_y) > 0.8)
+  if (moved(*noise)) {
+    // Components and acuity would be those of the moving scene.
     console.note("neighbouring pixels change together: the scene or the camera moved, this is not the camera's noise");
+    if (console.json()) {
+      console.object(noise_json(*noise, {}, frames->kelvin, arguments));
+    } else {
+      print_components(console, *noise, frames->kelvin);
+    }
+    return exit_code(VerdictKind::inconclusive);
+  }
   TemplateObserver observer(*spec, triangle_alternatives());
   arguments.study.seed = program.common.seed;
   arguments.study.stop = program.stop->token();
@@ -138,7 +160,8 @@ int run_noise(Console& console, NoiseArguments arguments, const Program& program
   if (console.json()) {
     console.object(noise_json(*noise, *points, frames->kelvin, arguments));
   } else {
-    print_noise(console, *noise, *points, frames->kelvin);
+    print_components(console, *noise, frames->kelvin);
+    print_acuities(console, *points);
   }
   return 0;
 }

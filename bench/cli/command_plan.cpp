@@ -3,6 +3,7 @@
 
 #include "bench/cli/commands.h"
 #include "bench/cli/simulation_plan.h"
+#include "bench/run/comparison_forecast.h"
 #include "bench/run/prediction.h"
 #include "bench/session/verdict.h"
 
@@ -39,6 +40,11 @@ int run_plan(Console& console, SimulationOverrides overrides, const Program& pro
     print_plan(console, *prediction);
   }
   for (const auto& warning : prediction->warnings) console.note(warning);
+  // Without a camera nothing will be compared.
+  if (!plan->camera.id.empty()) {
+    const std::string forecast = comparison_forecast(*plan, *prediction).sentence;
+    if (!forecast.empty()) console.note(forecast);
+  }
   // A plan that cannot find one of its thresholds is inconclusive before it starts.
   return prediction->figures.predicted_uncertainty_percent ? 0 : exit_code(VerdictKind::inconclusive);
 }

@@ -97,7 +97,7 @@ int run_reproduce(Console& console, const ReproduceArguments& arguments, const P
     const int decimals = f.unit == "%" || f.unit == "m" ? 0 : 1;
     rows.push_back(
         {f.quantity, f.published.empty() ? "–" : f.published,
-         fixed(f.value && decimals == 0 ? std::optional(std::round(*f.value)) : f.value, decimals) + " " + f.unit,
+         fixed(f.value && decimals == 0 ? std::optional(std::round(*f.value) + 0.0) : f.value, decimals) + " " + f.unit,
          range(f.ci95, decimals)});
   }
   console.table({"quantity", "published", "here", "95 %"}, rows);

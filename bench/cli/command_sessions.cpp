@@ -3,6 +3,7 @@
 
 #include "bench/cli/commands.h"
 #include "bench/report/report.h"
+#include "bench/run/comparison_forecast.h"
 #include "bench/run/report_data.h"
 #include "bench/session/files.h"
 #include "bench/session/manifest.h"
@@ -48,6 +49,8 @@ int run_compare(Console& console, const CompareArguments& arguments) {
   if (arguments.margin_percent > 0) options.margin_percent = arguments.margin_percent;
   auto comparison = compare(*a, *b, options);
   if (!comparison) return report_error(console, comparison.error());
+  const std::string outlook = comparison_forecast(*a, *b, *comparison).sentence;
+  if (!outlook.empty()) console.note(outlook);
   if (console.json()) {
     console.object(comparison_json(*comparison));
     return exit_of(comparison->verdict);

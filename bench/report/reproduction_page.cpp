@@ -93,6 +93,20 @@ Plot range_plot(const Reproduction& reproduction) {
     }
     plot.series.push_back(series);
   }
+  // 75 % at 450 and 700 m, about 80 % at 400 and 640 m.
+  PlotSeries published;
+  published.label = "published";
+  published.tone = PlotTone::muted;
+  published.marker = PlotMarker::square;
+  published.line = PlotLine::none;
+  for (const auto& [range_m, fraction] :
+       {std::pair(400.0, 0.8), std::pair(450.0, 0.75), std::pair(640.0, 0.8), std::pair(700.0, 0.75)}) {
+    PlotPoint point;
+    point.x = range_m;
+    point.y = fraction;
+    published.points.push_back(point);
+  }
+  plot.series.push_back(published);
   return plot;
 }
 
@@ -116,7 +130,7 @@ Markup ranges_section(const Reproduction& reproduction) {
   }
   return section("Ranges", figure(svg_plot(range_plot(reproduction)),
                                   "Fraction of correct identifications of a small craft against range, from the TOD "
-                                  "curves.") +
+                                  "curves, and the four points that the paper states.") +
                                table(rows));
 }
 

@@ -1,18 +1,37 @@
 #include "bench/run/comparison_forecast.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "bench/session/plan_options.h"
 #include "bench/session/text.h"
 
 namespace todbench {
+namespace {
+
+/// Standard error of ln S75 from the interval, nothing where a side is open.
+std::optional<double> standard_error(const PsychometricFit& fit) {
+  if (!fit.ci95.low || !fit.ci95.high || !(*fit.ci95.low > 0)) return std::nullopt;
+  return std::log(*fit.ci95.high / *fit.ci95.low) / (2 * 1.96);
+}
+
+const TodPoint* point_at(const TodCurve& curve, double delta_t_k) {
+  for (const TodPoint& point : curve.points) {
+    if (std::abs(point.delta_t_k - delta_t_k) <= 1e-9 * std::abs(delta_t_k)) return &point;
+  }
+  return nullptr;
+}
+
+}  // namespace
 
 ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& prediction) {
   const double margin = comparison_options(plan).margin_percent;
   const std::string margin_text = number_text(margin) + " %";
-  const double trials_b =
-      static_cast<double>(prediction.figures.trials) / static_cast<double>(plan.target.delta_t_k.size());
-  const double share = static_cast<double>(plan.target.phases) / plan.simulation.phases;  // of the camera's trials
+  // Of the twin's trials the camera makes so many; an adaptive schedule is the same for both.
+  const double share = plan.schedule.kind == ScheduleKind::adaptive
+                           ? 1.0
+                           : static_cast<double>(plan.target.phases) / plan.simulation.phases;
+  double planned = 0;
   std::vector<PlannedComparison> contrasts;
   for (const ContrastPrediction& contrast : prediction.contrasts) {
     if (!contrast.uncertainty_percent || !(*contrast.uncertainty_percent > 0)) {
@@ -23,21 +42,51 @@ ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& p
     contrasts.push_back({.delta_t_k = contrast.delta_t_k,
                          .se_ln_a = se_b / std::sqrt(share),
                          .se_ln_b = se_b,
-                         .trials_a = trials_b * share,
-                         .trials_b = trials_b});
+                         .trials_a = contrast.trials * share,
+                         .trials_b = contrast.trials});
+    planned = std::max(planned, contrast.trials * share);
   }
   if (contrasts.empty()) return {};
   const ComparisonOutlook outlook = comparison_outlook(contrasts, margin);
   const std::string power = number_text(std::round(100 * outlook.power)) + " %";
-  const std::string needed = number_text(outlook.trials_needed_a) + " trials per contrast (" +
-                             number_text(std::round(trials_b * share)) + " planned)";
+  const std::string needed =
+      number_text(outlook.trials_needed_a) + " trials per contrast (" + number_text(std::round(planned)) + " planned)";
   if (outlook.reaches_80_percent()) {
     return {outlook, "if camera and twin are equal, the comparison finds them equivalent within " + margin_text +
-                         " with a probability of " + power + " at best; 80 % would need " + needed};
+                         " with a probability of at least " + power + "; 80 % would need " + needed};
   }
   return {outlook, "warning: the plan can hardly show equivalence within " + margin_text +
-                       ": equal acuities would be found equivalent with a probability of " + power +
-                       " at best; 80 % needs " + needed};
+                       ": equal acuities would be found equivalent with a probability of " + power + "; 80 % needs " +
+                       needed};
+}
+
+ComparisonForecast comparison_forecast(const TodCurve& a, const TodCurve& b, const Comparison& comparison) {
+  std::vector<PlannedComparison> contrasts;
+  double margin = 0, trials = 0;
+  for (const ComparisonPoint& point : comparison.points) {
+    const TodPoint* of_a = point_at(a, point.delta_t_a_k);
+    const TodPoint* of_b = point_at(b, point.delta_t_b_k);
+    if (of_a == nullptr || of_b == nullptr) continue;
+    const auto se_a = standard_error(of_a->fit), se_b = standard_error(of_b->fit);
+    if (!se_a || !se_b) {
+      return {std::nullopt, "warning: these trials cannot show equivalence at " + number_text(point.set_delta_t_k) +
+                                " K: an interval has an open side"};
+    }
+    margin = point.margin_percent;
+    trials = std::max(trials, of_a->fit.trials);
+    contrasts.push_back({.delta_t_k = point.set_delta_t_k,
+                         .se_ln_a = *se_a,
+                         .se_ln_b = *se_b,
+                         .trials_a = of_a->fit.trials,
+                         .trials_b = of_b->fit.trials});
+  }
+  if (contrasts.empty()) return {};
+  const ComparisonOutlook outlook = comparison_outlook(contrasts, margin);
+  const std::string sentence = "trials like these find equal acuities equivalent within " + number_text(margin) +
+                               " % with a probability of " + number_text(std::round(100 * outlook.power)) +
+                               " %; 80 % needs " + number_text(outlook.trials_needed_a) +
+                               " trials per contrast of A (" + number_text(trials) + " made), those of B in proportion";
+  return {outlook, (outlook.reaches_80_percent() ? "" : "warning: ") + sentence};
 }
 
 }  // namespace todbench

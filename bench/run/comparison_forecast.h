@@ -1,4 +1,4 @@
-// What the comparison of a plan can show, said before it is made.
+// What a comparison can show: of a plan, said before it is made, and of two curves that have been measured.
 #pragma once
 
 #include <optional>
@@ -6,16 +6,23 @@
 
 #include "bench/run/prediction.h"
 #include "bench/session/plan.h"
+#include "tod/comparison.h"
 #include "tod/planning.h"
 
 namespace todbench {
 
-/// Outlook of camera against twin: standard errors from the predicted uncertainty of the simulated design, that of the
-/// camera scaled to its own number of phases; trials count as independent, so that it is the best case.
 struct ComparisonForecast {
   std::optional<ComparisonOutlook> outlook;  ///< nothing where a contrast identifies no threshold
-  std::string sentence;                      ///< a warning where the power stays below 80 %
+  std::string sentence;                      ///< begins with "warning" where the power stays below 80 %
+  [[nodiscard]] bool warns() const { return !outlook || !outlook->reaches_80_percent(); }
 };
+
+/// Outlook of camera against twin: standard errors from the predicted uncertainty of the simulated design, that of the
+/// camera scaled to its own number of phases.
 [[nodiscard]] ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& prediction);
+
+/// Of two curves, at the contrasts of their comparison: standard errors from their intervals, clusters included.
+[[nodiscard]] ComparisonForecast comparison_forecast(const TodCurve& a, const TodCurve& b,
+                                                     const Comparison& comparison);
 
 }  // namespace todbench

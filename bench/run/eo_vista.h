@@ -18,7 +18,7 @@ struct EoVistaOptions {
   std::stop_token stop{};
 };
 
-/// Runs on as many threads as there are processors, at most five; the result does not depend on their number. Errors:
+/// Runs on as many threads as there are processors, at most eight; the result does not depend on their number. Errors:
 /// `interrupted`, and whatever a part of it has.
 [[nodiscard]] Result<Reproduction> reproduce_eo_vista(const EoVistaOptions& options);
 

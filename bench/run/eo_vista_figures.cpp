@@ -82,9 +82,14 @@ void super_resolution_gains(const std::vector<ReproducedThreshold>& t, std::vect
   };
   out.push_back(
       with(gain(text({"DSR2 gain, human (human-like-1)", at_contrast(high)}), ratio(human, high)), "50 %", 50,
-           "Lower. Probable cause: samples go into the nearest cell of the fine grid, up to a quarter of a pitch from "
-           "their place, a blur that the narrow filter of human-like-1 shows more than that of hvs-1. "
-           "The paper does not describe its DSR2 further."));
+           "Lower, because samples go into the nearest cell of the fine grid, up to a quarter of a pitch from their "
+           "place: the next row has the same camera and observer without that. The paper does not describe its DSR2; "
+           "its gain lies between the two."));
+  out.push_back(with(gain(text({"The same with frames displaced by exact half pitches", at_contrast(high)}),
+                          acuity_ratio(at(t, dsr2_exact, human, high), at(t, still, human, high))),
+                     "", std::nullopt,
+                     "Every sample lies on the fine grid: the gain of microscan. What is missing above is the price of "
+                     "displacements that nobody controls."));
   out.push_back(with(gain(text({"DSR2 gain, human (human-like-1)", at_contrast(low)}), ratio(human, low)),
                      "larger than with microscan, no figure", std::nullopt,
                      "The different behaviour at low contrast: averaging lowers the noise, microscan does not. The "

@@ -18,6 +18,7 @@ inline constexpr const char* normal = "SC2000";
 inline constexpr const char* microscan = "SC2000 + microscan";
 inline constexpr const char* still = "emulated camera, still";
 inline constexpr const char* dsr2 = "emulated camera + DSR2";
+inline constexpr const char* dsr2_exact = "emulated camera + DSR2 of exact half pitches";
 inline constexpr const char* hvs = "hvs-1";
 inline constexpr const char* human = "human-like-1";
 }  // namespace eo_vista

@@ -325,6 +325,7 @@ Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOption
   phase(*folder, listener, "simulating " + inputs->sensor.name);
   auto run = run_simulated(plan, *inputs, *folder, SessionCurve::main, {}, listener, stop);
   if (!run) return abandon(*folder, provenance, run.error());
+  run->result.notes.insert(run->result.notes.end(), inputs->warnings.begin(), inputs->warnings.end());
   provenance.run = run_record(run->result, run->wall_s);
   return concluded({.folder = folder->path(),
                     .curve = std::move(run->curve),
@@ -384,6 +385,7 @@ Result<ExperimentOutcome> measure_on_bench(const Plan& plan, const ExperimentInp
   phase(*folder, listener, "measuring " + info.model + " " + info.serial);
   auto result = run_measured(plan, inputs, bench, *folder, listener, stop);
   if (!result) return abandon(*folder, provenance, with_context("measuring", result.error()));
+  result->notes.insert(result->notes.end(), inputs.warnings.begin(), inputs.warnings.end());
   if (!forecast.empty()) result->notes.push_back(forecast);
   provenance.run = run_record(*result, seconds_since(begin));
   bench = {};

@@ -14,8 +14,13 @@
 namespace todbench {
 namespace {
 
-// Weibull slope of the searching observer: dP/dlnS = (b/4) ln 3 at the threshold is 1.0 to 1.5, b 3.6 to 5.5.
-constexpr double expected_slope = 4;
+// Weibull slopes of the searching observer: 2.8 (noise rules) to 6.5 (microscan, no noise). The first tier finds them
+// within a quarter, except without noise, where it sees steps.
+constexpr double flattest = 2.5, steepest = 6;
+
+// Intervals of runs over the one of the expected counts: 1.03 +- 0.07, because answers scatter and trials of one
+// presentation or place are not quite independent. 19 of 20 runs stay below 1.2 (asked_uncertainty_study).
+constexpr double likely_excess = 1.2;
 
 /// Trials per size at one contrast.
 std::vector<Level> levels_of(const Plan& plan, const std::vector<TargetPlate>& plates) {
@@ -31,11 +36,13 @@ std::vector<Level> levels_of(const Plan& plan, const std::vector<TargetPlate>& p
   return levels;
 }
 
-std::optional<double> uncertainty_percent(const Plan& plan, const std::vector<Level>& levels, double s75_mrad) {
-  const auto design = design_at(levels, plan.fit.form, s75_mrad, expected_slope, plan.fit.lapse.value_or(0.01));
+std::optional<double> uncertainty_percent(const Plan& plan, const std::vector<Level>& levels, double s75_mrad,
+                                          double slope) {
+  const auto design =
+      design_at(levels, plan.fit.form, s75_mrad, std::clamp(slope, flattest, steepest), plan.fit.lapse.value_or(0.01));
   const auto fit = expected_fit(design, fit_options(plan));
   if (!fit) return std::nullopt;
-  return 100 * std::expm1(1.96 * fit->se_ln_threshold);
+  return 100 * std::expm1(likely_excess * 1.96 * fit->se_ln_threshold);
 }
 
 /// Draws that the direct estimate will need for its standard error: it is near (0.08 + 0.5 q) / sqrt(draws) of S75.
@@ -62,6 +69,23 @@ double simulation_seconds(const Plan& plan, const std::vector<TargetPlate>& plat
     seconds += shown * triangles * 1.2e-4 * n2;
   }
   return seconds;
+}
+
+/// Of an adaptive schedule, from what constant stimuli would come to: as many trials as make the interval as narrow as
+/// asked, or as the cap allows. It never ends a contrast before eight presentations.
+void adapt(ContrastPrediction& point, const Plan& plan, const std::vector<TargetPlate>& plates) {
+  if (plan.schedule.kind != ScheduleKind::adaptive || !point.uncertainty_percent || !(point.trials > 0)) return;
+  double triangles = 0;
+  for (const auto& plate : plates) triangles += static_cast<double>(plate.triangles.size());
+  const double per_presentation = triangles / static_cast<double>(plates.size());
+  const double asked = plan.schedule.half_width_percent / 100, constant = std::log1p(*point.uncertainty_percent / 100);
+  const double needed = std::max(point.trials * std::pow(constant / asked, 2), 8 * per_presentation);
+  const double share = plan.schedule.max_presentations / static_cast<double>(plan.target.delta_t_k.size());
+  const double cap = std::max(std::floor(share), 1.0) * per_presentation;
+  // Below the cap the schedule goes on until the interval itself is narrow enough.
+  const double reached = needed <= cap ? asked : constant * std::sqrt(point.trials / cap);
+  point.uncertainty_percent = 100 * std::expm1(reached);
+  point.trials = std::round(std::min(needed, cap));
 }
 
 Result<void> reachable(const Plan& plan, const Accuracy& accuracy, const EffectPlan& effects,
@@ -111,22 +135,25 @@ Result<PlanPrediction> predict_plan(const Plan& plan) {
   PlanPrediction out{.effects = *std::move(effects), .figures = {}, .contrasts = {}, .warnings = {}};
   out.warnings = out.effects.warnings;
   const auto levels = levels_of(plan, *plates);
-  double trials = 0;
-  for (const auto& level : levels) trials += level.total;
-  out.figures.trials =
-      static_cast<std::uint64_t>(std::llround(trials * static_cast<double>(plan.target.delta_t_k.size())));
-  double seconds = simulation_seconds(plan, *plates, simulated);
+  double constant_trials = 0, trials = 0;  // per contrast, of all
+  for (const auto& level : levels) constant_trials += level.total;
+  double seconds = 0;
   bool all_identified = true;
   for (const double delta_t_k : plan.target.delta_t_k) {
-    ContrastPrediction point{.delta_t_k = delta_t_k, .s75_mrad = std::nullopt, .uncertainty_percent = std::nullopt};
+    ContrastPrediction point{.delta_t_k = delta_t_k,
+                             .s75_mrad = std::nullopt,
+                             .uncertainty_percent = std::nullopt,
+                             .trials = constant_trials};
     for (const auto& outlook : out.effects.outlooks) {
       if (outlook.delta_t_k != delta_t_k) continue;
       point.s75_mrad = outlook.s75_pitch * sensor->ifov_mrad();
-      point.uncertainty_percent = uncertainty_percent(plan, levels, *point.s75_mrad);
+      point.uncertainty_percent = uncertainty_percent(plan, levels, *point.s75_mrad, outlook.weibull_slope);
       seconds +=
           predicted_direct_seconds(*observer_spec, simulated, outlook.s75_pitch,
                                    static_cast<int>(needed_draws(*accuracy, outlook.q_eff)), accuracy->phases_per_axis);
     }
+    adapt(point, plan, *plates);
+    trials += point.trials;
     if (point.uncertainty_percent) {
       out.figures.predicted_uncertainty_percent =
           std::max(out.figures.predicted_uncertainty_percent.value_or(0), *point.uncertainty_percent);
@@ -137,7 +164,9 @@ Result<PlanPrediction> predict_plan(const Plan& plan) {
     out.contrasts.push_back(point);
   }
   if (!all_identified) out.figures.predicted_uncertainty_percent.reset();
-  out.figures.predicted_s = seconds;
+  out.figures.trials = static_cast<std::uint64_t>(std::llround(trials));
+  const double made = trials / (constant_trials * static_cast<double>(plan.target.delta_t_k.size()));
+  out.figures.predicted_s = seconds + made * simulation_seconds(plan, *plates, simulated);
   return out;
 }
 

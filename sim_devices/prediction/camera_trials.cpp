@@ -72,6 +72,13 @@ struct Presentation {
   PlateScene scene;                           ///< of the first
 };
 
+cv::Point2d displacement_of(FrameDisplacements kind, int frame) {
+  if (kind == FrameDisplacements::half_pitches) return {0.5 * (frame % 2), 0.5 * (frame / 2 % 2)};
+  // Additive recurrence with the plastic number: displacements fill the pixel evenly for any number of frames.
+  const double g = 1.3247179572447460;
+  return {std::remainder(frame / g, 1.0), std::remainder(frame / (g * g), 1.0)};
+}
+
 Presentation expose(const SensorModel& model, const TargetPlate& plate, const CameraTrialOptions& options, int index) {
   const RandomStream phases = RandomStream(options.seed, "camera_trials.phase").sub(static_cast<std::uint64_t>(index));
   Presentation shown;
@@ -79,11 +86,8 @@ Presentation expose(const SensorModel& model, const TargetPlate& plate, const Ca
   shown.scene.delta_t_k = options.delta_t_k;
   shown.scene.distance_m = distance_m;
   shown.scene.centre_px = {phases.uniform(0) - 0.5, phases.uniform(1) - 0.5};
-  // Additive recurrence with the plastic number: displacements fill the pixel evenly for any number of frames.
-  const double g = 1.3247179572447460;
   for (int k = 0; k < options.frames; ++k) {
-    const auto part = [&](double step) { return std::remainder(k * step, 1.0); };
-    const cv::Point2d displacement(part(1 / g), part(1 / (g * g)));
+    const cv::Point2d displacement = displacement_of(options.displacements, k);
     PlateScene scene = shown.scene;
     scene.centre_px += displacement;
     const auto frame =

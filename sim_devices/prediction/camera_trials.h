@@ -11,11 +11,18 @@
 
 namespace todbench {
 
+/// Where the frames of a super-resolved picture lie against each other.
+enum class FrameDisplacements {
+  anywhere,      ///< evenly over half a pitch each way, as a hand or a platform moves: samples are off the fine grid
+  half_pitches,  ///< exact multiples of half a pitch: every sample lies on the fine grid
+};
+
 struct CameraTrialOptions {
   double delta_t_k = 0;             ///< of every triangle, not 0
   std::vector<double> sizes_pitch;  ///< each is shown four times in a picture, once in each orientation
   int presentations = 24;           ///< pictures, each in a sampling phase of its own; at least 2
   int frames = 16;                  ///< per super-resolved picture, displaced against each other by up to half a pitch
+  FrameDisplacements displacements = FrameDisplacements::anywhere;
   Accuracy accuracy;
   std::uint64_t seed = 1;
   std::stop_token stop{};

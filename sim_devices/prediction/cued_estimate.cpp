@@ -90,6 +90,22 @@ Result<double> CuedEstimate::sensitivity(double q) {
   return std::log(*more / *less) / (2 * std::log(1.2));
 }
 
+Result<double> CuedEstimate::weibull_slope(double q) {
+  const auto size = s75_pitch(q);
+  if (!size) return size;
+  const int middle = static_cast<int>(std::lround(std::log(*size) / std::log(size_step)));
+  const int below = std::max(middle - 2, smallest_index), above = std::min(middle + 2, largest_index);
+  double logits[2];
+  for (int i = 0; i < 2; ++i) {
+    const auto trial = trial_at(i == 0 ? below : above);
+    if (!trial) return tl::unexpected(trial.error());
+    logits[i] = logit((*trial)->known_position_proportion(q, quadrature_nodes));
+  }
+  // dlogit/dP at 3/4 is 1/(1/2) + 1/(1/4) = 6.
+  const double rise = (logits[1] - logits[0]) / ((above - below) * std::log(size_step)) / 6;
+  return 4 * rise / std::log(3.0);
+}
+
 double discriminability(const SensorSpec& sensor, const SensorPlan& plan, double size_pitch, int wavelengths,
                         SceneMotion motion) {
   const int period = 2 * static_cast<int>(std::ceil(2 * size_pitch)) + 8;

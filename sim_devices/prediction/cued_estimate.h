@@ -27,6 +27,8 @@ class CuedEstimate {
   [[nodiscard]] Result<double> s75_pitch(double q);
   /// d ln S75 / d ln q at q.
   [[nodiscard]] Result<double> sensitivity(double q);
+  /// Slope b of the Weibull function that rises as the proportion correct does at its 75 % size: dP/dlnS = (b/4) ln 3.
+  [[nodiscard]] Result<double> weibull_slope(double q);
   /// The size trial next to `size_pitch`.
   [[nodiscard]] Result<const SizeTrial*> trial(double size_pitch);
 

@@ -79,6 +79,9 @@ Result<Contrast> contrast_of(CuedEstimate& cued, const SensorSpec& sensor, const
   }
   const auto exponent = cued.sensitivity(std::sqrt(out.noise.total()));
   if (!exponent) return tl::unexpected(exponent.error());
+  const auto slope = cued.weibull_slope(std::sqrt(out.noise.total()));
+  if (!slope) return tl::unexpected(slope.error());
+  out.outlook.weibull_slope = *slope;
   out.outlook.s75_pitch = *size;
   // The searching observer loses faster than the one that knows the position: its S75 is up to 1.06 times larger at
   // q = 0.3 and 1.12 at 0.7. Half as much again and a tenth keep the bound above it.
@@ -205,7 +208,7 @@ void obey(const EffectPlannerOptions& options, EffectPlan& out) {
     if (contains(options.skip, d.effect)) {
       d.decision = Decision::skip;
       d.reason = "skipped on request; " + (d.predicted_change_percent
-                                               ? formatted("predicted change %.2g %%", *d.predicted_change_percent)
+                                               ? formatted("predicted change %.3g %%", *d.predicted_change_percent)
                                                : std::string("no criterion bounds the change"));
       out.requested_change_percent += d.predicted_change_percent.value_or(0);
       if (!d.predicted_change_percent)
@@ -216,6 +219,12 @@ void obey(const EffectPlannerOptions& options, EffectPlan& out) {
       d.decision = Decision::simulate;
       d.reason = "simulated on request";
     }
+  }
+  const double together = out.requested_change_percent + out.skipped_change_percent;
+  if (out.requested_change_percent > 0 && together > options.tolerance_percent) {
+    out.warnings.push_back(
+        formatted("effects skipped on request may change the acuity by %.3g %%: the tolerance of %.3g %% is not kept",
+                  out.requested_change_percent, options.tolerance_percent));
   }
 }
 

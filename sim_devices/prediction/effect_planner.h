@@ -29,6 +29,7 @@ struct ContrastOutlook {
   double s75_pitch = 0;       ///< of the observer that knows the position
   double noise_exponent = 0;  ///< d ln S75 / d ln q_eff
   double blur_exponent = 0;   ///< d ln D / d ln S
+  double weibull_slope = 0;   ///< of the psychometric function at 75 %, of the observer that knows the position
 };
 
 struct EffectPlan {

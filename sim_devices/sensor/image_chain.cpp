@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "sim_devices/sensor/far_field.h"
 #include "sim_devices/sensor/transfer_functions.h"
 
 namespace todbench {
@@ -24,6 +25,9 @@ double needed_band(const SensorSpec& spec, const SensorPlan& plan, const Accurac
   }
   return band;
 }
+
+/// Pitches round a window within which shapes are computed exactly.
+constexpr double near_field = 32;
 
 /// Largest distance of a vertex from the origin.
 double reach(const Polygon& shape) {
@@ -70,10 +74,12 @@ ImageChain::ImageChain(SensorSpec spec, SensorPlan plan, Accuracy accuracy, Scen
 }
 
 FrequencyLattice ImageChain::lattice(double size_pitch) const {
-  // Diffraction tails fall as r^-3 and carry energy in proportion to the area: wrapped signal 1.6e-4 at period 16 for
-  // size 2.6.
+  // Diffraction tails fall as r^-3 and carry energy in proportion to the area and to the width of the blur spot in
+  // pitches: wrapped signal 1.6e-4 at period 16 for size 2.6 and a spot of 13 um x f/1 on 47.5 um.
   const double relative_area = std::max(1.0, std::pow(size_pitch / 2.6, 2));
-  const double tails = 16 * std::cbrt(1.6e-4 * relative_area / accuracy_.wrap_tolerance);
+  const double spot = spec_.wavelength_max_um * spec_.f_number / spec_.pitch_um;
+  const double relative_spot = plan_.simulates(Effect::diffraction) ? std::max(1.0, spot / (13 / 47.5)) : 1.0;
+  const double tails = 16 * std::cbrt(1.6e-4 * relative_area * relative_spot / accuracy_.wrap_tolerance);
   // The tail of a moving target has fallen to e^-14, 1e-6, after fourteen smears.
   const double body = 2 * size_pitch + 16 + 14 * std::hypot(smear_pitch_.x, smear_pitch_.y);
   const int period = 8 * static_cast<int>(std::ceil(std::max(tails, body) / 8 - 1e-9));
@@ -96,6 +102,42 @@ PolygonImage ImageChain::image(const Polygon& shape_pitch) const {
 
 ImageChain::InfinitePlane ImageChain::infinite_plane(const Polygon& shape_pitch, cv::Point2d first, double step,
                                                      cv::Size size) const {
+  const cv::Point2d half_window(0.5 * step * (size.width - 1), 0.5 * step * (size.height - 1));
+  const cv::Point2d centre = first + half_window;
+  const Polygon shape = placed(shape_pitch, 1, -centre);
+  const double half_width = std::max(half_window.x, half_window.y) + near_field +
+                            14 * std::hypot(smear_pitch_.x, smear_pitch_.y) + 8 * spec_.aberration_sigma_pitch;
+  if (reach(shape) <= std::numbers::sqrt2 * half_width) return extrapolated(shape_pitch, first, step, size);
+  const Polygon near = clipped(shape, half_width);
+  InfinitePlane out{cv::Mat1d::zeros(size), 0};
+  if (area(near) > 0) out = extrapolated(near, first - centre, step, size);
+  add_far_field(out, shape, first - centre, step, half_width);
+  return out;
+}
+
+/// The transfer function of a diffraction spot has a cusp at zero, 1 - a |f|: far away the spot falls as
+/// a / (4 pi^2 r^3), the inverse transform of -a |f|. Averaged over detector and aberration, of variance v per axis,
+/// that changes by 9 v / (2 r^2) of itself.
+void ImageChain::add_far_field(InfinitePlane& near, const Polygon& shape_pitch, cv::Point2d first, double step,
+                               double half_width) const {
+  const OpticsMtf optics(spec_, plan_, accuracy_.wavelengths);
+  constexpr double small = 1e-4;  // cycles per pitch; the next terms are of second and third order
+  const double cusp = (1 - optics(small)) / small / (4 * std::numbers::pi * std::numbers::pi);
+  const double detector = plan_.simulates(Effect::detector) ? spec_.detector_pitch_ratio() : 0;
+  const double variance = detector * detector / 12 + spec_.aberration_sigma_pitch * spec_.aberration_sigma_pitch;
+  double largest = 0;
+  for (int row = 0; row < near.values.rows; ++row) {
+    for (int column = 0; column < near.values.cols; ++column) {
+      const double added = cusp * far_integral(shape_pitch, first + step * cv::Point2d(column, row), half_width);
+      near.values(row, column) += added;
+      largest = std::max(largest, added);
+    }
+  }
+  near.max_error_estimate += largest * (9 * (variance + 0.1) / (near_field * near_field) + 1e-5);
+}
+
+ImageChain::InfinitePlane ImageChain::extrapolated(const Polygon& shape_pitch, cv::Point2d first, double step,
+                                                   cv::Size size) const {
   const cv::Point2d far(std::abs(first.x) + step * size.width, std::abs(first.y) + step * size.height);
   const double extent = std::max({reach(shape_pitch), far.x / 2, far.y / 2});
   const FrequencyLattice small = lattice(extent);

@@ -29,7 +29,9 @@ class ImageChain {
   [[nodiscard]] PolygonImage image(const Polygon& shape_pitch) const;
 
   /// Samples for an infinite plane, by Richardson extrapolation from periods P and 2P (the wrapped signal falls as
-  /// P^-3), with a bound on the remaining error estimated from their difference.
+  /// P^-3), with a bound on the remaining error estimated from their difference. Of a shape that reaches far beyond the
+  /// window only the part near it is computed so; the rest adds the tail of the diffraction spot, c r^-3, integrated:
+  /// memory and time do not grow with the shape.
   struct InfinitePlane {
     cv::Mat1d values;
     double max_error_estimate = 0;
@@ -38,6 +40,10 @@ class ImageChain {
                                              cv::Size size) const;
 
  private:
+  [[nodiscard]] InfinitePlane extrapolated(const Polygon& shape_pitch, cv::Point2d first, double step,
+                                           cv::Size size) const;
+  void add_far_field(InfinitePlane& near, const Polygon& shape_pitch, cv::Point2d first, double step,
+                     double half_width) const;
   [[nodiscard]] std::shared_ptr<const FilterTable> filter(const FrequencyLattice& lattice) const;
 
   SensorSpec spec_;

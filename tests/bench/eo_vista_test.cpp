@@ -11,7 +11,7 @@ namespace {
 /// Acuity 0.5 at every contrast for every sensor and observer, times `factor` for one of them.
 std::vector<ReproducedThreshold> thresholds(const std::string& sensor, double factor) {
   std::vector<ReproducedThreshold> all;
-  for (const char* s : {eo_vista::normal, eo_vista::microscan, eo_vista::still, eo_vista::dsr2}) {
+  for (const char* s : {eo_vista::normal, eo_vista::microscan, eo_vista::still, eo_vista::dsr2, eo_vista::dsr2_exact}) {
     for (const char* o : {eo_vista::hvs, eo_vista::human}) {
       for (const double c : eo_vista_contrasts_k) {
         const double acuity = 0.5 * (s == sensor ? factor : 1);

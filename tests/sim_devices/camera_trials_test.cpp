@@ -44,6 +44,26 @@ TEST(CameraTrials, SuperResolutionAveragesNoiseAndResolvesMore) {
   EXPECT_GT(share(trials.super_resolved, large), 0.95);
 }
 
+TEST(CameraTrials, ExactHalfPitchesPutEverySampleOnTheFineGridAndResolveMore) {
+  TemplateObserver observer({}, triangle_alternatives());
+  const SensorSpec sensor = test::sc2000();
+  CameraTrialOptions options{
+      .delta_t_k = 16.9, .sizes_pitch = {0.9, 1.0}, .presentations = 12, .frames = 8, .accuracy = Accuracy::draft()};
+  const auto anywhere = camera_trials(sensor, {&observer}, options);
+  options.displacements = FrameDisplacements::half_pitches;
+
+  const auto exact = camera_trials(sensor, {&observer}, options);
+
+  ASSERT_TRUE(anywhere && exact);
+  EXPECT_LT(exact->placement_rms_px, 0.02);  // what the registration is wrong by
+  EXPECT_GT(anywhere->placement_rms_px, 0.08);
+  // Thresholds 1.01 and 1.09 pitches with slopes near 5: 0.11 of the answers between them, 48 answers each at 2 sizes.
+  double exact_right = 0, anywhere_right = 0;
+  for (const auto& level : exact->observers[0].super_resolved) exact_right += level.correct;
+  for (const auto& level : anywhere->observers[0].super_resolved) anywhere_right += level.correct;
+  EXPECT_GT(exact_right, anywhere_right);
+}
+
 TEST(CameraTrials, RefusesWhatHasNoMeaning) {
   TemplateObserver observer({}, triangle_alternatives());
   const SensorSpec sensor = test::sc2000();

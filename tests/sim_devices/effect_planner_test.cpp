@@ -96,6 +96,19 @@ TEST(EffectPlanner, ObeysWhatIsRequestedAndSaysSo) {
   EXPECT_THAT(plan->warnings, testing::ElementsAre(testing::HasSubstr("detector is skipped on request")));
 }
 
+TEST(EffectPlanner, WarnsWhereWhatIsSkippedOnRequestBreaksTheTolerance) {
+  EffectPlannerOptions breaks, keeps;
+  breaks.skip = {Effect::temporal_noise};  // 0.07 K at 0.23 K
+  keeps.skip = {Effect::quantisation};
+
+  const auto broken = plan_of(test::sc2000(), {0.23}, breaks);
+  const auto kept = plan_of(test::sc2000(), {0.23}, keeps);
+
+  ASSERT_TRUE(broken && kept);
+  EXPECT_THAT(broken->warnings, testing::ElementsAre(testing::HasSubstr("the tolerance of 1 % is not kept")));
+  EXPECT_THAT(kept->warnings, testing::IsEmpty());
+}
+
 TEST(EffectPlanner, RefusesAPlanWithoutAnyThresholdAndNamesTheContrast) {
   const auto none = plan_of(test::sc2000(), {1e-4});
   const auto one = plan_of(test::sc2000(), {1e-4, 16.9});
@@ -129,13 +142,15 @@ TEST(TwoTiers, TheAnalyticThresholdOfKnownPositionsIsThatOfTheSearchWithinItsVal
 
 TEST(EffectPlannerProof, TheTrueChangeStaysWithinTheToleranceOnEveryTwentyFourthSceneOfTheGrid) {
   const auto scenes = test::all_scenes();
+  test::Observers observers;
   for (std::size_t i = 11; i < scenes.size(); i += 24) {
-    test::BruteForce brute(scenes[i], 1, 100);
+    TemplateObserver& observer = observers.of(scenes[i].observer);
+    test::BruteForce brute(scenes[i], observer, 1, 100);
     for (const double tolerance : {1.0, 5.0}) {
-      const auto plan = test::planned(scenes[i], brute.observer(), tolerance);
+      const auto plan = test::planned(scenes[i], observer, tolerance);
 
       ASSERT_TRUE(plan.has_value()) << plan.error().message;
-      const auto change = brute.change(plan->plan);
+      const auto change = brute.change(plan->plan, tolerance);
       // Draw by draw the same noise: what is left is a standard error of 0.1 % and below.
       EXPECT_LE(std::abs(change.percent), tolerance) << scenes[i].name;
     }
@@ -143,23 +158,18 @@ TEST(EffectPlannerProof, TheTrueChangeStaysWithinTheToleranceOnEveryTwentyFourth
 }
 
 TEST(EffectPlannerProof, TheTrueChangeStaysWithinTheToleranceForRandomScenes) {
+  test::Observers observers;
   const RandomStream random(7, "effect_planner_test");
   for (std::uint64_t k = 0; k < 3; ++k) {
-    const auto uniform = [&](std::uint64_t i) { return random.sub(k).uniform(i); };
-    test::GridScene scene;
-    scene.sensor = test::sensor_with_everything(std::pow(10, 1.2 * uniform(0) - 0.6), uniform(1) < 0.5 ? 1 : 2);
-    scene.sensor.fixed_pattern_k *= 2 * uniform(2);
-    scene.sensor.row_noise_k *= 2 * uniform(3);
-    scene.sensor.aberration_sigma_pitch *= 2 * uniform(4);
-    scene.delta_t_k = std::pow(10, 2.2 * uniform(5) - 1);
-    scene.motion = test::motion_of(scene.sensor, 0.4 * uniform(6));
-    const double tolerance = std::pow(10, uniform(7));
-    test::BruteForce brute(scene, 1, 100);
+    const test::GridScene scene = test::random_scene(7, k);
+    const double tolerance = std::pow(10, random.uniform(k));
+    TemplateObserver& observer = observers.of(scene.observer);
+    test::BruteForce brute(scene, observer, 1, 100);
 
-    const auto plan = test::planned(scene, brute.observer(), tolerance);
+    const auto plan = test::planned(scene, observer, tolerance);
 
     ASSERT_TRUE(plan.has_value()) << plan.error().message;
-    EXPECT_LE(std::abs(brute.change(plan->plan).percent), tolerance) << k;
+    EXPECT_LE(std::abs(brute.change(plan->plan, tolerance).percent), tolerance) << scene.name;
   }
 }
 

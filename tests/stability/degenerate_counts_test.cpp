@@ -104,7 +104,7 @@ TEST(DegenerateCounts, DecreasingAnswersHaveNoThreshold) {
   EXPECT_TRUE(finite_where_given(*fit));
 }
 
-// Every small table of counts at three sizes, six million decades apart and close together: nothing made is a NaN and
+// Every small table of counts at three sizes, six decades apart and close together: nothing made is a NaN and
 // an interval never excludes its own estimate.
 TEST(DegenerateCounts, EverySmallTableOfCountsGivesFiniteNumbers) {
   for (const double spread : {1.001, 2.0, 1e6}) {
@@ -112,15 +112,17 @@ TEST(DegenerateCounts, EverySmallTableOfCountsGivesFiniteNumbers) {
       const std::vector<Level> levels{
           {1 / spread, code % 4 * 1.0, 3, -1}, {1, code / 4 % 4 * 1.0, 3, -1}, {spread, code / 16 * 1.0, 3, -1}};
       for (const auto& lapse : {std::optional(0.0), std::optional<double>()}) {
-        const auto fit = fit_psychometric(levels, {.fixed_lapse = lapse});
+        for (const PsychometricForm form : {PsychometricForm::size, PsychometricForm::acuity}) {
+          const auto fit = fit_psychometric(levels, {.form = form, .fixed_lapse = lapse});
 
-        ASSERT_TRUE(fit);
-        EXPECT_TRUE(finite_where_given(*fit)) << spread << " " << code;
-        if (fit->threshold && fit->ci95.low) {
-          EXPECT_LE(*fit->ci95.low, *fit->threshold * (1 + 1e-9));
-        }
-        if (fit->threshold && fit->ci95.high) {
-          EXPECT_GE(*fit->ci95.high, *fit->threshold * (1 - 1e-9));
+          ASSERT_TRUE(fit);
+          EXPECT_TRUE(finite_where_given(*fit)) << spread << " " << code;
+          if (fit->threshold && fit->ci95.low) {
+            EXPECT_LE(*fit->ci95.low, *fit->threshold * (1 + 1e-9));
+          }
+          if (fit->threshold && fit->ci95.high) {
+            EXPECT_GE(*fit->ci95.high, *fit->threshold * (1 - 1e-9));
+          }
         }
       }
     }

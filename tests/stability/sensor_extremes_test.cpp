@@ -5,6 +5,8 @@
 #include <thread>
 
 #include "sim_devices/prediction/direct_estimate.h"
+#include "sim_devices/sensor/far_field.h"
+#include "sim_devices/sensor/image_chain.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "tod/test_pattern.h"
 
@@ -93,6 +95,46 @@ TEST(SensorExtremes, NoiseAThousandTimesTheSignalStaysFiniteAndHasItsSpread) {
   const double n = static_cast<double>(picture.total());
   EXPECT_NEAR(sd[0], 10, 4 * 10 / std::sqrt(2 * n));
   EXPECT_NEAR(mean[0], 0, 4 * 10 / std::sqrt(n) + 0.01);
+}
+
+// Hard: the integrand falls over decades and the region is what is left of a shape. A square of half side L round the
+// point, without the one of half side R: 8 times the integral of cos / R - cos / L over an eighth of a turn.
+TEST(SensorExtremes, FarIntegralsOfSquaresAreClosed) {
+  for (const double outer : {40.0, 1e3, 1e9}) {
+    const Polygon square{{-outer, -outer}, {outer, -outer}, {outer, outer}, {-outer, outer}};
+    const double exact = 4 * std::sqrt(2.0) * (1 / 36.0 - 1 / outer);
+
+    EXPECT_NEAR(far_integral(square, {0, 0}, 36), exact, 1e-5 * exact) << outer;
+    // Corners lie where edges of that length meet the wall: rounding of 1e-16 of it on each of four sides of 72.
+    EXPECT_NEAR(area(clipped(square, 36)), 72.0 * 72.0, 4 * 72 * 2.3e-16 * outer + 1e-9);
+  }
+  EXPECT_EQ(far_integral({{-5, -5}, {5, -5}, {5, 5}}, {1, 2}, 36), 0);
+  EXPECT_TRUE(clipped({{50, 50}, {60, 50}, {60, 60}}, 36).empty());
+}
+
+// Hard: a lattice that holds a shape of 500 pitches has 10^9 frequencies. Only what is near a window is computed on
+// one, the rest is the integrated tail: against the whole lattice where that can be had, at 70 pitches.
+TEST(SensorExtremes, PicturesOfHugeTrianglesAreThoseOfTheWholeLattice) {
+  const SensorSpec spec;
+  const Accuracy accuracy = Accuracy::normal();
+  const ImageChain chain(spec, full_plan(spec, {}, {}), accuracy);
+  for (const cv::Point2d centre : {cv::Point2d(0.3, 0.2), cv::Point2d(2, 30.7)}) {  // inside, and across the base
+    const Polygon shape = triangle(70, Apex::up, centre);
+
+    const auto found = chain.infinite_plane(shape, {-2, -2}, 1, {5, 5});
+
+    const cv::Mat1d whole = chain.image(shape).sample({-2, -2}, 1, {5, 5});
+    EXPECT_LE(cv::norm(found.values, whole, cv::NORM_INF), accuracy.wrap_tolerance + found.max_error_estimate);
+    EXPECT_LT(found.max_error_estimate, 1e-5);
+  }
+  double before = 0;
+  for (const double size : {500.0, 1e9}) {
+    const double middle = chain.infinite_plane(triangle(size, Apex::left), {0, 0}, 1, {1, 1}).values(0, 0);
+    EXPECT_GT(middle, before) << size;  // the more of the spot's tail lies inside
+    EXPECT_LE(middle, 1 + 1e-5) << size;
+    before = middle;
+  }
+  EXPECT_NEAR(before, 1, 1e-5);  // a plane
 }
 
 TemplateObserver observer_with(double internal_noise) {

@@ -1,0 +1,125 @@
+// What the program says before it measures: effects, trials, uncertainty, time, and what a comparison can show.
+#include "tests/system/system_test_support.h"
+
+namespace todbench::testing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::UnorderedElementsAre;
+
+/// A folder with a plan, and the program run in it.
+class Planning : public ::testing::Test {
+ protected:
+  Ended run(const std::vector<std::string>& arguments) { return todbench(arguments, {.folder = folder_.path()}); }
+  std::filesystem::path at(const std::string& name) const { return folder_.path() / name; }
+  void write(const std::string& name, const std::string& text) { folder_.write(name, text); }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+Json effect_of(const Json& effects, const std::string& name) {
+  for (const auto& effect : effects) {
+    if (effect["name"] == name) return effect;
+  }
+  ADD_FAILURE() << "no effect " << name;
+  return {};
+}
+
+TEST_F(Planning, JsonHasTheKeysOfTheContractAndOneDecisionPerEffect) {
+  write("plan.toml", small_plan(8));
+
+  const Ended ended = run({"plan", "./plan.toml", "--json"});
+
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Json json = one_object(ended);
+  EXPECT_THAT(keys_of(json), UnorderedElementsAre("effects", "trials", "predicted_uncertainty_percent", "predicted_s"));
+  ASSERT_EQ(json["effects"].size(), 14u);
+  for (const auto& effect : json["effects"]) {
+    EXPECT_THAT(keys_of(effect), UnorderedElementsAre("name", "decision", "reason", "predicted_change_percent"));
+    EXPECT_TRUE(effect["decision"] == "simulate" || effect["decision"] == "skip") << effect;
+    EXPECT_GT(effect["reason"].get<std::string>().size(), 10u) << effect;
+  }
+  // Nothing bounds what leaving the footprint out would do; at 16.9 K noise of 0.07 K hardly matters.
+  EXPECT_TRUE(effect_of(json["effects"], "detector")["predicted_change_percent"].is_null());
+  EXPECT_EQ(effect_of(json["effects"], "detector")["decision"], "simulate");
+  EXPECT_EQ(effect_of(json["effects"], "temporal_noise")["decision"], "skip");
+  EXPECT_EQ(json["trials"], 8 * 20);  // phases times triangles of the plate
+  EXPECT_GT(json["predicted_uncertainty_percent"].get<double>(), 1);
+  EXPECT_LT(json["predicted_uncertainty_percent"].get<double>(), 30);
+  EXPECT_GT(json["predicted_s"].get<double>(), 0);
+}
+
+TEST_F(Planning, ALargerToleranceSkipsNoLess) {
+  write("plan.toml", small_plan(4));
+  const auto skipped = [&](const char* percent) {
+    const Json json =
+        one_object(run({"plan", "./plan.toml", "--delta-t-k", "5", "--tolerance-percent", percent, "--json"}));
+    std::set<std::string> names;
+    for (const auto& effect : json["effects"]) {
+      if (effect["decision"] == "skip") names.insert(effect["name"]);
+    }
+    return names;
+  };
+
+  const auto fine = skipped("0.5"), coarse = skipped("5");
+
+  EXPECT_TRUE(std::includes(coarse.begin(), coarse.end(), fine.begin(), fine.end()));
+  EXPECT_GT(coarse.size(), fine.size());
+}
+
+TEST_F(Planning, SkipAndForceAreObeyedAndTheReportSaysSo) {
+  write("plan.toml", small_plan(4));
+  const std::vector<std::string> asked{"--skip", "detector", "--force", "temporal_noise"};
+  const auto with_asked = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), asked.begin(), asked.end());
+    return run(arguments);
+  };
+
+  const Ended planned = with_asked({"plan", "./plan.toml", "--json"});
+  const Ended simulated = with_asked({"simulate", "./plan.toml", "--out", "s", "--json"});
+
+  ASSERT_EQ(planned.code, 0) << planned.err;
+  EXPECT_THAT(planned.err, HasSubstr("effect detector is skipped on request: the tolerance is not kept"));
+  ASSERT_TRUE(completed(simulated));
+  const Json before = one_object(planned)["effects"], after = one_object(simulated)["plan"];
+  EXPECT_EQ(before, after);  // what was said is what was done
+  EXPECT_EQ(effect_of(after, "detector")["decision"], "skip");
+  EXPECT_THAT(effect_of(after, "detector")["reason"].get<std::string>(), HasSubstr("skipped on request"));
+  EXPECT_EQ(effect_of(after, "temporal_noise")["decision"], "simulate");
+  EXPECT_THAT(effect_of(after, "temporal_noise")["reason"].get<std::string>(), HasSubstr("simulated on request"));
+  const std::string report = content_of(at("s") / "report.html");
+  EXPECT_THAT(report, AllOf(HasSubstr("skipped on request"), HasSubstr("simulated on request"),
+                            HasSubstr("the tolerance is not kept")));
+  const Json provenance = Json::parse(content_of(at("s") / "provenance.json"));
+  EXPECT_EQ(effect_of(provenance["effects"], "detector")["decision"], "skip");
+}
+
+TEST_F(Planning, AComparisonThatThePlanCannotDecideIsWarnedOfBeforeAndAfter) {
+  // 160 answers each: a standard error near 4 % each, where 10 % equivalence needs 3.25 % of the ratio.
+  write("few.toml", small_measurement(8));
+  // 8 x 320 answers each: near 1.5 %.
+  write("many.toml",
+        small_measurement(16, "[limits]\nequivalence_margin_percent = 30\n") + "[schedule]\nkind = \"constant\"\n");
+
+  const Ended few = run({"plan", "./few.toml", "--json"});
+  const Ended many = run({"plan", "./many.toml"});
+  const Ended measured = run({"measure", "./few.toml", "--out", "m", "--json"});
+  const Ended compared = run({"compare", "m", "m", "--json"});
+
+  ASSERT_EQ(few.code, 0) << few.err;
+  EXPECT_THAT(few.err, AllOf(HasSubstr("warning: the plan can hardly show equivalence within 10 %"),
+                             HasSubstr("80 % needs"), HasSubstr("(160 planned)")));
+  ASSERT_EQ(many.code, 0) << many.err;
+  EXPECT_THAT(many.err, AllOf(HasSubstr("equivalent within 30 %"), Not(HasSubstr("warning: the plan can hardly"))));
+  ASSERT_TRUE(completed(measured));
+  EXPECT_THAT(measured.err, HasSubstr("the plan can hardly show equivalence within 10 %"));
+  EXPECT_THAT(content_of(at("m") / "report.html"), HasSubstr("the plan can hardly show equivalence within 10 %"));
+  ASSERT_TRUE(completed(compared));
+  EXPECT_THAT(compared.err, AllOf(HasSubstr("warning: trials like these"), HasSubstr("(160 made)")));
+}
+
+}  // namespace
+}  // namespace todbench::testing
