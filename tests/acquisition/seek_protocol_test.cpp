@@ -6,6 +6,8 @@
 #include <numeric>
 #include <random>
 
+#include "tests/parameter_names.h"
+
 namespace todbench {
 namespace {
 
