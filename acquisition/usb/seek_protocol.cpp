@@ -170,33 +170,46 @@ std::optional<std::uint16_t> seek_counter(std::span<const std::uint8_t> bytes, S
 
 SeekDeadPixels::SeekDeadPixels(const cv::Mat1w& calibration_picture) {
   const double limit = dead_limit(calibration_picture);
-  cv::Mat1b known(calibration_picture.size());
-  std::vector<cv::Point> left;
-  for (int y = 0; y < known.rows; ++y) {
-    for (int x = 0; x < known.cols; ++x) {
-      const bool dead = calibration_picture(y, x) == 0 || calibration_picture(y, x) < limit;
-      known(y, x) = dead ? 0 : 1;
-      if (dead) left.emplace_back(x, y);
+  constexpr std::uint8_t dead = 0, waiting = 1, known = 2;
+  cv::Mat1b state(calibration_picture.size());
+  for (int y = 0; y < state.rows; ++y) {
+    for (int x = 0; x < state.cols; ++x) {
+      const bool is_dead = calibration_picture(y, x) == 0 || calibration_picture(y, x) < limit;
+      state(y, x) = is_dead ? dead : known;
+      if (is_dead) ++dead_;
     }
   }
-  dead_ = left.size();
-  const cv::Rect inside({}, known.size());
-  for (std::size_t before = left.size() + 1; left.size() < before;) {
-    before = left.size();
-    std::vector<cv::Point> ring, rest;
-    for (const auto at : left) {
-      Filled filled{.at = at, .from = {}, .neighbours = 0};
-      for (const cv::Point step : {cv::Point{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
-        const cv::Point from = at + step;
-        if (inside.contains(from) && known(from) != 0) {
-          filled.from[static_cast<std::size_t>(filled.neighbours++)] = from;
-        }
-      }
-      if (filled.neighbours > 0) order_.push_back(filled);
-      (filled.neighbours > 0 ? ring : rest).push_back(at);
+  const auto each_neighbour = [inside = cv::Rect({}, state.size())](cv::Point at, const auto& visit) {
+    for (const cv::Point step : {cv::Point{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+      if (inside.contains(at + step)) visit(at + step);
     }
-    for (const auto at : ring) known(at) = 1;
-    left = std::move(rest);
+  };
+  std::vector<cv::Point> ring;
+  const auto put_dead_neighbours_into = [&](std::vector<cv::Point>& out, cv::Point at) {
+    each_neighbour(at, [&](cv::Point neighbour) {
+      if (state(neighbour) != dead) return;
+      state(neighbour) = waiting;
+      out.push_back(neighbour);
+    });
+  };
+  for (int y = 0; y < state.rows; ++y) {
+    for (int x = 0; x < state.cols; ++x) {
+      if (state(y, x) == known) put_dead_neighbours_into(ring, {x, y});
+    }
+  }
+  // Each ring is found from the one outside it: every pixel is looked at once, however large the defect.
+  while (!ring.empty()) {
+    for (const auto at : ring) {
+      Filled filled{.at = at, .from = {}, .neighbours = 0};
+      each_neighbour(at, [&](cv::Point from) {
+        if (state(from) == known) filled.from[static_cast<std::size_t>(filled.neighbours++)] = from;
+      });
+      order_.push_back(filled);
+    }
+    for (const auto at : ring) state(at) = known;
+    std::vector<cv::Point> next;
+    for (const auto at : ring) put_dead_neighbours_into(next, at);
+    ring = std::move(next);
   }
 }
 

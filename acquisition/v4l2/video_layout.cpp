@@ -7,11 +7,6 @@
 namespace todbench {
 namespace {
 
-constexpr std::uint32_t fourcc(char a, char b, char c, char d) {
-  return static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b) << 8U | static_cast<std::uint32_t>(c) << 16U |
-         static_cast<std::uint32_t>(d) << 24U;
-}
-constexpr std::uint32_t yuyv = fourcc('Y', 'U', 'Y', 'V');
 constexpr std::uint32_t big_endian_bit = 1U << 31U;
 constexpr double tiny1_kelvin_per_count = 1.0 / 64;
 

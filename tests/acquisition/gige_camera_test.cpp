@@ -141,6 +141,10 @@ struct FormatCase {
   int significant_bits;
 };
 
+void PrintTo(const FormatCase& format, std::ostream* out) {
+  *out << format.bits << " bits as " << format.chosen;
+}
+
 class GigePixelFormat : public testing::TestWithParam<FormatCase> {};
 
 TEST_P(GigePixelFormat, CarriesEveryBit) {

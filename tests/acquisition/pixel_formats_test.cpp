@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "acquisition/core/rng.h"
+#include "tests/parameter_names.h"
 
 namespace todbench {
 namespace {

@@ -7,6 +7,7 @@
 #include "acquisition/core/integrity_gate.h"
 #include "acquisition/usb/usb_backend.h"
 #include "tests/acquisition/usb_test_support.h"
+#include "tests/parameter_names.h"
 
 namespace todbench {
 namespace {

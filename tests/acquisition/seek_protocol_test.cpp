@@ -6,6 +6,8 @@
 #include <numeric>
 #include <random>
 
+#include "tests/parameter_names.h"
+
 namespace todbench {
 namespace {
 
@@ -128,6 +130,19 @@ TEST(SeekDeadPixelsAre, FilledFromTheRimInwardsInLargeDefects) {
   SeekDeadPixels(calibration).fill(picture);
 
   EXPECT_EQ(cv::countNonZero(picture != (cv::Mat1w(1, 7) << 100, 100, 100, 200, 300, 300, 300)), 0);
+}
+
+TEST(SeekDeadPixelsAre, FilledFromTheOnlyOneThatLives) {
+  cv::Mat1w calibration = cv::Mat1w::zeros(5, 4);
+  calibration(2, 1) = 1000;
+  cv::Mat1w picture(5, 4, std::uint16_t{0});
+  picture(2, 1) = 123;
+
+  const SeekDeadPixels dead(calibration);
+  dead.fill(picture);
+
+  EXPECT_EQ(dead.count(), 19U);
+  EXPECT_EQ(cv::countNonZero(picture != 123), 0);
 }
 
 TEST(SeekDeadPixelsAre, LeftAloneWhenNoPixelLives) {

@@ -1,11 +1,11 @@
 // The V4L2 back end against an emulated camera: real open, ioctl, mmap and udev calls of this process.
 #include <gmock/gmock.h>
 
-#include <array>
 #include <future>
 #include <thread>
 
 #include "tests/acquisition/video_test_support.h"
+#include "tests/parameter_names.h"
 
 namespace todbench {
 namespace {
@@ -62,8 +62,7 @@ TEST_P(V4l2Pixels, AHundredFramesEqualTheirExposures) {
 }
 
 std::string name_of(const testing::TestParamInfo<VideoCameraKind>& kind) {
-  constexpr std::array<const char*, 5> kinds{"Y16", "Y14", "Grey", "Lepton", "TemperatureRows"};
-  return kinds[static_cast<std::size_t>(kind.param)];
+  return test::name_of(kind.param);
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, V4l2Pixels,

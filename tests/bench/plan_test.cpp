@@ -94,6 +94,10 @@ struct Mistake {
   const char* message;
 };
 
+void PrintTo(const Mistake& mistake, std::ostream* out) {
+  *out << mistake.name;
+}
+
 class PlanMistake : public ::testing::TestWithParam<Mistake> {};
 
 TEST_P(PlanMistake, IsRefusedInOneLineWithFileLineAndKey) {

@@ -33,6 +33,10 @@ struct Mistake {
   const char* message;
 };
 
+void PrintTo(const Mistake& mistake, std::ostream* out) {
+  *out << mistake.name;
+}
+
 class StrictToml : public ::testing::TestWithParam<Mistake> {};
 
 TEST_P(StrictToml, NamesFileLineKeyAndWhatWasExpected) {

@@ -167,6 +167,10 @@ struct Counts {
   const char* message;
 };
 
+void PrintTo(const Counts& counts, std::ostream* out) {
+  *out << counts.name;
+}
+
 class WrongCounts : public ::testing::TestWithParam<Counts> {};
 
 TEST_P(WrongCounts, AreRefusedWithLineAndColumn) {

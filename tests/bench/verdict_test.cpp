@@ -34,6 +34,10 @@ struct Row {
   VerdictKind expected;
 };
 
+void PrintTo(const Row& row, std::ostream* out) {
+  *out << row.name;
+}
+
 class TruthTable : public ::testing::TestWithParam<Row> {};
 
 TEST_P(TruthTable, TheIntervalDecides) {

@@ -28,7 +28,6 @@ struct Client {
   sockaddr_in to{};
 
   Client() {
-    testing_support::enter_private_network();
     GvspCameraConfig config;
     config.model = CameraModel::unlisted;
     config.width = 8;
@@ -54,6 +53,12 @@ struct Client {
 };
 
 }  // namespace
+
+/// libFuzzer starts threads before the first input; a process that has several cannot move.
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+  testing_support::enter_private_network();
+  return 0;
+}
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   // One client for all inputs: opening one takes longer than a thousand of them.

@@ -16,8 +16,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto family = static_cast<VideoFamily>(data[3] % 3);
   const std::vector<VideoMode> modes{{code, width, height}, {code, width, height + lepton_telemetry_rows(width)}};
 
-  const auto layout = choose_layout(modes, family, "");
+  auto layout = choose_layout(modes, family, "");
   if (!layout) return 0;
+  layout->row_bytes += data[0] / 4U;  // padding is the driver's
   fuzz::require(layout->picture.area() > 0);
   fuzz::require(layout->picture.y + layout->picture.height + layout->telemetry_rows <= layout->mode.height);
   const auto picture = read_video_frame({data + head, size - head}, *layout);

@@ -1,12 +1,16 @@
 // Runs as the first program of a virtual machine, as root: emulated cameras are plugged into the kernel's virtual USB
-// host controller, and the real uvcvideo driver stands between them and the V4L2 back end.
+// host controller. The real uvcvideo driver stands between them and the V4L2 back end, the real usbfs between them and
+// libusb under the USB3 Vision back end.
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <filesystem>
 #include <thread>
 
+#include "acquisition/aravis/aravis_backend.h"
 #include "acquisition/v4l2/v4l2_backend.h"
 #include "acquisition/v4l2/video_listing.h"
+#include "sim_devices/lab/u3v_camera.h"
 #include "sim_devices/lab/usbip_server.h"
 #include "sim_devices/lab/uvc_camera.h"
 
@@ -161,6 +165,96 @@ TEST_F(Kernel, AnUnpluggedCameraIsDisconnectedAndFoundAgainBySerial) {
   const auto found = open_when_there(arrivals_, "v4l2:todbench-Emulated_UVC-K0004");
   ASSERT_TRUE(found);
   expect_frames_equal_their_exposures(*found, 5);
+}
+
+/// USB3 Vision cameras behind the kernel's usbfs. libusb lists what it found when Aravis first asked for it and what
+/// udevd has told since; there is no udevd in the machine, so all cameras of the suite are plugged in before.
+class KernelUsb3Vision : public testing::Test {
+ protected:
+  static constexpr int first_port = 5;
+  static constexpr int cameras = 2;
+
+  static void SetUpTestSuite() {
+    for (int k = 0; k < cameras; ++k) {
+      U3vCameraConfig config;
+      config.serial = "K100" + std::to_string(k);
+      config.width = 160;
+      config.height = 120;
+      config.significant_bits = 16;
+      config.frame_rate_hz = 25;
+      auto camera = U3vCamera::create(config, [](std::uint64_t index) { return picture(index, 160, 120); });
+      ASSERT_TRUE(camera) << camera.error().message;
+      auto server = plug_into_kernel(*camera, first_port + k);
+      ASSERT_TRUE(server) << server.error().message;
+      servers().push_back(std::move(*server));
+      ASSERT_TRUE(wait_for_interfaces(first_port + k));
+    }
+  }
+  static void TearDownTestSuite() { servers().clear(); }
+
+  static std::vector<std::unique_ptr<UsbIpServer>>& servers() {
+    static std::vector<std::unique_ptr<UsbIpServer>> all;
+    return all;
+  }
+
+  /// Waits until the kernel has read the descriptors and made both interfaces, control and stream.
+  static bool wait_for_interfaces(int port) {
+    const auto deadline = std::chrono::steady_clock::now() + patience;
+    // Ports of the hub of the first bus count from 1.
+    const std::string stream = "/sys/bus/usb/devices/1-" + std::to_string(port + 1) + ":1.1";
+    while (!std::filesystem::exists(stream)) {
+      if (std::chrono::steady_clock::now() > deadline) return false;
+      std::this_thread::sleep_for(20ms);
+    }
+    return true;
+  }
+
+  /// Aravis waits 32 ms for each of its first answers, five times: little where every instruction is emulated.
+  static std::unique_ptr<FrameSource> open(int camera) {
+    const auto backend = aravis_backend({.transport = AravisTransport::usb3_vision});
+    const auto deadline = std::chrono::steady_clock::now() + patience;
+    for (;;) {
+      auto source = backend->open("u3v:todbench-K100" + std::to_string(camera));
+      if (source) return std::move(*source);
+      if (std::chrono::steady_clock::now() > deadline) {
+        ADD_FAILURE() << source.error().message;
+        return nullptr;
+      }
+    }
+  }
+};
+
+TEST_F(KernelUsb3Vision, UsbfsDeliversTheFramesByteForByte) {
+  const auto source = open(0);
+
+  ASSERT_TRUE(source);
+  EXPECT_EQ(source->info().transport, "USB3 Vision");
+  EXPECT_EQ(source->info().width, 160);
+  EXPECT_NEAR(source->info().frame_rate_hz, 25, 0.01);
+  expect_frames_equal_their_exposures(*source, 25);
+}
+
+TEST_F(KernelUsb3Vision, ACameraStartsAgainAfterStop) {
+  const auto source = open(0);
+  ASSERT_TRUE(source);
+  expect_frames_equal_their_exposures(*source, 5);
+
+  source->stop();
+
+  EXPECT_EQ(source->next(0ms).error().code, ErrorCode::interrupted);
+  expect_frames_equal_their_exposures(*source, 5);
+}
+
+TEST_F(KernelUsb3Vision, AnUnpluggedCameraIsDisconnected) {
+  const auto source = open(1);
+  ASSERT_TRUE(source && source->start());
+  ASSERT_TRUE(source->next(patience));
+
+  servers().at(1).reset();
+
+  auto next = source->next(patience);
+  while (next) next = source->next(patience);
+  EXPECT_EQ(next.error().code, ErrorCode::disconnected);
 }
 
 }  // namespace

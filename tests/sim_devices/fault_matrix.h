@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include "tests/parameter_names.h"
 #include "tests/sim_devices/injected_faults.h"
 #include "tests/sim_devices/measurement_bench.h"
 

@@ -28,6 +28,10 @@ struct UsbCameraCase {
   ExposureOf exposure_of;
 };
 
+void PrintTo(const UsbCameraCase& camera, std::ostream* out) {
+  *out << camera.name;
+}
+
 std::vector<UsbCameraCase> cameras() {
   const auto by_sequence = [](const Frame& frame) { return frame.sequence + seek_calibration_frames; };
   const auto u3v = [] { return aravis_backend({.transport = AravisTransport::usb3_vision}); };

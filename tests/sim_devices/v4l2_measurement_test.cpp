@@ -4,6 +4,7 @@
 #include "acquisition/v4l2/v4l2_backend.h"
 #include "sim_devices/lab/v4l2_camera.h"
 #include "sim_devices/lab/v4l2_laboratory.h"
+#include "tests/parameter_names.h"
 #include "tests/sim_devices/free_running_camera.h"
 #include "tests/sim_devices/measurement_bench.h"
 
@@ -67,7 +68,7 @@ TEST_P(V4l2Measurement, DecidesAsTheSimulatedCameraForTheSameExposures) {
 }
 
 std::string name_of(const testing::TestParamInfo<VideoCameraKind>& kind) {
-  return kind.param == VideoCameraKind::lepton ? "Lepton" : "TemperatureRows";
+  return test::name_of(kind.param);
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, V4l2Measurement,

@@ -103,6 +103,10 @@ struct AbortCase {
   std::function<bool(MeasurePresenter&)> reached;
 };
 
+void PrintTo(const AbortCase& abort, std::ostream* out) {
+  *out << abort.name;
+}
+
 class Abort : public ::testing::TestWithParam<AbortCase> {};
 
 TEST_P(Abort, EndsTheRunAndLeavesAValidSessionOrNone) {
