@@ -6,50 +6,17 @@
 #include "bench/session/descriptions.h"
 #include "bench/session/plan_options.h"
 #include "sim_devices/prediction/direct_estimate.h"
-#include "tod/planning.h"
 #include "tod/test_pattern.h"
 
 namespace todbench {
 namespace {
 
-constexpr double chance = 0.25;
-constexpr double normal_95 = 1.959963984540054;
-constexpr double variance_inflation = 1.2;  ///< typical of the shipped plates with 8 to 16 phases
+constexpr int least_phases = 2, most_phases = 256;
 
-/// Slope of ln(-ln((1 - p) / (1 - g))) against ln size where p says something about it.
-double weibull_slope(const DirectPoint& point, double fallback) {
-  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-  for (std::size_t i = 0; i < point.sizes_pitch.size(); ++i) {
-    const double p = point.proportion_correct[i];
-    if (p < 0.35 || p > 0.97) continue;
-    const double x = std::log(point.sizes_pitch[i]);
-    const double y = std::log(-std::log((1 - p) / (1 - chance)));
-    ++n, sx += x, sy += y, sxx += x * x, sxy += x * y;
-  }
-  const double spread = n * sxx - sx * sx;
-  if (n < 2 || !(spread > 1e-9)) return fallback;
-  const double slope = (n * sxy - sx * sy) / spread;
-  return slope > 0.3 && slope < 30 ? slope : fallback;
-}
-
-/// Standard error of ln S75 with one presentation of every plate: that of many, scaled.
-std::optional<double> se_ln_once(const Plan& plan, const std::vector<double>& sizes_mrad, double s75, double slope) {
-  constexpr double many = 100;
-  std::vector<Level> totals;
-  for (const double size : sizes_mrad) totals.push_back({.size = size, .correct = 0, .total = many});
-  const FitOptions options = fit_options(plan);
-  const auto design = design_at(totals, options.form, s75, slope, options.fixed_lapse.value_or(0));
-  const auto expected = expected_fit(design, options);
-  if (!expected) return std::nullopt;
-  return expected->se_ln_threshold * std::sqrt(many * variance_inflation);
-}
-
-std::vector<double> sizes_of(const Plan& plan, const std::vector<TargetPlate>& plates) {
-  std::vector<double> sizes_mrad;
-  for (const auto& plate : plates) {
-    for (const auto& t : plate.triangles) sizes_mrad.push_back(t.size_mm / plan.target.distance_m);
-  }
-  return sizes_mrad;
+double triangles_of(const std::vector<TargetPlate>& plates) {
+  double triangles = 0;
+  for (const auto& plate : plates) triangles += static_cast<double>(plate.triangles.size());
+  return triangles;
 }
 
 double duration_s(const TargetPlan& target, double presentations, double frames_per_set_up, double frame_rate_hz) {
@@ -70,29 +37,42 @@ double duration_s(const TargetPlan& target, double presentations, double frames_
   return seconds + changes * frames_per_set_up / frame_rate_hz;
 }
 
+/// With `phases` in place of `from`: intervals in ln S75 fall with the root of the number of answers.
+std::optional<double> rescaled_percent(std::optional<double> uncertainty_percent, int from, int phases) {
+  if (!uncertainty_percent || from == phases || phases <= 0) return uncertainty_percent;
+  return 100 * std::expm1(std::log1p(*uncertainty_percent / 100) * std::sqrt(static_cast<double>(from) / phases));
+}
+
+const ContrastPrediction* at(const std::vector<ContrastPrediction>& contrasts, double delta_t_k) {
+  const auto found = std::find_if(contrasts.begin(), contrasts.end(),
+                                  [&](const ContrastPrediction& c) { return c.delta_t_k == delta_t_k; });
+  return found == contrasts.end() ? nullptr : &*found;
+}
+
+/// Answers that an adaptive schedule is expected to need, all contrasts together.
+std::optional<double> adaptive_trials(const Plan& plan, const PlanForecast* seen) {
+  if (plan.schedule.kind != ScheduleKind::adaptive || seen == nullptr || seen->camera.empty()) return std::nullopt;
+  double trials = 0;
+  for (const auto& contrast : seen->camera) trials += contrast.trials;
+  return trials;
+}
+
 }  // namespace
 
 Result<std::vector<ExpectedThreshold>> expected_thresholds(const Plan& plan, std::stop_token stop) {
   auto sensor = sensor_of(plan);
   if (!sensor) return tl::unexpected(sensor.error());
-  auto plates = plates_of(plan);
-  if (!plates) return tl::unexpected(plates.error());
   auto spec = load_observer(plan.observer);
   if (!spec) return tl::unexpected(spec.error());
   TemplateObserver observer(*spec, triangle_alternatives());
-  const SensorPlan effects = full_plan(*sensor, plan.simulation.skip, plan.simulation.force);
+  const SensorPlan effects = full_plan(*sensor, plan.simulation.skip, plan.simulation.force, plan.simulation.motion);
   std::vector<ExpectedThreshold> out;
   for (const double contrast : plan.target.delta_t_k) {
-    ExpectedThreshold expected{.delta_t_k = contrast, .s75_mrad = {}, .se_ln_once = {}};
-    const auto point =
-        direct_estimate(*sensor, effects, observer, {std::abs(contrast)},
-                        {.samples_per_pitch = sensor->microscan, .accuracy = Accuracy::draft(), .stop = stop});
+    ExpectedThreshold expected{.delta_t_k = contrast, .s75_mrad = {}};
+    const auto point = direct_estimate(as_planned(*sensor, effects), effects, observer, {std::abs(contrast)},
+                                       {.motion = plan.simulation.motion, .accuracy = Accuracy::draft(), .stop = stop});
     if (!point && point.error().code == ErrorCode::interrupted) return tl::unexpected(point.error());
-    if (point) {
-      expected.s75_mrad = point->front().s75_pitch * sensor->ifov_mrad();
-      expected.slope = weibull_slope(point->front(), expected.slope);
-      expected.se_ln_once = se_ln_once(plan, sizes_of(plan, *plates), *expected.s75_mrad, expected.slope);
-    }
+    if (point) expected.s75_mrad = point->front().s75_pitch * sensor->ifov_mrad();
     out.push_back(expected);
   }
   return out;
@@ -104,66 +84,162 @@ TodCurve as_curve(const std::vector<ExpectedThreshold>& expected) {
     TodPoint point;
     point.set_delta_t_k = point.delta_t_k = e.delta_t_k;
     point.fit.threshold = e.s75_mrad;
-    point.fit.slope = e.slope;
     curve.points.push_back(std::move(point));
   }
   return curve;
 }
 
+Result<PlanForecast> forecast(const Plan& plan) {
+  PlanForecast out;
+  out.plan = plan;
+  auto prediction = predict_plan(plan);
+  if (prediction) {
+    out.effects = std::move(prediction->effects.plan);
+    out.warnings = std::move(prediction->warnings);
+    out.twin = std::move(prediction->contrasts);
+    out.twin_s = prediction->figures.predicted_s;
+  } else {
+    // A tolerance that the simulation cannot meet does not keep the effects from being planned.
+    auto inputs = read_inputs(plan);
+    if (!inputs) return tl::unexpected(inputs.error());
+    out.effects = std::move(inputs->effects);
+    out.warnings = std::move(inputs->warnings);
+    out.problem = prediction.error().message;
+  }
+  if (out.problem.empty() && plan.simulation.phases == plan.target.phases) {
+    out.camera = out.twin;
+    return out;
+  }
+  Plan camera = plan;
+  camera.simulation.phases = plan.target.phases;
+  // What limits the simulation does not limit the camera.
+  camera.simulation.accuracy = "draft";
+  if (auto seen = predict_plan(camera)) out.camera = std::move(seen->contrasts);
+  return out;
+}
+
 std::optional<double> PlanOutlook::uncertainty_percent() const {
   double largest = 0;
   for (const auto& contrast : contrasts) {
-    if (!contrast.uncertainty_percent) return std::nullopt;
-    largest = std::max(largest, *contrast.uncertainty_percent);
+    if (!contrast.camera_uncertainty_percent) return std::nullopt;
+    largest = std::max(largest, *contrast.camera_uncertainty_percent);
   }
   return contrasts.empty() ? std::nullopt : std::optional(largest);
 }
 
-PlanOutlook outlook(const Plan& plan, const std::vector<TargetPlate>& plates,
-                    const std::vector<ExpectedThreshold>& expected, double frame_rate_hz) {
+PlanOutlook outlook(const Plan& plan, const std::vector<TargetPlate>& plates, const PlanForecast* seen,
+                    double frame_rate_hz) {
   PlanOutlook out;
-  const std::vector<double> sizes_mrad = sizes_of(plan, plates);
-  const auto repeats = static_cast<std::uint64_t>(plan.target.mountings.size()) *
-                       static_cast<std::uint64_t>(std::max(plan.target.phases, 0));
-  const auto contrasts = static_cast<std::uint64_t>(plan.target.delta_t_k.size());
-  out.presentations = repeats * contrasts * plates.size();
-  out.trials = repeats * contrasts * sizes_mrad.size();
-  out.duration_s = duration_s(plan.target, static_cast<double>(out.presentations),
-                              plan.measurement.registration_frames + plan.measurement.contrast_frames, frame_rate_hz);
+  const double repeats = static_cast<double>(plan.target.mountings.size()) * std::max(plan.target.phases, 0) *
+                         static_cast<double>(plan.target.delta_t_k.size());
+  double presentations = repeats * static_cast<double>(plates.size()), trials = repeats * triangles_of(plates);
+  const bool adaptive = plan.schedule.kind == ScheduleKind::adaptive;
+  if (const auto expected = adaptive_trials(plan, seen); expected && trials > 0) {
+    presentations *= *expected / trials;
+    trials = *expected;
+  }
+  out.presentations = static_cast<std::uint64_t>(std::llround(presentations));
+  out.trials = static_cast<std::uint64_t>(std::llround(trials));
+  out.bench_s = duration_s(plan.target, presentations,
+                           plan.measurement.registration_frames + plan.measurement.contrast_frames, frame_rate_hz);
+  const auto scaled = [&](const ContrastPrediction* c, int from, int phases) -> std::optional<double> {
+    if (c == nullptr) return std::nullopt;
+    return adaptive ? c->uncertainty_percent : rescaled_percent(c->uncertainty_percent, from, phases);
+  };
   for (const double contrast : plan.target.delta_t_k) {
-    PlannedContrast entry{.delta_t_k = contrast, .s75_mrad = {}, .uncertainty_percent = {}};
-    for (const auto& e : expected) {
-      if (e.delta_t_k != contrast || !e.s75_mrad) continue;
-      entry.s75_mrad = e.s75_mrad;
-      if (e.se_ln_once && repeats > 0)
-        entry.uncertainty_percent =
-            100 * std::expm1(normal_95 * *e.se_ln_once / std::sqrt(static_cast<double>(repeats)));
+    PlannedContrast entry;
+    entry.delta_t_k = contrast;
+    if (seen != nullptr) {
+      const ContrastPrediction *camera = at(seen->camera, contrast), *twin = at(seen->twin, contrast);
+      if (camera != nullptr) entry.s75_mrad = camera->s75_mrad;
+      entry.camera_uncertainty_percent = scaled(camera, seen->plan.target.phases, plan.target.phases);
+      entry.twin_uncertainty_percent = scaled(twin, seen->plan.simulation.phases, plan.simulation.phases);
     }
     out.contrasts.push_back(entry);
+  }
+  if (seen != nullptr && seen->twin_s && seen->plan.simulation.phases > 0) {
+    const double ratio = static_cast<double>(plan.simulation.phases) / seen->plan.simulation.phases;
+    out.twin_s = *seen->twin_s * (adaptive ? 1 : ratio);
   }
   return out;
 }
 
-int phases_for(Plan plan, const std::vector<TargetPlate>& plates, const std::vector<ExpectedThreshold>& expected,
-               double tolerance_percent) {
-  constexpr int least = 2, most = 256;
-  const auto sure_enough = [&](int phases) {
-    plan.target.phases = phases;
-    const PlanOutlook seen = outlook(plan, plates, expected, 50);
-    return std::all_of(seen.contrasts.begin(), seen.contrasts.end(), [&](const PlannedContrast& c) {
-      return !c.uncertainty_percent || *c.uncertainty_percent <= tolerance_percent;
-    });
-  };
-  int low = least, high = most;
-  while (low < high) {
-    const int middle = (low + high) / 2;
-    if (sure_enough(middle)) {
-      high = middle;
-    } else {
-      low = middle + 1;
-    }
+Plan with_tolerance(Plan plan, const PlanForecast* seen, double tolerance_percent) {
+  plan.simulation.tolerance_percent = tolerance_percent;
+  if (plan.schedule.kind == ScheduleKind::adaptive) {
+    plan.schedule.half_width_percent = tolerance_percent;
+    return plan;
   }
-  return low;
+  if (seen == nullptr) return plan;
+  double needed = 0;
+  for (const auto& contrast : seen->camera) {
+    if (!contrast.uncertainty_percent) continue;
+    const double ratio = std::log1p(*contrast.uncertainty_percent / 100) / std::log1p(tolerance_percent / 100);
+    needed = std::max(needed, seen->plan.target.phases * ratio * ratio);
+  }
+  if (!(needed > 0)) return plan;
+  // Rounding of the ratio must not cost a phase.
+  const double whole = std::clamp(std::ceil(needed * (1 - 1e-9)), double{least_phases}, double{most_phases});
+  plan.target.phases = plan.simulation.phases = static_cast<int>(whole);
+  return plan;
+}
+
+std::vector<AccuracyPrice> accuracy_prices(const Plan& plan, const PlanForecast& seen,
+                                           const std::vector<TargetPlate>& plates, double frame_rate_hz,
+                                           const std::stop_token& stop) {
+  std::vector<AccuracyPrice> prices;
+  for (const double tolerance : {0.5, 1.0, 2.0, 3.0, 5.0, 7.5, 10.0, 20.0}) {
+    if (stop.stop_requested()) break;
+    const Plan priced = with_tolerance(plan, &seen, tolerance);
+    const auto found = predict_plan(priced);
+    PlanForecast at_tolerance = seen;
+    at_tolerance.twin_s.reset();
+    if (found) {
+      at_tolerance.plan = priced;
+      at_tolerance.camera = at_tolerance.twin = found->contrasts;
+      at_tolerance.twin_s = found->figures.predicted_s;
+    }
+    const PlanOutlook out = outlook(priced, plates, &at_tolerance, frame_rate_hz);
+    const auto reached = out.uncertainty_percent();
+    if (!reached || *reached > tolerance * (1 + 1e-6)) continue;
+    prices.push_back({tolerance, priced.target.phases, out.bench_s, out.twin_s});
+  }
+  return prices;
+}
+
+Plot accuracy_plot(const std::vector<AccuracyPrice>& prices, const PlanOutlook& now) {
+  Plot plot;
+  plot.id = "accuracy-time";
+  plot.title = "Accuracy against time";
+  plot.x = {.label = "Time (s)", .scale = AxisScale::logarithmic, .low = 1, .high = 10, .ticks = {}};
+  plot.y = {.label = "Uncertainty (± %)", .scale = AxisScale::logarithmic, .low = 0.4, .high = 25, .ticks = {}};
+  PlotSeries bench{.label = "on the bench", .tone = PlotTone::first, .line = PlotLine::solid, .points = {}};
+  PlotSeries twin{.label = "simulated twin, one core",
+                  .tone = PlotTone::second,
+                  .marker = PlotMarker::square,
+                  .line = PlotLine::dashed,
+                  .points = {}};
+  PlotSeries plan{.label = "this plan", .tone = PlotTone::third, .marker = PlotMarker::bar, .points = {}};
+  std::vector<double> times;
+  const auto add = [&](PlotSeries& series, std::optional<double> seconds, std::optional<double> percent) {
+    if (!seconds || !percent || !(*seconds > 0) || !(*percent > 0)) return;
+    series.points.push_back({.x = *seconds, .y = *percent, .x_interval = {}, .y_interval = {}});
+    times.push_back(*seconds);
+    plot.y.low = std::min(plot.y.low, *percent / 1.2);
+    plot.y.high = std::max(plot.y.high, *percent * 1.2);
+  };
+  for (const auto& price : prices) {
+    add(bench, price.bench_s, price.tolerance_percent);
+    add(twin, price.twin_s, price.tolerance_percent);
+  }
+  add(plan, now.bench_s, now.uncertainty_percent());
+  add(plan, now.twin_s, now.uncertainty_percent());
+  if (times.empty()) return plot;
+  const auto [low, high] = std::minmax_element(times.begin(), times.end());
+  plot.x.low = *low / 1.4;
+  plot.x.high = *high * 1.4;
+  plot.series = {bench, twin, plan};
+  return plot;
 }
 
 }  // namespace todbench

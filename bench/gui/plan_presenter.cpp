@@ -1,5 +1,6 @@
 #include "bench/gui/plan_presenter.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "bench/run/experiment_inputs.h"
@@ -23,19 +24,32 @@ bool same_thresholds(const Plan& a, const Plan& b) {
          a.simulation.skip == b.simulation.skip && a.simulation.force == b.simulation.force;
 }
 
+/// The plan without what a tolerance sets: prices of plans that are equal so are equal.
+Plan without_tolerance(Plan plan) {
+  plan.simulation.tolerance_percent = 1;
+  plan.schedule.half_width_percent = 10;
+  plan.target.phases = plan.simulation.phases = 1;
+  return plan;
+}
+
 struct LookAhead {
-  std::vector<ExpectedThreshold> expected;
+  std::optional<std::vector<ExpectedThreshold>> expected;
   QString misfit;
 };
 
-Result<LookAhead> looked_ahead(const Plan& plan, const std::stop_token& stop) {
-  auto expected = expected_thresholds(plan, stop);
-  if (!expected) return tl::unexpected(expected.error());
-  LookAhead out{.expected = std::move(*expected), .misfit = {}};
+/// `expected` where the thresholds of the plan are known already.
+Result<LookAhead> looked_ahead(const Plan& plan, std::optional<std::vector<ExpectedThreshold>> expected,
+                               const std::stop_token& stop) {
+  LookAhead out{.expected = std::move(expected), .misfit = {}};
   if (auto inputs = read_inputs(plan)) {
     if (auto fits = check_simulated_geometry(plan, *inputs); !fits) out.misfit = sentence(fits.error());
   } else {
     out.misfit = sentence(inputs.error());
+  }
+  if (!out.expected) {
+    auto found = expected_thresholds(plan, stop);
+    if (!found) return tl::unexpected(found.error());
+    out.expected = std::move(*found);
   }
   return out;
 }
@@ -47,6 +61,12 @@ PlanPresenter::PlanPresenter(Workbench& bench, QObject* parent) : QObject(parent
   delay_.setInterval(delay_ms);
   connect(&delay_, &QTimer::timeout, this, &PlanPresenter::look_ahead);
   connect(&bench_, &Workbench::plan_changed, this, &PlanPresenter::plan_changed);
+  // What was put off during a measurement.
+  connect(&bench_, &Workbench::activity_changed, this, [this] {
+    if (bench_.activity() != Activity::idle) return;
+    if (expected_.empty()) delay_.start();
+    if (prices_.empty()) foresee();
+  });
   plan_changed();
 }
 
@@ -78,43 +98,96 @@ QString PlanPresenter::save(const QString& file) const {
 }
 
 QString PlanPresenter::set_tolerance_percent(double tolerance_percent) {
+  return apply(with_tolerance(bench_.plan(), forecast_ ? &*forecast_ : nullptr, tolerance_percent));
+}
+
+QString PlanPresenter::choose(Effect effect, EffectChoice choice) {
   Plan plan = bench_.plan();
-  plan.simulation.tolerance_percent = tolerance_percent;
-  if (expected_known()) {
-    plan.target.phases = phases_for(plan, plates_, expected_, tolerance_percent);
-    plan.simulation.phases = plan.target.phases;
-  }
+  std::erase(plan.simulation.skip, effect);
+  std::erase(plan.simulation.force, effect);
+  if (choice == EffectChoice::skip) plan.simulation.skip.push_back(effect);
+  if (choice == EffectChoice::simulate) plan.simulation.force.push_back(effect);
   return apply(plan);
 }
 
+EffectChoice PlanPresenter::choice(Effect effect) const {
+  const auto among = [effect](const std::vector<Effect>& effects) {
+    return std::find(effects.begin(), effects.end(), effect) != effects.end();
+  };
+  const SimulationPlan& simulation = bench_.plan().simulation;
+  return among(simulation.skip)    ? EffectChoice::skip
+         : among(simulation.force) ? EffectChoice::simulate
+                                   : EffectChoice::planner;
+}
+
+QString PlanPresenter::misfit() const {
+  if (!misfit_.isEmpty()) return misfit_;
+  if (!trouble_.isEmpty()) return trouble_;
+  return forecast_ ? QString::fromStdString(forecast_->problem) : QString();
+}
+
+QStringList PlanPresenter::warnings() const {
+  QStringList out;
+  if (!forecast_) return out;
+  for (const auto& warning : forecast_->warnings) out << QString::fromStdString(warning);
+  return out;
+}
+
 void PlanPresenter::plan_changed() {
-  refresh();
   if (!expected_of_ || !same_thresholds(*expected_of_, bench_.plan())) expected_.clear();
+  if (!prices_of_ || without_tolerance(bench_.plan()) != *prices_of_) prices_.clear();
+  // Another contrast, plate or sensor: what was foreseen is of something else.
+  if (forecast_ && without_tolerance(forecast_->plan) != without_tolerance(bench_.plan())) forecast_.reset();
+  refresh();
+  foresee();
   delay_.start();
 }
 
 void PlanPresenter::refresh() {
   const Plan& plan = bench_.plan();
   if (auto plates = plates_of(plan)) plates_ = std::move(*plates);
-  if (auto sensor = sensor_of(plan)) {
-    effects_ = full_plan(*sensor, plan.simulation.skip, plan.simulation.force);
-    frame_rate_hz_ = sensor->frame_rate_hz > 0 ? sensor->frame_rate_hz : 50;
-  }
-  outlook_ = todbench::outlook(plan, plates_, expected_, frame_rate_hz_);
+  if (auto sensor = sensor_of(plan)) frame_rate_hz_ = sensor->frame_rate_hz > 0 ? sensor->frame_rate_hz : 50;
+  outlook_ = todbench::outlook(plan, plates_, forecast_ ? &*forecast_ : nullptr, frame_rate_hz_);
   emit updated();
+}
+
+void PlanPresenter::foresee() {
+  const bool priced = !prices_.empty();
+  const bool measuring = bench_.activity() == Activity::measuring;
+  forecasts_.start([this, plan = bench_.plan(), plates = plates_, rate_hz = frame_rate_hz_, priced,
+                    measuring](const std::stop_token& stop) {
+    auto seen = todbench::forecast(plan);
+    // Also when a newer plan waits: while a slider moves the table follows plan by plan.
+    bench_.post([this, plan, seen] {
+      if (without_tolerance(plan) != without_tolerance(bench_.plan())) return;
+      trouble_ = seen ? QString() : sentence(seen.error());
+      if (seen) forecast_ = *seen;
+      refresh();
+    });
+    if (!seen || priced || measuring) return;
+    auto prices = accuracy_prices(plan, *seen, plates, rate_hz, stop);
+    if (stop.stop_requested()) return;
+    bench_.post([this, plan, prices = std::move(prices)] {
+      if (without_tolerance(plan) != without_tolerance(bench_.plan())) return;
+      prices_of_ = without_tolerance(plan);
+      prices_ = prices;
+      refresh();
+    });
+  });
 }
 
 void PlanPresenter::look_ahead() {
   const Plan plan = bench_.plan();
-  // A running measurement needs the processor and the thread more than a forecast does.
+  // A running measurement needs the processor more than a forecast does.
   if (bench_.activity() == Activity::measuring) return;
-  jobs_.start([this, plan](const std::stop_token& stop) {
-    auto seen = looked_ahead(plan, stop);
+  const auto known = expected_.empty() ? std::nullopt : std::optional(expected_);
+  jobs_.start([this, plan, known](const std::stop_token& stop) {
+    auto seen = looked_ahead(plan, known, stop);
     if (!seen && seen.error().code == ErrorCode::interrupted) return;
     bench_.post([this, plan, seen = std::move(seen)] {
       if (plan != bench_.plan()) return;
       expected_of_ = plan;
-      expected_ = seen ? seen->expected : std::vector<ExpectedThreshold>();
+      expected_ = seen ? *seen->expected : std::vector<ExpectedThreshold>();
       misfit_ = seen ? seen->misfit : sentence(seen.error());
       refresh();
     });

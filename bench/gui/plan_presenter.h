@@ -3,6 +3,7 @@
 
 #include <QObject>
 #include <QString>
+#include <QStringList>
 #include <QTimer>
 #include <vector>
 
@@ -11,7 +12,13 @@
 
 namespace todbench {
 
-/// Every change goes through TOML and its reader: what the form accepts is what a file may say. In the window's thread.
+/// Who decides whether an effect is simulated.
+enum class EffectChoice { planner, simulate, skip };
+inline constexpr std::array all_effect_choices{EffectChoice::planner, EffectChoice::simulate, EffectChoice::skip};
+
+/// Every change goes through TOML and its reader: what the form accepts is what a file may say. Counts and bench time
+/// follow in the call; the planner's decisions, uncertainties and the time of the simulation come from predict_plan()
+/// in the background, one after the other while a slider moves. In the window's thread.
 class PlanPresenter final : public QObject {
   Q_OBJECT
 
@@ -28,21 +35,31 @@ class PlanPresenter final : public QObject {
   [[nodiscard]] QString save(const QString& file) const;
   /// As many phases, for camera and twin, as give this uncertainty of the 75 % size; the outlook follows at once.
   [[nodiscard]] QString set_tolerance_percent(double tolerance_percent);
+  /// Puts an effect into [simulation] force or skip, or into neither.
+  [[nodiscard]] QString choose(Effect effect, EffectChoice choice);
+  [[nodiscard]] EffectChoice choice(Effect effect) const;
 
   [[nodiscard]] const PlanOutlook& outlook() const { return outlook_; }
-  /// False until the thresholds that the outlook is based on are known.
+  /// False until the thresholds of the direct estimate are known.
   [[nodiscard]] bool expected_known() const { return !expected_.empty(); }
   [[nodiscard]] const std::vector<ExpectedThreshold>& expected() const { return expected_; }
-  /// Simulated or skipped, and why.
-  [[nodiscard]] const SensorPlan& effects() const { return effects_; }
-  /// What does not fit together although the file is right: sizes that cannot be measured at this distance.
-  [[nodiscard]] QString misfit() const { return misfit_; }
+  /// Of this plan, or of the last one while a newer forecast is made; nothing before the first.
+  [[nodiscard]] const std::optional<PlanForecast>& forecast() const { return forecast_; }
+  [[nodiscard]] bool forecast_current() const { return forecast_ && forecast_->plan == bench_.plan(); }
+  /// What accuracy costs, from the finest; empty until known.
+  [[nodiscard]] const std::vector<AccuracyPrice>& prices() const { return prices_; }
+  /// What does not fit together although the file is right: sizes that cannot be measured at this distance, a tolerance
+  /// that cannot be met.
+  [[nodiscard]] QString misfit() const;
+  /// What the planner has to say beside its decisions.
+  [[nodiscard]] QStringList warnings() const;
 
  signals:
   void updated();
 
  private:
   void plan_changed();
+  void foresee();
   void look_ahead();
   void refresh();
 
@@ -51,11 +68,12 @@ class PlanPresenter final : public QObject {
   std::vector<ExpectedThreshold> expected_;
   std::vector<TargetPlate> plates_;
   PlanOutlook outlook_;
-  SensorPlan effects_;
-  QString misfit_;
+  std::optional<PlanForecast> forecast_;
+  std::vector<AccuracyPrice> prices_;
+  QString misfit_, trouble_;
   double frame_rate_hz_ = 50;
-  std::optional<Plan> expected_of_;
-  JobRunner jobs_;
+  std::optional<Plan> expected_of_, prices_of_;
+  JobRunner forecasts_, jobs_;
 };
 
 }  // namespace todbench

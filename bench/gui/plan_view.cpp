@@ -1,5 +1,6 @@
 #include "bench/gui/plan_view.h"
 
+#include <QComboBox>
 #include <QFileDialog>
 #include <QFontDatabase>
 #include <QFormLayout>
@@ -14,6 +15,7 @@
 
 #include "bench/gui/layout_pieces.h"
 #include "bench/gui/plan_presenter.h"
+#include "bench/gui/plot_view.h"
 
 namespace todbench {
 namespace {
@@ -277,20 +279,22 @@ QWidget* PlanView::toml_page() {
 QWidget* PlanView::outlook_panel() {
   auto* panel = new QWidget;
   auto* layout = new QVBoxLayout(panel);
+  layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(title_label("Accuracy against time"));
   auto* line = new QHBoxLayout;
   tolerance_ = new QSlider(Qt::Horizontal);
   tolerance_->setObjectName("toleranceSlider");
   tolerance_->setRange(0, slider_steps);
   tolerance_->setAccessibleName("Tolerance of the 75 % size");
+  tolerance_->setToolTip(
+      "Sets the number of phases so that the 95 % interval is this narrow, and what the simulation may "
+      "be wrong by.");
   tolerance_text_ = new QLabel;
+  tolerance_text_->setMinimumWidth(fontMetrics().horizontalAdvance("± 00.00 %"));
   line->addWidget(new QLabel("Tolerance"));
   line->addWidget(tolerance_, 1);
   line->addWidget(tolerance_text_);
   layout->addLayout(line);
-  layout->addWidget(
-      hint_label("Moving it sets the number of phases so that the 95 % interval is this narrow, and what "
-                 "the simulation may be wrong by."));
   cost_ = new QLabel;
   cost_->setObjectName("planCost");
   cost_->setWordWrap(true);
@@ -299,17 +303,50 @@ QWidget* PlanView::outlook_panel() {
   misfit_->setObjectName("planMisfit");
   misfit_->setWordWrap(true);
   layout->addWidget(misfit_);
-  contrasts_ = plain_table({"ΔT (K)", "Expected S75 (mrad)", "95 % uncertainty (± %)"}, "planOutlook");
-  contrasts_->setMaximumHeight(170);
-  for (int column = 0; column < 2; ++column) contrasts_->setColumnWidth(column, 150);
-  layout->addWidget(contrasts_);
+  auto* seen = new QHBoxLayout;
+  prices_ = new PlotView;
+  prices_->setObjectName("accuracyPlot");
+  prices_->setMinimumHeight(175);
+  prices_->setMaximumHeight(230);
+  seen->addWidget(prices_, 1);
+  contrasts_ = plain_table({"ΔT (K)", "S75 (mrad)", "± camera (%)", "± twin (%)"}, "planOutlook");
+  contrasts_->setToolTip("What the first tier lets expect, and half of the 95 % interval of S75");
+  const std::vector<int> widths{52, 72, 85};
+  for (std::size_t i = 0; i < widths.size(); ++i) contrasts_->setColumnWidth(static_cast<int>(i), widths[i]);
+  contrasts_->setFixedWidth(295);
+  contrasts_->setMaximumHeight(230);
+  seen->addWidget(contrasts_);
+  layout->addLayout(seen);
   layout->addWidget(title_label("Effects of the simulated sensor"));
-  effects_ = plain_table({"Effect", "Decision", "Reason"}, "planEffects");
-  effects_->setColumnWidth(0, 130);
-  layout->addWidget(effects_, 1);
+  layout->addWidget(effects_table(), 1);
+  reason_ = hint_label();
+  reason_->setObjectName("effectReason");
+  layout->addWidget(reason_);
   connect(tolerance_, &QSlider::valueChanged, this,
           [this](int position) { complain(presenter_.set_tolerance_percent(tolerance_of(position))); });
   return panel;
+}
+
+QWidget* PlanView::effects_table() {
+  effects_ = plain_table({"Effect", "Choice", "Decision", "Change if skipped", "Reason"}, "planEffects");
+  const std::vector<int> widths{115, 104, 72, 118};
+  for (std::size_t i = 0; i < widths.size(); ++i) effects_->setColumnWidth(static_cast<int>(i), widths[i]);
+  effects_->setRowCount(static_cast<int>(all_effects.size()));
+  int row = 0;
+  for (const Effect effect : all_effects) {
+    auto* box = new QComboBox;
+    box->setObjectName(QString("choice_") + text_of(to_string(effect)));
+    box->setAccessibleName("Choice for " + text_of(to_string(effect)).replace('_', ' '));
+    box->addItems({"planner", "simulate", "skip"});
+    box->setFocusPolicy(Qt::StrongFocus);
+    connect(box, &QComboBox::activated, this, [this, effect](int index) {
+      complain(presenter_.choose(effect, all_effect_choices.at(static_cast<std::size_t>(index))));
+    });
+    effects_->setCellWidget(row++, 1, box);
+    choices_.push_back(box);
+  }
+  connect(effects_, &QTableWidget::itemSelectionChanged, this, &PlanView::show_reason);
+  return effects_;
 }
 
 void PlanView::enter(const Field& field) {
@@ -337,26 +374,59 @@ void PlanView::show_plan() {
 void PlanView::show_outlook() {
   const PlanOutlook& seen = presenter_.outlook();
   const auto uncertainty = seen.uncertainty_percent();
-  cost_->setText(QString("%1 presentations, %2 answers, about %3 on the bench; uncertainty %4")
-                     .arg(seen.presentations)
-                     .arg(seen.trials)
-                     .arg(duration_text(seen.duration_s))
-                     .arg(uncertainty                   ? QString("± %1 %").arg(*uncertainty, 0, 'f', 1)
-                          : presenter_.expected_known() ? QString("not known: a contrast has no threshold")
-                                                        : QString("is being computed …")));
-  misfit_->setText(presenter_.misfit().isEmpty() ? QString() : "✗ " + presenter_.misfit());
+  const bool known = presenter_.forecast().has_value();
+  cost_->setText(
+      QString("%1 presentations, %2 answers. On the bench about %3, the simulated twin about %4 on one core. "
+              "Uncertainty %5")
+          .arg(seen.presentations)
+          .arg(seen.trials)
+          .arg(duration_text(seen.bench_s),
+               seen.twin_s ? duration_text(*seen.twin_s)
+               : known     ? "–"
+                           : "…",
+               uncertainty ? QString("± %1 %").arg(*uncertainty, 0, 'f', 1)
+               : known     ? QString("not known: a contrast has no threshold")
+                           : QString("is being computed …")));
+  const QStringList warnings = presenter_.warnings();
+  misfit_->setText(!presenter_.misfit().isEmpty() ? "✗ " + presenter_.misfit()
+                   : !warnings.isEmpty()          ? "⚠ " + warnings.join("; ")
+                                                  : QString());
+  misfit_->setVisible(!misfit_->text().isEmpty());
   QList<QStringList> rows;
+  const auto percent = [](const std::optional<double>& value) {
+    return value ? QString::number(*value, 'f', 1) : QString("–");
+  };
   for (const auto& c : seen.contrasts) {
     rows << QStringList{number_text(c.delta_t_k), c.s75_mrad ? QString::number(*c.s75_mrad, 'f', 3) : "–",
-                        c.uncertainty_percent ? QString::number(*c.uncertainty_percent, 'f', 1) : "–"};
+                        percent(c.camera_uncertainty_percent), percent(c.twin_uncertainty_percent)};
   }
   fill_table(*contrasts_, rows);
-  rows.clear();
-  for (const auto& d : presenter_.effects().decisions) {
-    rows << QStringList{text_of(to_string(d.effect)).replace('_', ' '),
-                        d.decision == Decision::simulate ? "simulated" : "skipped", QString::fromStdString(d.reason)};
+  if (Plot plot = accuracy_plot(presenter_.prices(), seen); !plot.series.empty()) prices_->show_plot(plot);
+  show_effects();
+}
+
+void PlanView::show_effects() {
+  QList<QStringList> rows;
+  for (const Effect effect : all_effects) rows << QStringList{text_of(to_string(effect)).replace('_', ' ')};
+  if (presenter_.forecast()) {
+    for (const auto& d : presenter_.forecast()->effects.decisions) {
+      rows[static_cast<qsizetype>(d.effect)]
+          << QString() << (d.decision == Decision::simulate ? "simulated" : "skipped")
+          << (d.predicted_change_percent ? QString::number(*d.predicted_change_percent, 'g', 2) + " %" : "–")
+          << QString::fromStdString(d.reason);
+    }
   }
   fill_table(*effects_, rows);
+  for (std::size_t i = 0; i < choices_.size(); ++i)
+    choices_[i]->setCurrentIndex(static_cast<int>(presenter_.choice(all_effects[i])));
+  show_reason();
+}
+
+void PlanView::show_reason() {
+  const auto selected = effects_->selectionModel()->selectedRows();
+  const int row = selected.isEmpty() ? 0 : selected.front().row();
+  const QTableWidgetItem *name = effects_->item(row, 0), *reason = effects_->item(row, 4);
+  reason_->setText(name == nullptr || reason == nullptr ? QString() : name->text() + ": " + reason->text());
 }
 
 }  // namespace todbench

@@ -8,6 +8,7 @@
 
 #include "bench/session/plan.h"
 
+class QComboBox;
 class QFormLayout;
 class QLabel;
 class QLineEdit;
@@ -20,6 +21,7 @@ class QTabWidget;
 namespace todbench {
 
 class PlanPresenter;
+class PlotView;
 
 class PlanView final : public QWidget {
   Q_OBJECT
@@ -38,6 +40,7 @@ class PlanView final : public QWidget {
   [[nodiscard]] QWidget* form_page();
   [[nodiscard]] QWidget* toml_page();
   [[nodiscard]] QWidget* outlook_panel();
+  [[nodiscard]] QWidget* effects_table();
   void add_field(QFormLayout& form, const QString& label, const QString& object_name, Field field);
   void add_fields(QFormLayout& form);
   void add_number(QFormLayout& form, const QString& label, const QString& object_name,
@@ -47,15 +50,19 @@ class PlanView final : public QWidget {
   void enter(const Field& field);
   void show_plan();
   void show_outlook();
+  void show_effects();
+  void show_reason();
   void complain(const QString& sentence);
 
   PlanPresenter& presenter_;
   std::vector<Field> fields_;
   QTabWidget* tabs_;
   QPlainTextEdit* toml_;
-  QLabel *problem_, *tolerance_text_, *cost_, *misfit_;
+  QLabel *problem_, *tolerance_text_, *cost_, *misfit_, *reason_;
   QSlider* tolerance_;
   QTableWidget *contrasts_, *effects_;
+  PlotView* prices_;
+  std::vector<QComboBox*> choices_;  ///< in the order of the effects
 };
 
 }  // namespace todbench

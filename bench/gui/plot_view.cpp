@@ -79,6 +79,16 @@ PlotView::PlotView(QWidget* parent) : QCustomPlot(parent) {
   });
   setNoAntialiasingOnDrag(true);
   axisRect()->setupFullAxesBox(false);
+  // Above the axes, where it hides no data.
+  plotLayout()->insertRow(0);
+  plotLayout()->addElement(0, 0, legend);
+  plotLayout()->setRowStretchFactor(0, 0.001);
+  plotLayout()->setRowSpacing(0);
+  legend->setFillOrder(QCPLegend::foColumnsFirst);
+  legend->setWrap(4);
+  legend->setBorderPen(Qt::NoPen);
+  legend->setBrush(Qt::NoBrush);
+  legend->setMargins({8, 4, 8, 0});
 }
 
 void PlotView::show_plot(const Plot& plot) {
@@ -188,12 +198,6 @@ void PlotView::draw() {
   small.setPixelSize(11);
   legend->setFont(small);
   legend->setTextColor(colours.ink);
-  QColor ground = colours.ground;
-  ground.setAlpha(215);
-  legend->setBrush(ground);
-  legend->setBorderPen(QPen(colours.grid));
-  // Both kinds of curve rise to the right: the corner below them is free.
-  axisRect()->insetLayout()->setInsetAlignment(0, Qt::AlignRight | Qt::AlignBottom);
   replot(QCustomPlot::rpQueuedReplot);
 }
 

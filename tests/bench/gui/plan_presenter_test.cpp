@@ -50,26 +50,66 @@ TEST(PlanPresenter, CountsTheAnswersOfAPlan) {
 
 TEST(PlanPresenter, NeedsFourTimesTheAnswersForHalfTheUncertainty) {
   Bench b;
-  ASSERT_TRUE(wait_until([&] { return b.presenter.expected_known(); }));
+  ASSERT_TRUE(wait_until([&] { return b.presenter.forecast().has_value(); }));
 
   Plan plan = b.presenter.plan();
   plan.target.phases = 8;
   ASSERT_EQ(b.presenter.apply(plan).toStdString(), "");
   const auto coarse = b.presenter.outlook().uncertainty_percent();
-  const double coarse_s = b.presenter.outlook().duration_s;
+  const double coarse_s = b.presenter.outlook().bench_s;
   plan.target.phases = 32;
   ASSERT_EQ(b.presenter.apply(plan).toStdString(), "");
   const auto fine = b.presenter.outlook().uncertainty_percent();
 
-  ASSERT_TRUE(coarse && fine);
+  ASSERT_TRUE(coarse && fine) << "in the call, without waiting";
   // expm1 of half the exponent: exactly a half only for small ones.
   EXPECT_NEAR(std::log1p(*coarse / 100) / std::log1p(*fine / 100), 2, 1e-9);
-  EXPECT_GT(b.presenter.outlook().duration_s, coarse_s);
+  EXPECT_GT(b.presenter.outlook().bench_s, coarse_s);
+}
+
+TEST(PlanPresenter, ForeseesWhatTheCommandLinePredicts) {
+  Bench b;
+  ASSERT_EQ(b.presenter.set_tolerance_percent(4).toStdString(), "");
+  ASSERT_TRUE(wait_until([&] { return b.presenter.forecast_current(); }));
+
+  const auto predicted = predict_plan(b.presenter.plan());
+
+  ASSERT_TRUE(predicted) << predicted.error().message;
+  EXPECT_EQ(b.presenter.outlook().twin_s, predicted->figures.predicted_s);
+  ASSERT_EQ(b.presenter.outlook().contrasts.size(), predicted->contrasts.size());
+  for (std::size_t i = 0; i < predicted->contrasts.size(); ++i) {
+    EXPECT_EQ(b.presenter.outlook().contrasts[i].twin_uncertainty_percent, predicted->contrasts[i].uncertainty_percent);
+    EXPECT_EQ(b.presenter.outlook().contrasts[i].s75_mrad, predicted->contrasts[i].s75_mrad);
+  }
+  const auto& decisions = b.presenter.forecast()->effects.decisions;
+  ASSERT_EQ(decisions.size(), predicted->effects.plan.decisions.size());
+  for (std::size_t i = 0; i < decisions.size(); ++i) {
+    EXPECT_EQ(decisions[i].decision, predicted->effects.plan.decisions[i].decision);
+    EXPECT_EQ(decisions[i].reason, predicted->effects.plan.decisions[i].reason);
+    EXPECT_EQ(decisions[i].predicted_change_percent, predicted->effects.plan.decisions[i].predicted_change_percent);
+  }
+}
+
+TEST(PlanPresenter, SkipsMoreEffectsWhereMoreMayBeWrong) {
+  Bench b;
+  const auto simulated = [&] {
+    const auto& decisions = b.presenter.forecast()->effects.decisions;
+    return std::count_if(decisions.begin(), decisions.end(),
+                         [](const EffectDecision& d) { return d.decision == Decision::simulate; });
+  };
+
+  ASSERT_EQ(b.presenter.set_tolerance_percent(0.01).toStdString(), "");
+  ASSERT_TRUE(wait_until([&] { return b.presenter.forecast_current(); }));
+  const auto strict = simulated();
+  ASSERT_EQ(b.presenter.set_tolerance_percent(20).toStdString(), "");
+  ASSERT_TRUE(wait_until([&] { return b.presenter.forecast_current(); }));
+
+  EXPECT_LT(simulated(), strict);
 }
 
 TEST(PlanPresenter, SetsAsManyPhasesAsTheToleranceNeedsAndNoMore) {
   Bench b;
-  ASSERT_TRUE(wait_until([&] { return b.presenter.expected_known(); }));
+  ASSERT_TRUE(wait_until([&] { return b.presenter.forecast().has_value(); }));
 
   ASSERT_EQ(b.presenter.set_tolerance_percent(5).toStdString(), "");
   const int phases = b.presenter.plan().target.phases;
@@ -79,6 +119,42 @@ TEST(PlanPresenter, SetsAsManyPhasesAsTheToleranceNeedsAndNoMore) {
   ASSERT_EQ(b.presenter.apply(fewer).toStdString(), "");
 
   EXPECT_GT(*b.presenter.outlook().uncertainty_percent(), 5);
+}
+
+TEST(PlanPresenter, KnowsThePriceOfEveryAccuracyBeforeItIsPaid) {
+  Bench b;
+
+  ASSERT_TRUE(wait_until([&] { return !b.presenter.prices().empty(); }));
+
+  const auto& prices = b.presenter.prices();
+  ASSERT_GE(prices.size(), 3u);
+  for (std::size_t i = 1; i < prices.size(); ++i) {
+    EXPECT_GT(prices[i].tolerance_percent, prices[i - 1].tolerance_percent);
+    EXPECT_LE(prices[i].bench_s, prices[i - 1].bench_s);
+    EXPECT_LE(prices[i].phases, prices[i - 1].phases);
+  }
+  // A price is what the slider then asks for.
+  ASSERT_EQ(b.presenter.set_tolerance_percent(prices.back().tolerance_percent).toStdString(), "");
+  EXPECT_EQ(b.presenter.plan().target.phases, prices.back().phases);
+  EXPECT_EQ(b.presenter.outlook().bench_s, prices.back().bench_s);
+  const Plot plot = accuracy_plot(prices, b.presenter.outlook());
+  EXPECT_EQ(plot.series.front().points.size(), prices.size());
+}
+
+TEST(PlanPresenter, SkipsAndForcesEffectsByHandInTheSameToml) {
+  Bench b;
+
+  ASSERT_EQ(b.presenter.choose(Effect::temporal_noise, EffectChoice::skip).toStdString(), "");
+  ASSERT_EQ(b.presenter.choose(Effect::diffraction, EffectChoice::simulate).toStdString(), "");
+  ASSERT_TRUE(wait_until([&] { return b.presenter.forecast_current(); }));
+
+  EXPECT_EQ(b.presenter.choice(Effect::temporal_noise), EffectChoice::skip);
+  EXPECT_THAT(b.presenter.toml().toStdString(), HasSubstr("temporal_noise"));
+  EXPECT_FALSE(b.presenter.forecast()->effects.simulates(Effect::temporal_noise));
+  EXPECT_TRUE(b.presenter.forecast()->effects.simulates(Effect::diffraction));
+  ASSERT_EQ(b.presenter.choose(Effect::temporal_noise, EffectChoice::planner).toStdString(), "");
+  ASSERT_TRUE(wait_until([&] { return b.presenter.forecast_current(); }));
+  EXPECT_TRUE(b.presenter.forecast()->effects.simulates(Effect::temporal_noise));
 }
 
 TEST(PlanPresenter, SaysThatAPlateDoesNotFitBeforeAnythingIsMeasured) {
