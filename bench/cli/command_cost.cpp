@@ -1,101 +1,100 @@
 // todbench cost
-#include <algorithm>
-#include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "bench/cli/commands.h"
 #include "bench/report/cost_figure.h"
-#include "bench/run/experiment_inputs.h"
+#include "bench/report/report.h"
+#include "bench/run/cost_study.h"
+#include "bench/run/report_data.h"
+#include "bench/session/cost_record.h"
 #include "bench/session/files.h"
-#include "bench/session/plan_options.h"
-#include "sim_devices/prediction/cost_frontier.h"
-#include "tod/test_pattern.h"
+#include "bench/session/manifest.h"
+#include "bench/session/session_folder.h"
+#include "bench/session/verdict.h"
 
 namespace todbench {
 namespace {
 
 struct CostArguments {
-  std::string plan, svg;
+  std::string plan, session, svg;
+  double budget_s = 60;
 };
-
-Json cost_json(const CostFrontier& frontier) {
-  Json points = Json::array();
-  for (const CostPoint& point : frontier.points) {
-    points.push_back({{"knob", point.knob},
-                      {"setting", point.setting},
-                      {"wall_s", json_number(point.wall_s)},
-                      {"error_percent", json_number(point.error_percent)},
-                      {"standard_error_percent", json_number(point.standard_error_percent)},
-                      {"chosen", point.chosen},
-                      {"best", point.best}});
-  }
-  return {{"reference",
-           {{"wall_s", json_number(frontier.reference_s)},
-            {"standard_error_percent", json_number(frontier.reference_standard_error_percent)}}},
-          {"points", points}};
-}
 
 void print_cost(const Console& console, const CostFrontier& frontier) {
   std::vector<TableRow> rows;
   for (const CostPoint& point : frontier.points) {
+    std::string remark = point.not_measured.empty() ? "" : "not measured: " + point.not_measured;
+    if (point.best) remark = "best";
+    if (point.chosen) remark = remark.empty() ? "chosen" : "chosen, " + remark;
     rows.push_back({point.knob, point.setting, fixed(point.wall_s, 3), fixed(point.error_percent, 3),
-                    fixed(point.standard_error_percent, 2),
-                    std::string(point.chosen ? "chosen" : "") + (point.chosen && point.best ? ", " : "") +
-                        (point.best ? "best" : "")});
+                    point.paired ? "paired" : fixed(point.standard_error_percent, 2), remark});
   }
   console.table({"knob", "setting", "time [s]", "error of acuity [%]", "standard error [%]", ""}, rows);
   console.text("");
-  console.text("reference: " + fixed(frontier.reference_s, 1) + " s, standard error " +
-               fixed(frontier.reference_standard_error_percent, 2) +
-               " %; best: nothing measured is both faster and nearer to it");
+  console.text("reference: " + std::to_string(frontier.reference_draws) + " draws per size, " +
+               fixed(frontier.reference_s, 1) + " s, standard error " +
+               fixed(frontier.reference_standard_error_percent, 2) + " %; spent " + fixed(frontier.spent_s, 0) +
+               " s of the budget of " + fixed(frontier.budget_s, 0) + " s");
+  console.text("paired: with the random numbers of a reference of " + std::to_string(frontier.paired_draws) +
+               " draws; best: nothing measured is both faster and nearer, standard error included");
 }
 
-Result<CostTask> cost_task(const Plan& plan) {
-  auto inputs = read_inputs(plan);
-  if (!inputs) return tl::unexpected(inputs.error());
-  auto sensor = sensor_of(plan);
-  if (!sensor) return tl::unexpected(sensor.error());
-  CostTask task;
-  task.sensor = *sensor;
-  task.full = full_plan(*sensor, {}, {});
-  task.planned = inputs->effects;
-  task.observer = inputs->observer;
-  task.motion = inputs->motion;
-  for (const double contrast : plan.target.delta_t_k) task.delta_t_k.push_back(std::abs(contrast));
-  task.chosen = inputs->accuracy;
-  task.chosen_setting = plan.simulation.accuracy;
-  task.seed = plan.seed;
-  return task;
+/// The plan that is named, or that of the session.
+Result<Plan> plan_of(const CostArguments& arguments) {
+  if (!arguments.plan.empty() && !arguments.session.empty())
+    return fail(ErrorCode::invalid_input, "--session: the plan is that of the session, so no PLAN.toml may be named");
+  if (arguments.plan.empty() && arguments.session.empty())
+    return fail(ErrorCode::invalid_input, "cost: PLAN.toml or --session is required");
+  if (arguments.session.empty()) return load_plan(arguments.plan);
+  auto session = read_session(arguments.session);
+  if (!session) return tl::unexpected(session.error());
+  return std::move(session->plan);
 }
 
-Result<void> write_figure(const CostFrontier& frontier, const std::string& path) {
-  std::vector<CostMark> marks;
-  for (const CostPoint& point : frontier.points)
-    marks.push_back({point.knob, std::max(point.wall_s, 1e-6), point.error_percent, point.chosen});
-  const auto document = svg_document(cost_plot(marks));
-  if (!document) return tl::unexpected(document.error());
-  return write_file_atomically(path, *document);
+/// cost.json and, from the folder as it then is, the report; the manifest follows both.
+Result<void> into_session(const CostFrontier& frontier, const std::filesystem::path& folder) {
+  if (auto written = write_file_atomically(folder / "cost.json", to_page(cost_json(frontier))); !written)
+    return written;
+  const auto session = read_session(folder);
+  if (!session) return tl::unexpected(session.error());
+  const auto data = report_data(*session, session_name(folder));
+  if (!data) return tl::unexpected(data.error());
+  if (auto written = write_file_atomically(folder / "report.html", render_report(*data)); !written) return written;
+  // A run that was cut off has no manifest.
+  std::error_code none;
+  if (!std::filesystem::exists(folder / "manifest.json", none)) return {};
+  return refresh_manifest(folder, {"cost.json", "report.html"});
+}
+
+Result<void> write_results(const CostFrontier& frontier, const CostArguments& arguments) {
+  if (!arguments.svg.empty()) {
+    const auto document = cost_document(frontier);
+    if (!document) return tl::unexpected(document.error());
+    if (auto written = write_file_atomically(arguments.svg, *document); !written) return written;
+  }
+  return arguments.session.empty() ? Result<void>() : into_session(frontier, arguments.session);
 }
 
 int run_cost(Console& console, const CostArguments& arguments, const Program& program) {
-  auto plan = load_plan(arguments.plan);
+  auto plan = plan_of(arguments);
   if (!plan) return report_error(console, plan.error());
   if (program.common.seed_given) plan->seed = program.common.seed;
-  const auto task = cost_task(*plan);
-  if (!task) return report_error(console, task.error());
-  console.phase("measuring what accuracy costs");
-  const auto frontier = cost_frontier(
-      *task, [&console](std::size_t done, std::size_t steps) { console.progress(done, steps); }, program.stop->token());
+  const CostListener listener{
+      .on_phase = [&console](std::string_view phase) { console.phase(phase); },
+      .on_progress = [&console](std::size_t done, std::size_t points) { console.progress(done, points); }};
+  const auto frontier = cost_of_plan(*plan, arguments.budget_s, listener, program.stop->token());
   console.end_progress();
   if (!frontier) return report_error(console, frontier.error());
-  if (!arguments.svg.empty()) {
-    if (auto written = write_figure(*frontier, arguments.svg); !written) return report_error(console, written.error());
+  if (console.json()) console.object(cost_json(*frontier));
+  if (frontier->reference.empty()) {
+    for (const auto& note : frontier->notes) console.note(note);
+    console.error("the plan has no identifiable threshold: there is nothing whose error could be measured");
+    return exit_code(VerdictKind::inconclusive);
   }
-  if (console.json()) {
-    console.object(cost_json(*frontier));
-  } else {
-    print_cost(console, *frontier);
-  }
+  if (auto written = write_results(*frontier, arguments); !written) return report_error(console, written.error());
+  print_cost(console, *frontier);
+  for (const auto& note : frontier->notes) console.note(note);
   return 0;
 }
 
@@ -104,8 +103,14 @@ int run_cost(Console& console, const CostArguments& arguments, const Program& pr
 void add_cost_command(CLI::App& app, Program& program) {
   auto* command = app.add_subcommand("cost", "what accuracy costs in time: the frontier, measured on this machine");
   auto a = std::make_shared<CostArguments>();
-  command->add_option("PLAN.toml", a->plan, "name or file")->required();
-  command->add_option("--svg", a->svg, "writes the figure to this file");
+  command->add_option("PLAN.toml", a->plan, "name or file; or --session");
+  command->add_option("--session", a->session,
+                      "in place of a plan: measures for that of this session folder, keeps the result there as "
+                      "cost.json and rebuilds its report with it");
+  command->add_option("--svg", a->svg, "writes the figures to this file");
+  command->add_option("--budget-s", a->budget_s, "wall time for all of it; what does not fit is left unmeasured")
+      ->check(number_in(0.1, 86400))
+      ->capture_default_str();
   finish_command(*command, program, [a, &program](Console& console) { return run_cost(console, *a, program); });
 }
 

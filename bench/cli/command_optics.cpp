@@ -38,7 +38,7 @@ Json rows_of(const cv::Mat1d& values) {
 /// A window of the degraded triangle for an infinite plane, at a contrast of 1 K, with a bound on its numerical error.
 ImageChain::InfinitePlane degraded(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy,
                                    const RenderArguments& a) {
-  const double step = 1.0 / spec.microscan;
+  const double step = 1.0 / spec.samples_per_pitch();
   const double first = -step * (a.window / 2);
   const Polygon shape = triangle(a.size_pitch, *apex_from(a.apex), {a.x_pitch, a.y_pitch});
   auto image = ImageChain(spec, plan, accuracy).infinite_plane(shape, {first, first}, step, {a.window, a.window});
@@ -51,18 +51,19 @@ ImageChain::InfinitePlane degraded(const SensorSpec& spec, const SensorPlan& pla
 }
 
 void add_noise(cv::Mat1d& values, const SensorSpec& spec, std::uint64_t seed) {
+  const double netd_k = spec.netd_k / std::sqrt(spec.exposures_per_sample());
   std::vector<float> temporal(values.total());
   RandomStream(seed, "render.temporal").fill_normal(temporal);
-  const int detectors = (values.cols + spec.microscan - 1) / spec.microscan;
+  const int n = spec.samples_per_pitch();  // samples of one detector share its fixed pattern
+  const int detectors = (values.cols + n - 1) / n;
   std::vector<float> fixed_pattern(static_cast<std::size_t>(detectors) * static_cast<std::size_t>(detectors));
   RandomStream(seed, "render.fixed").fill_normal(fixed_pattern);
   for (int j = 0; j < values.rows; ++j) {
     for (int i = 0; i < values.cols; ++i) {
       double& value = values(j, i);
-      value += spec.netd_k * static_cast<double>(temporal[static_cast<std::size_t>(j * values.cols + i)]);
+      value += netd_k * static_cast<double>(temporal[static_cast<std::size_t>(j * values.cols + i)]);
       value += spec.fixed_pattern_k *
-               static_cast<double>(
-                   fixed_pattern[static_cast<std::size_t>(j / spec.microscan * detectors + i / spec.microscan)]);
+               static_cast<double>(fixed_pattern[static_cast<std::size_t>(j / n * detectors + i / n)]);
       value = std::nearbyint(value / spec.kelvin_per_count) * spec.kelvin_per_count;
     }
   }
@@ -94,7 +95,7 @@ int run_render(Console& console, RenderArguments a, std::uint64_t seed) {
     image.values.convertTo(single, CV_32F);
     if (auto written = write_tiff(a.tiff, single); !written) return report_error(console, written.error());
   }
-  const double pitch_mrad = spec->ifov_mrad() / spec->microscan;
+  const double pitch_mrad = spec->ifov_mrad() / spec->samples_per_pitch();
   if (console.json()) {
     console.object({{"values", rows_of(image.values)},
                     {"pitch_mrad", pitch_mrad},

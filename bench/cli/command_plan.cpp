@@ -25,15 +25,22 @@ void print_plan(const Console& console, const PlanPrediction& prediction) {
   console.text("");
   console.text("trials: " + std::to_string(prediction.figures.trials) +
                "; uncertainty of S75 (95 %): " + fixed(prediction.figures.predicted_uncertainty_percent, 1) +
-               " %; time to simulate on one core: " + fixed(prediction.figures.predicted_s, 1) + " s");
+               " %; time to simulate on one core of this machine: " + fixed(prediction.figures.predicted_s, 1) + " s" +
+               (prediction.figures.predicted_measurement_s
+                    ? "; to measure with the camera: " + fixed(prediction.figures.predicted_measurement_s, 0) + " s"
+                    : ""));
 }
 
 int run_plan(Console& console, SimulationOverrides overrides, const Program& program) {
   if (program.common.seed_given) overrides.seed = program.common.seed;
   const auto plan = simulation_plan(overrides, program.stop->token());
   if (!plan) return report_error(console, plan.error());
-  const auto prediction = predict_plan(*plan);
+  auto prediction = predict_plan(*plan);
   if (!prediction) return report_error(console, prediction.error());
+  if (auto timed = predict_times(*plan, *prediction, program.stop->token()); !timed) {
+    if (timed.error().code == ErrorCode::interrupted) return report_error(console, timed.error());
+    prediction->warnings.push_back("no predicted time: " + timed.error().message);
+  }
   if (console.json()) {
     console.object(plan_json(prediction->effects.plan, prediction->figures));
   } else {

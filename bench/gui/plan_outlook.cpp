@@ -89,11 +89,13 @@ TodCurve as_curve(const std::vector<ExpectedThreshold>& expected) {
   return curve;
 }
 
-Result<PlanForecast> forecast(const Plan& plan) {
+Result<PlanForecast> forecast(const Plan& plan, std::stop_token stop) {
   PlanForecast out;
   out.plan = plan;
   auto prediction = predict_plan(plan);
   if (prediction) {
+    if (auto timed = predict_times(plan, *prediction, stop); !timed && timed.error().code == ErrorCode::interrupted)
+      return tl::unexpected(timed.error());
     out.effects = std::move(prediction->effects.plan);
     out.warnings = std::move(prediction->warnings);
     out.twin = std::move(prediction->contrasts);
@@ -191,7 +193,8 @@ std::vector<AccuracyPrice> accuracy_prices(const Plan& plan, const PlanForecast&
   for (const double tolerance : {0.5, 1.0, 2.0, 3.0, 5.0, 7.5, 10.0, 20.0}) {
     if (stop.stop_requested()) break;
     const Plan priced = with_tolerance(plan, &seen, tolerance);
-    const auto found = predict_plan(priced);
+    auto found = predict_plan(priced);
+    if (found && !predict_times(priced, *found, stop) && stop.stop_requested()) break;
     PlanForecast at_tolerance = seen;
     at_tolerance.twin_s.reset();
     if (found) {

@@ -25,7 +25,7 @@ struct ExpectedThreshold {
 /// The same as a curve without intervals.
 [[nodiscard]] TodCurve as_curve(const std::vector<ExpectedThreshold>& expected);
 
-/// What predict_plan() says: some tens of milliseconds.
+/// What predict_plan() and predict_times() say: some tenths of a second.
 struct PlanForecast {
   Plan plan;                               ///< of which
   SensorPlan effects;                      ///< the planner's decisions and reasons
@@ -36,8 +36,8 @@ struct PlanForecast {
   std::string problem;                     ///< why the tolerance cannot be met; empty: it can
 };
 
-/// Errors: as the loaders of what the plan names.
-[[nodiscard]] Result<PlanForecast> forecast(const Plan& plan);
+/// Errors: as the loaders of what the plan names; `interrupted`.
+[[nodiscard]] Result<PlanForecast> forecast(const Plan& plan, std::stop_token stop = {});
 
 struct PlannedContrast {
   double delta_t_k = 0;
@@ -72,7 +72,7 @@ struct AccuracyPrice {
   std::optional<double> twin_s;  ///< nothing: the simulation cannot be as good
 };
 
-/// predict_plan() for tolerances from 0.5 to 20 %; those that 256 phases do not reach are left out. Ends early, with
+/// predict_plan() and predict_times() for tolerances from 0.5 to 20 %; those that 256 phases do not reach are left out. Ends early, with
 /// what there is, when stop is requested. Does not depend on tolerance and phases of the plan.
 [[nodiscard]] std::vector<AccuracyPrice> accuracy_prices(const Plan& plan, const PlanForecast& seen,
                                                          const std::vector<TargetPlate>& plates, double frame_rate_hz,

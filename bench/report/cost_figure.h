@@ -1,19 +1,23 @@
-// The measured frontier of accuracy and time as a figure.
+// The measured frontier of accuracy and time as figures and as a table.
 #pragma once
 
+#include <string>
+
+#include "bench/report/markup.h"
 #include "bench/report/svg_plot.h"
+#include "sim_devices/prediction/cost_frontier.h"
 
 namespace todbench {
 
-/// One measured point of a cost frontier, as a figure needs it.
-struct CostMark {
-  std::string knob;
-  double wall_s = 0, error_percent = 0;
-  bool chosen = false;
-};
+/// What a result may be off by over its wall time: tolerance, draws, trials and planner, the chosen point apart. Both
+/// axes are logarithmic. Nothing measured: axes without points.
+[[nodiscard]] Plot cost_result_plot(const CostFrontier& frontier);
+/// The error of each numerical knob alone over wall time; below 0.001 % it is drawn at 0.001 %.
+[[nodiscard]] Plot cost_knob_plot(const CostFrontier& frontier);
+/// Both figures, one above the other, as a file of its own.
+[[nodiscard]] Result<std::string> cost_document(const CostFrontier& frontier);
 
-/// Error against wall time, both logarithmic, one series per group of knobs, the chosen point apart. Errors below
-/// 0.001 % are drawn at 0.001 %. Precondition: at least one mark with a wall time > 0.
-[[nodiscard]] Plot cost_plot(const std::vector<CostMark>& marks);
+/// Figures, table and notes.
+[[nodiscard]] Markup cost_section(const CostFrontier& frontier);
 
 }  // namespace todbench

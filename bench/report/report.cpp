@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bench/report/cost_figure.h"
 #include "bench/report/report_pieces.h"
 #include "bench/report/svg_plot.h"
 
@@ -44,7 +45,9 @@ std::string render_report(const ReportData& data) {
   Markup body = element("header", element("h1", escaped(data.title)) + literal("\n") + subtitle(data)) + literal("\n");
   body += verdict_box(data);
   body += identification_section(data) + limits_section(data) + curve_section(data) + psychometric_section(data);
-  body += comparison_section(data) + set_up_section(data) + effects_section(data) + frames_section(data);
+  body += comparison_section(data) + set_up_section(data) + effects_section(data);
+  if (data.cost) body += cost_section(*data.cost);
+  body += frames_section(data);
   body += provenance_section(data) + statements_section(data) + signature_section(data) + answers_section(data);
   return "<!DOCTYPE html>\n" +
          element("html", element("head", head) + literal("\n") + element("body", element("main", body)),

@@ -10,6 +10,7 @@
 
 #include "acquisition/core/frame_source.h"
 #include "bench/report/svg_plot.h"
+#include "sim_devices/prediction/cost_frontier.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"
 #include "tod/comparison.h"
@@ -73,7 +74,8 @@ struct ReportData {
   std::vector<LimitLine> limits;
 
   std::optional<SensorSpec> simulated_sensor;
-  SensorPlan plan;  ///< of the simulated sensor
+  SensorPlan plan;                   ///< of the simulated sensor
+  std::optional<CostFrontier> cost;  ///< what accuracy costs in time; nothing: not measured, and no section
 
   std::uint64_t frames_used = 0;
   std::map<std::string, std::uint64_t> frames_rejected;  ///< by reason

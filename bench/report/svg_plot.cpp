@@ -345,12 +345,56 @@ display:block;width:100%;height:auto;font:13px system-ui,"DejaVu Sans",Arial,san
 )";
 }
 
-Result<std::string> svg_document(const Plot& plot) {
-  const Result<Markup> picture = svg_plot(plot);
-  if (!picture) return tl::unexpected(picture.error());
-  std::string text = picture->text;
-  text.insert(text.find('>') + 1, "<style>" + plot_style() + "</style>\n");
-  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + text;
+namespace {
+
+/// plot_style() in its light shades without variables, which viewers of files do not know.
+std::string document_style() {
+  std::string style = R"(svg{font:13px system-ui,"DejaVu Sans",Arial,sans-serif;background:#ffffff}
+text{fill:#1a1a1a}
+.frame{fill:#ffffff;stroke:#1a1a1a;stroke-width:1}
+.grid{stroke:#e3e3e3;stroke-width:1}
+.axis{stroke:#1a1a1a;stroke-width:1}
+.x-tick,.axis-label{text-anchor:middle}
+.y-tick,.note{text-anchor:end}
+.note{fill:#595959;font-size:12px;paint-order:stroke;stroke:#ffffff;stroke-width:4px;stroke-linejoin:round}
+.reference{stroke:#595959;stroke-width:1.2;stroke-dasharray:6 4}
+.curve{fill:none;stroke-width:2;stroke-linejoin:round}
+.dashed{stroke-dasharray:8 5}.dotted{stroke-dasharray:2 4}
+.bar{fill:none;stroke-width:1.5}
+.marker{stroke-width:1.5}
+.limit{stroke-width:4}
+.band{fill-opacity:.18}
+)";
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 4> tones{
+      {{".tone-a", "#0072b2"}, {".tone-b", "#c14e00"}, {".tone-c", "#00795a"}, {".tone-m", "#595959"}}};
+  for (const auto& [tone, colour] : tones) {
+    style += joined({tone, ".curve,",         tone,   " .curve,", tone, " .bar,",    tone, " .marker,",
+                     tone, " .limit{stroke:", colour, "}\n",      tone, " .marker,", tone, ".band,",
+                     tone, " .band{fill:",    colour, "}\n"});
+  }
+  return style + ".marker.hollow{fill:#ffffff}\n";
+}
+
+}  // namespace
+
+Result<std::string> svg_document(std::span<const Plot> plots) {
+  constexpr double gap = 12;
+  double width = 0, height = 0;
+  std::string pictures;
+  for (const Plot& plot : plots) {
+    const Result<Markup> picture = svg_plot(plot);
+    if (!picture) return tl::unexpected(picture.error());
+    std::string text = picture->text;
+    text.insert(text.find("<svg ") + 5, joined({"x=\"0\" y=\"", at(height), "\" width=\"", at(plot.width),
+                                                "\" height=\"", at(plot.height), "\" "}));
+    pictures += text;
+    width = std::max(width, plot.width);
+    height += plot.height + gap;
+  }
+  return joined({"<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"",
+                 at(width), "\" height=\"", at(height), "\" viewBox=\"0 0 ", at(width), " ", at(height), "\">\n<style>",
+                 document_style(), "</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n", pictures,
+                 "</svg>\n"});
 }
 
 }  // namespace todbench

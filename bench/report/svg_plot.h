@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -66,7 +67,7 @@ struct Plot {
 /// CSS of all plots: light, dark by the reader's preference, always light on paper.
 [[nodiscard]] std::string plot_style();
 
-/// A file of its own: svg_plot() with its style inside.
-[[nodiscard]] Result<std::string> svg_document(const Plot& plot);
+/// A file of its own with its style inside, for any viewer: the plots one below the other, in light shades.
+[[nodiscard]] Result<std::string> svg_document(std::span<const Plot> plots);
 
 }  // namespace todbench

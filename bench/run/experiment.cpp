@@ -10,8 +10,8 @@
 #include "bench/run/observed_source.h"
 #include "bench/run/recorded_bench.h"
 #include "bench/run/report_data.h"
+#include "bench/run/simulated_responses.h"
 #include "bench/session/text.h"
-#include "sim_devices/prediction/contrast_response.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "tod/measurement.h"
 
@@ -110,23 +110,6 @@ class Recorder {
   std::stop_callback<std::function<void()>> forward_;
 };
 
-/// What the contrast estimate reads of 1 K on each plate; the simulated sensor stands for the camera.
-Result<std::map<std::string, double>> responses(const SensorModel& model, const Plan& plan,
-                                                const std::vector<TargetPlate>& plates,
-                                                const MeasurementOptions& options, std::stop_token stop) {
-  std::map<std::string, double> out;
-  RegistrationOptions registration = options.registration;
-  registration.expected_scale_px_per_mm =
-      1 / (plan.target.distance_m * model.spec().ifov_mrad() / model.spec().samples_per_pitch());
-  for (const auto& plate : plates) {
-    auto response =
-        contrast_response(model, plate, plan.target.distance_m, options.min_reference_px, registration, stop);
-    if (!response) return tl::unexpected(response.error());
-    out[plate.name] = *response;
-  }
-  return out;
-}
-
 /// The plan's own trial design on the simulated sensor.
 struct TwinRun {
   MeasurementResult result;
@@ -173,7 +156,7 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
   const auto model = std::make_shared<const SensorModel>(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
   TemplateObserver observer(inputs.observer, triangle_alternatives());
   MeasurementOptions options = simulated_options(plan, inputs);
-  auto response = responses(*model, plan, inputs.plates, options, stop);
+  auto response = simulated_responses(*model, plan, inputs.plates, options, stop);
   if (!response) return tl::unexpected(response.error());
   options.contrast_response = std::move(*response);
   OpenedBench bench =
@@ -311,7 +294,7 @@ Result<MeasurementResult> run_measured(const Plan& plan, const ExperimentInputs&
   TemplateObserver observer(inputs.observer, triangle_alternatives());
   MeasurementOptions options = measurement_options(plan, inputs.plates, plan.camera.ifov_mrad);
   const SensorModel model(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
-  auto response = responses(model, plan, inputs.plates, options, stop);
+  auto response = simulated_responses(model, plan, inputs.plates, options, stop);
   if (!response) return tl::unexpected(response.error());
   options.contrast_response = std::move(*response);
   options.now_ns = bench.now_ns;

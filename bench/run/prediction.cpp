@@ -4,10 +4,11 @@
 #include <cmath>
 #include <map>
 
+#include "bench/run/time_prediction.h"
 #include "bench/session/descriptions.h"
 #include "bench/session/plan_options.h"
 #include "bench/session/text.h"
-#include "sim_devices/prediction/direct_estimate.h"
+#include "sim_devices/prediction/direct_timing.h"
 #include "tod/planning.h"
 #include "tod/test_pattern.h"
 
@@ -45,32 +46,6 @@ std::optional<double> uncertainty_percent(const Plan& plan, const std::vector<Le
   return 100 * std::expm1(likely_excess * 1.96 * fit->se_ln_threshold);
 }
 
-/// Draws that the direct estimate will need for its standard error: it is near (0.08 + 0.5 q) / sqrt(draws) of S75.
-double needed_draws(const Accuracy& accuracy, double q_eff) {
-  if (!(accuracy.standard_error_percent > 0)) return accuracy.noise_draws;
-  const double needed = std::pow((0.08 + 0.5 * q_eff) / (accuracy.standard_error_percent / 100), 2);
-  return std::max<double>(accuracy.noise_draws, needed);
-}
-
-/// Seconds on one core: frames by their pixels, triangles drawn once per place, answers by their templates.
-double simulation_seconds(const Plan& plan, const std::vector<TargetPlate>& plates, const SensorSpec& sensor) {
-  const double n2 = std::pow(sensor.samples_per_pitch(), 2);
-  const double pixels = sensor.width * sensor.height * n2;
-  double seconds = 0;
-  for (const auto& plate : plates) {
-    const double mountings = static_cast<double>(plan.target.mountings.size());
-    const double contrasts = static_cast<double>(plan.target.delta_t_k.size());
-    const double triangles = static_cast<double>(plate.triangles.size());
-    const double shown = mountings * contrasts * plan.simulation.phases;
-    const double extra =
-        mountings * (plan.measurement.registration_frames + contrasts * plan.measurement.contrast_frames);
-    seconds += (shown + extra) * pixels * 8e-9 * sensor.exposures_per_sample();
-    seconds += mountings * plan.simulation.phases * triangles * 4e-4 * n2;
-    seconds += shown * triangles * 1.2e-4 * n2;
-  }
-  return seconds;
-}
-
 /// Of an adaptive schedule, from what constant stimuli would come to: as many trials as make the interval as narrow as
 /// asked, or as the cap allows. It never ends a contrast before eight presentations.
 void adapt(ContrastPrediction& point, const Plan& plan, const std::vector<TargetPlate>& plates) {
@@ -88,20 +63,22 @@ void adapt(ContrastPrediction& point, const Plan& plan, const std::vector<Target
   point.trials = std::round(std::min(needed, cap));
 }
 
+/// A tolerance that the caps do not allow is refused with the best that they do, and its price on this machine.
 Result<void> reachable(const Plan& plan, const Accuracy& accuracy, const EffectPlan& effects,
                        const TemplateObserverSpec& observer, const SensorSpec& sensor) {
   for (const auto& outlook : effects.outlooks) {
     const double draws = needed_draws(accuracy, outlook.q_eff);
     if (draws <= Accuracy::max_noise_draws) continue;
     const double best = plan.simulation.tolerance_percent * std::sqrt(draws / Accuracy::max_noise_draws);
-    const double price = predicted_direct_seconds(observer, sensor, outlook.s75_pitch, Accuracy::max_noise_draws,
-                                                  accuracy.phases_per_axis);
+    const auto price = measured_direct_seconds(sensor, effects.plan, observer, outlook.delta_t_k, outlook.s75_pitch,
+                                               Accuracy::max_noise_draws, accuracy, plan.simulation.motion);
+    if (!price) return tl::unexpected(price.error());
     return fail(ErrorCode::invalid_input, "a tolerance of " + number_text(plan.simulation.tolerance_percent) +
                                               " % cannot be met at " + number_text(outlook.delta_t_k) +
                                               " K: the most noise draws per size, " +
                                               std::to_string(Accuracy::max_noise_draws) + ", reach about " +
                                               number_text(std::ceil(best * 100) / 100) + " %, for about " +
-                                              number_text(std::ceil(price * 10) / 10) + " s per contrast");
+                                              number_text(std::ceil(*price * 10) / 10) + " s per contrast");
   }
   return {};
 }
@@ -137,7 +114,6 @@ Result<PlanPrediction> predict_plan(const Plan& plan) {
   const auto levels = levels_of(plan, *plates);
   double constant_trials = 0, trials = 0;  // per contrast, of all
   for (const auto& level : levels) constant_trials += level.total;
-  double seconds = 0;
   bool all_identified = true;
   for (const double delta_t_k : plan.target.delta_t_k) {
     ContrastPrediction point{.delta_t_k = delta_t_k,
@@ -148,9 +124,6 @@ Result<PlanPrediction> predict_plan(const Plan& plan) {
       if (outlook.delta_t_k != delta_t_k) continue;
       point.s75_mrad = outlook.s75_pitch * sensor->ifov_mrad();
       point.uncertainty_percent = uncertainty_percent(plan, levels, *point.s75_mrad, outlook.weibull_slope);
-      seconds +=
-          predicted_direct_seconds(*observer_spec, simulated, outlook.s75_pitch,
-                                   static_cast<int>(needed_draws(*accuracy, outlook.q_eff)), accuracy->phases_per_axis);
     }
     adapt(point, plan, *plates);
     trials += point.trials;
@@ -165,9 +138,17 @@ Result<PlanPrediction> predict_plan(const Plan& plan) {
   }
   if (!all_identified) out.figures.predicted_uncertainty_percent.reset();
   out.figures.trials = static_cast<std::uint64_t>(std::llround(trials));
-  const double made = trials / (constant_trials * static_cast<double>(plan.target.delta_t_k.size()));
-  out.figures.predicted_s = seconds + made * simulation_seconds(plan, *plates, simulated);
   return out;
+}
+
+Result<void> predict_times(const Plan& plan, PlanPrediction& prediction, std::stop_token stop) {
+  const auto inputs = read_inputs(plan);
+  if (!inputs) return tl::unexpected(inputs.error());
+  const auto time = predict_time(plan, *inputs, prediction.effects.outlooks, std::move(stop));
+  if (!time) return tl::unexpected(time.error());
+  prediction.figures.predicted_s = time->simulation_s;
+  prediction.figures.predicted_measurement_s = time->measurement_s;
+  return {};
 }
 
 }  // namespace todbench

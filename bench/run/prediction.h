@@ -23,7 +23,7 @@ struct ContrastPrediction {
 
 struct PlanPrediction {
   EffectPlan effects;
-  PlanFigures figures;  ///< uncertainty: the largest over the contrasts; time: of the simulation on one core
+  PlanFigures figures;  ///< uncertainty: the largest over the contrasts; no times
   std::vector<ContrastPrediction> contrasts;
   std::vector<std::string> warnings;  ///< a sentence each
 };
@@ -32,5 +32,9 @@ struct PlanPrediction {
 /// `invalid_input` where the tolerance cannot be met within the hard caps (the message says what can and for what
 /// time). Contrasts without threshold have no uncertainty, and then the plan has none; a warning names them.
 [[nodiscard]] Result<PlanPrediction> predict_plan(const Plan& plan);
+
+/// Adds the times to a prediction of the same plan, as predict_time() (bench/run/time_prediction.h); a plan whose times
+/// cannot be predicted keeps none.
+[[nodiscard]] Result<void> predict_times(const Plan& plan, PlanPrediction& prediction, std::stop_token stop);
 
 }  // namespace todbench

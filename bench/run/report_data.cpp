@@ -124,6 +124,7 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
   data.simulated_sensor = *sensor;
   if (data.ifov_mrad == 0) data.ifov_mrad = sensor->ifov_mrad();
   data.plan = provenance.effects;
+  data.cost = session.cost;
   if (session.curve) {
     const Verdict verdict = judge(plan.limits, *session.curve, session.comparison);
     data.decision_rule = verdict.rule;

@@ -126,6 +126,7 @@ Json plan_json(const SensorPlan& plan, const PlanFigures& figures) {
   json["trials"] = figures.trials;
   json["predicted_uncertainty_percent"] = json_number(figures.predicted_uncertainty_percent);
   json["predicted_s"] = json_number(figures.predicted_s);
+  if (figures.predicted_measurement_s) json["predicted_measurement_s"] = json_number(figures.predicted_measurement_s);
   return json;
 }
 

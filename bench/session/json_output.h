@@ -52,7 +52,8 @@ struct RunFigures {
 struct PlanFigures {
   std::uint64_t trials = 0;
   std::optional<double> predicted_uncertainty_percent;
-  std::optional<double> predicted_s;
+  std::optional<double> predicted_s;                ///< of the simulation, on one core
+  std::optional<double> predicted_measurement_s{};  ///< of the camera; left out of the JSON where there is none
 };
 /// `plan PLAN --json`.
 [[nodiscard]] Json plan_json(const SensorPlan& plan, const PlanFigures& figures);

@@ -8,6 +8,7 @@
 #include <set>
 #include <system_error>
 
+#include "bench/session/cost_record.h"
 #include "bench/session/files.h"
 #include "bench/session/fit_record.h"
 #include "bench/session/text.h"
@@ -261,6 +262,13 @@ Result<Session> read_session(const std::filesystem::path& folder) {
     Result<Comparison> comparison = comparison_from(*json);
     if (!comparison) return fail((folder / "comparison.json").string(), comparison.error());
     session.comparison = *std::move(comparison);
+  }
+  if (is_there(folder / "cost.json")) {
+    const Result<Json> json = read_json(folder / "cost.json");
+    if (!json) return tl::unexpected(json.error());
+    Result<CostFrontier> cost = cost_from(*json);
+    if (!cost) return fail((folder / "cost.json").string(), cost.error());
+    session.cost = *std::move(cost);
   }
   return session;
 }

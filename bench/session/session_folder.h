@@ -12,6 +12,7 @@
 #include "bench/session/plan.h"
 #include "bench/session/provenance.h"
 #include "bench/session/trials_csv.h"
+#include "sim_devices/prediction/cost_frontier.h"
 #include "tod/comparison.h"
 #include "tod/tod_curve.h"
 
@@ -72,6 +73,7 @@ struct Session {
   std::optional<TodCurve> curve;  ///< as it was fitted; nothing where the run ended before
   std::optional<TodCurve> twin;
   std::optional<Comparison> comparison;
+  std::optional<CostFrontier> cost;  ///< what accuracy costs, where it was measured for this session
   /// False when the run was interrupted or cut off.
   [[nodiscard]] bool complete() const { return provenance.state == SessionState::complete; }
 };

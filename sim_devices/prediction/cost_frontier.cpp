@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <cstdio>
+#include <mutex>
+#include <thread>
 
 #include "sim_devices/prediction/direct_estimate.h"
 #include "tod/test_pattern.h"
@@ -11,117 +14,361 @@
 namespace todbench {
 namespace {
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
+using Clock = std::chrono::steady_clock;
+
+constexpr double reference_share = 1.0 / 3;  // of the budget
+constexpr int fewest_reference_draws = 200;  // a standard error near 1 %
+constexpr int paired_draws = 200;            // differences of paired estimates are finer than their standard error
+constexpr double trials_share = 2;           // a run of trials fits where as much time is left for the knobs
+constexpr double worth_repeating_s = 1;      // shorter runs are measured twice
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::string text_of(const char* format, auto... values) {
+  char text[200];
+  std::snprintf(text, sizeof text, format, values...);
   return text;
 }
 
-/// One way of computing.
-struct Setting {
-  std::string knob, name;
-  Accuracy accuracy;
-  bool planned = false;  ///< effects of the planner, not all
-  bool chosen = false;
+/// Requests a stop when the time is over or the caller requests one.
+class Deadline {
+ public:
+  Deadline(Clock::time_point end, const std::stop_token& caller)
+      : forward_(caller, [this] { source_.request_stop(); }), timer_([this, end](const std::stop_token& left) {
+          std::unique_lock lock(mutex_);
+          wake_.wait_until(lock, left, end, [] { return false; });
+          if (!left.stop_requested()) source_.request_stop();
+        }) {}
+  [[nodiscard]] std::stop_token token() const { return source_.get_token(); }
+
+ private:
+  std::stop_source source_;
+  std::stop_callback<std::function<void()>> forward_;
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::jthread timer_;  // last: joined before what it uses is gone
 };
 
-std::vector<Setting> settings_of(const CostTask& task) {
-  std::vector<Setting> out;
-  const Accuracy draft = Accuracy::draft(), normal = Accuracy::normal(), reference = Accuracy::reference();
-  const auto vary = [&](const char* knob, auto Accuracy::*field, auto values) {
-    for (const auto value : values) {
-      Accuracy accuracy = task.chosen;
-      accuracy.*field = value;
-      out.push_back({knob, number(static_cast<double>(value)), accuracy});
-    }
-  };
-  vary("wavelengths", &Accuracy::wavelengths, std::vector{1, 2, 4, 16});
-  vary("phases", &Accuracy::phases_per_axis, std::vector{2, 4, 8});
-  vary("wrap", &Accuracy::wrap_tolerance, std::vector{1e-3, draft.wrap_tolerance, normal.wrap_tolerance});
-  vary("band", &Accuracy::band_tolerance, std::vector{1e-2, draft.band_tolerance, normal.band_tolerance});
-  vary("draws", &Accuracy::noise_draws, std::vector{50, 100, 200, 600, 1500});
-  out.push_back({"planner", "draft", draft, true});
-  out.push_back({"planner", "normal", normal, true});
-  out.push_back({"planner", "reference", reference, true});
-  out.push_back({"planner", "chosen: " + task.chosen_setting, task.chosen, true, true});
-  return out;
-}
+using Estimate = std::function<Result<std::vector<ThresholdEstimate>>(std::stop_token)>;
+
+/// One way of computing and what it is held against.
+struct Way {
+  CostPoint point;
+  Estimate estimate;
+  double expected_s = 0;  ///< nothing runs that will not fit; 0: not known
+};
 
 struct Timed {
-  std::vector<DirectPoint> points;
+  std::vector<ThresholdEstimate> found;
   double wall_s = 0;
 };
 
-Result<Timed> timed(const CostTask& task, const SensorPlan& effects, const Accuracy& accuracy, std::stop_token stop) {
-  const auto begin = std::chrono::steady_clock::now();
-  TemplateObserver observer(task.observer, triangle_alternatives());  // a new one: its banks are part of the price
-  const DirectEstimateOptions options{
-      .samples_per_pitch = 0, .motion = task.motion, .accuracy = accuracy, .seed = task.seed, .stop = std::move(stop)};
-  auto points = direct_estimate(task.sensor, effects, observer, task.delta_t_k, options);
-  if (!points) return tl::unexpected(points.error());
-  return Timed{std::move(*points), std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()};
-}
-
-double largest_error_percent(const Timed& found, const Timed& reference) {
+double largest_error_percent(const std::vector<ThresholdEstimate>& found,
+                             const std::vector<ThresholdEstimate>& reference) {
   double largest = 0;
-  for (std::size_t i = 0; i < found.points.size(); ++i)
-    largest = std::max(largest, 100 * std::abs(reference.points[i].s75_pitch / found.points[i].s75_pitch - 1));
+  for (std::size_t i = 0; i < found.size(); ++i)
+    largest = std::max(largest, 100 * std::abs(reference[i].s75_pitch / found[i].s75_pitch - 1));
   return largest;
 }
 
-double largest_standard_error_percent(const Timed& found) {
+/// Nothing where one contrast has none.
+std::optional<double> largest_standard_error_percent(const std::vector<ThresholdEstimate>& found) {
   double largest = 0;
-  for (const DirectPoint& point : found.points)
-    largest = std::max(largest, 100 * point.standard_error_pitch / point.s75_pitch);
+  for (const ThresholdEstimate& point : found) {
+    if (!point.standard_error_pitch) return std::nullopt;
+    largest = std::max(largest, 100 * *point.standard_error_pitch / point.s75_pitch);
+  }
   return largest;
 }
 
 void mark_best(std::vector<CostPoint>& points) {
   for (CostPoint& point : points) {
+    if (point.paired || !point.measured()) continue;
     point.best = std::ranges::none_of(points, [&](const CostPoint& other) {
-      return other.wall_s < point.wall_s && other.error_percent < point.error_percent;
+      return !other.paired && other.measured() && *other.wall_s < *point.wall_s &&
+             other.total_percent() < point.total_percent();
     });
   }
 }
 
+/// The run of one task: what is known so far, and the time that is left.
+class Frontier {
+ public:
+  Frontier(const CostTask& task, const CostListener& listener, std::stop_token stop)
+      : task_(task), listener_(listener), stop_(std::move(stop)) {
+    out_.budget_s = task.budget_s;
+  }
+
+  [[nodiscard]] Result<CostFrontier> run();
+
+ private:
+  [[nodiscard]] Estimate direct(const SensorPlan& effects, const Accuracy& accuracy) const;
+  /// By the formula of direct estimates and the speed that the scouting run had.
+  [[nodiscard]] double expected_s(const Accuracy& accuracy) const;
+  [[nodiscard]] double formula_s(int draws, int phases_per_axis) const;
+  [[nodiscard]] double left_s() const { return task_.budget_s - seconds_since(begin_); }
+  [[nodiscard]] Result<Timed> timed(const Estimate& estimate) const;
+  [[nodiscard]] Result<void> scout();
+  [[nodiscard]] Result<void> measure_references();
+  [[nodiscard]] std::vector<Way> choices() const;
+  [[nodiscard]] std::vector<Way> knobs() const;
+  void measure_trials();
+  void measure(Way way);
+  void measure_all(std::string_view phase, std::vector<Way> ways);
+  void phase(std::string_view name) const {
+    if (listener_.on_phase) listener_.on_phase(name);
+  }
+
+  const CostTask& task_;
+  const CostListener& listener_;
+  std::stop_token stop_;
+  Clock::time_point begin_ = Clock::now();
+  std::vector<double> delta_t_k_;  ///< those with a threshold
+  std::vector<double> scouted_pitch_;
+  double speed_ = 1;  ///< measured over formula
+  std::vector<ThresholdEstimate> paired_reference_;
+  std::size_t planned_ = 0;
+  CostFrontier out_;
+};
+
+Estimate Frontier::direct(const SensorPlan& effects, const Accuracy& accuracy) const {
+  return [this, &effects, accuracy](std::stop_token stop) -> Result<std::vector<ThresholdEstimate>> {
+    TemplateObserver observer(task_.observer, triangle_alternatives());  // a new one: its banks are part of the price
+    const auto points = direct_estimate(task_.sensor, effects, observer, delta_t_k_,
+                                        {.samples_per_pitch = 0,
+                                         .motion = task_.motion,
+                                         .accuracy = accuracy,
+                                         .seed = task_.seed,
+                                         .stop = std::move(stop)});
+    if (!points) return tl::unexpected(points.error());
+    std::vector<ThresholdEstimate> found;
+    for (const DirectPoint& p : *points) found.push_back({p.delta_t_k, p.s75_pitch, p.standard_error_pitch});
+    return found;
+  };
+}
+
+double Frontier::formula_s(int draws, int phases_per_axis) const {
+  double sum = 0;
+  for (const double size : scouted_pitch_)
+    sum += predicted_direct_seconds(task_.observer, task_.sensor, size, draws, phases_per_axis);
+  return sum;
+}
+
+double Frontier::expected_s(const Accuracy& accuracy) const {
+  return speed_ * formula_s(accuracy.noise_draws, accuracy.phases_per_axis);
+}
+
+Result<Timed> Frontier::timed(const Estimate& estimate) const {
+  const Deadline deadline(
+      begin_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(task_.budget_s)), stop_);
+  const auto start = Clock::now();
+  auto found = estimate(deadline.token());
+  if (!found) return tl::unexpected(found.error());
+  return Timed{.found = std::move(*found), .wall_s = seconds_since(start)};
+}
+
+/// A draft at every contrast: which have a threshold, near which size, and how fast this machine is.
+Result<void> Frontier::scout() {
+  phase("looking for the thresholds");
+  Accuracy draft = Accuracy::draft();
+  double seconds = 0;
+  std::string first_reason;
+  for (const double contrast : task_.delta_t_k) {
+    delta_t_k_ = {contrast};
+    const auto found = timed(direct(task_.full, draft));
+    if (found) {
+      scouted_pitch_.push_back(found->found.front().s75_pitch);
+      seconds += found->wall_s;
+      out_.reference.push_back(found->found.front());
+    } else if (stop_.stop_requested()) {
+      return tl::unexpected(found.error());
+    } else if (found.error().code == ErrorCode::interrupted) {
+      return fail(ErrorCode::invalid_input,
+                  text_of("a budget of %g s is too short even to look for the thresholds", task_.budget_s));
+    } else {
+      out_.notes.push_back(text_of("%g K is left out: ", contrast) + found.error().message);
+    }
+  }
+  delta_t_k_.clear();
+  for (const auto& point : out_.reference) delta_t_k_.push_back(point.delta_t_k);
+  if (delta_t_k_.empty()) return {};
+  speed_ = seconds / formula_s(draft.noise_draws, draft.phases_per_axis);
+  return {};
+}
+
+Result<void> Frontier::measure_references() {
+  phase("computing the reference");
+  Accuracy reference = Accuracy::reference();
+  const double allowed_s = reference_share * task_.budget_s;
+  // Time is a part for the pictures and banks, and one in proportion to the draws.
+  Accuracy fewest = reference;
+  fewest.noise_draws = fewest_reference_draws;
+  const double whole_s = expected_s(reference), fewest_s = expected_s(fewest);
+  if (fewest_s > allowed_s) {
+    return fail(
+        ErrorCode::invalid_input,
+        text_of("a budget of %g s is too short: the reference level with %d draws takes about %.0f s and may use "
+                "a third of it",
+                task_.budget_s, fewest_reference_draws, std::ceil(fewest_s)));
+  }
+  if (whole_s > allowed_s) {
+    const double share = (allowed_s - fewest_s) / (whole_s - fewest_s);
+    reference.noise_draws =
+        fewest_reference_draws + static_cast<int>(share * (reference.noise_draws - fewest_reference_draws));
+    out_.notes.push_back(text_of("the reference has %d draws per size, not %d: with all it would take about %.0f s",
+                                 reference.noise_draws, Accuracy::reference().noise_draws, std::ceil(whole_s)));
+  }
+  auto whole = timed(direct(task_.full, reference));
+  if (!whole) {
+    if (stop_.stop_requested()) return tl::unexpected(whole.error());
+    return fail(
+        ErrorCode::invalid_input,
+        text_of("a budget of %g s is too short for the reference level: ", task_.budget_s) + whole.error().message);
+  }
+  speed_ = whole->wall_s / formula_s(reference.noise_draws, reference.phases_per_axis);
+  out_.reference_draws = reference.noise_draws;
+  out_.reference = std::move(whole->found);
+  out_.reference_s = whole->wall_s;
+  out_.reference_standard_error_percent = largest_standard_error_percent(out_.reference).value_or(0);
+  out_.paired_draws = paired_draws;
+  reference.noise_draws = paired_draws;
+  auto paired = timed(direct(task_.full, reference));
+  if (!paired) {
+    if (stop_.stop_requested()) return tl::unexpected(paired.error());
+    return fail(ErrorCode::invalid_input, text_of("a budget of %g s is too short", task_.budget_s));
+  }
+  paired_reference_ = std::move(paired->found);
+  return {};
+}
+
+/// Measures one way, or says why it was not.
+void Frontier::measure(Way way) {
+  CostPoint& point = way.point;
+  const auto refuse = [&](std::string why) {
+    point.not_measured = std::move(why);
+    out_.points.push_back(point);
+  };
+  const double left = left_s();
+  if (left <= 0) return refuse(text_of("the budget of %g s was used up", task_.budget_s));
+  if (way.expected_s > left) {
+    return refuse(text_of("about %.1f s are more than was left of the budget of %g s", way.expected_s, task_.budget_s));
+  }
+  auto found = timed(way.estimate);
+  if (!found) {
+    return refuse(found.error().code == ErrorCode::interrupted
+                      ? text_of("stopped at the end of the budget of %g s", task_.budget_s)
+                      : found.error().message);
+  }
+  if (found->wall_s < worth_repeating_s && left_s() > task_.budget_s / 2) {
+    if (const auto again = timed(way.estimate)) found->wall_s = std::min(found->wall_s, again->wall_s);
+  }
+  point.wall_s = found->wall_s;
+  point.error_percent = largest_error_percent(found->found, point.paired ? paired_reference_ : out_.reference);
+  point.standard_error_percent = largest_standard_error_percent(found->found);
+  out_.points.push_back(point);
+}
+
+void Frontier::measure_all(std::string_view name, std::vector<Way> ways) {
+  if (!ways.empty()) phase(name);
+  for (Way& way : ways) {
+    if (stop_.stop_requested()) return;
+    measure(std::move(way));
+    if (listener_.on_progress) listener_.on_progress(out_.points.size(), planned_);
+  }
+}
+
+std::vector<Way> Frontier::choices() const {
+  std::vector<Way> ways;
+  for (const CostChoice& choice : task_.choices) {
+    Way way{.point = {.knob = "planner", .setting = choice.setting, .chosen = choice.chosen},
+            .estimate = direct(choice.effects, choice.accuracy),
+            .expected_s = expected_s(choice.accuracy)};
+    ways.insert(choice.chosen ? ways.begin() : ways.end(), std::move(way));
+  }
+  return ways;
+}
+
+/// Each knob alone, the others at the reference level; the coarsest first, because it is the cheapest.
+std::vector<Way> Frontier::knobs() const {
+  std::vector<Way> ways;
+  const auto add = [&](const char* knob, std::string setting, const Accuracy& accuracy, bool paired) {
+    ways.push_back({.point = {.knob = knob, .setting = std::move(setting), .paired = paired},
+                    .estimate = direct(task_.full, accuracy),
+                    .expected_s = expected_s(accuracy)});
+  };
+  Accuracy paired = Accuracy::reference();
+  paired.noise_draws = paired_draws;
+  const auto vary = [&](const char* knob, auto Accuracy::*field, auto values) {
+    for (const auto value : values) {
+      Accuracy accuracy = paired;
+      accuracy.*field = value;
+      add(knob, text_of("%g", static_cast<double>(value)), accuracy, true);
+    }
+  };
+  for (const double tolerance : {10.0, 5.0, 2.0, 1.0, 0.5})
+    add("tolerance", text_of("%g %%", tolerance), Accuracy::for_tolerance(tolerance), false);
+  for (const int draws : {50, 100, 200, 600, 1500}) {
+    if (draws >= out_.reference_draws) break;
+    Accuracy accuracy = Accuracy::reference();
+    accuracy.noise_draws = draws;
+    add("draws", std::to_string(draws), accuracy, false);
+  }
+  const Accuracy draft = Accuracy::draft(), normal = Accuracy::normal(), reference = Accuracy::reference();
+  vary("wavelengths", &Accuracy::wavelengths, std::vector{1, 2, 4, reference.wavelengths});
+  vary("phases", &Accuracy::phases_per_axis, std::vector{2, 4, reference.phases_per_axis});
+  vary("wrap", &Accuracy::wrap_tolerance,
+       std::vector{1e-2, 1e-3, draft.wrap_tolerance, normal.wrap_tolerance, reference.wrap_tolerance});
+  vary("band", &Accuracy::band_tolerance,
+       std::vector{1e-1, draft.band_tolerance, normal.band_tolerance, reference.band_tolerance});
+  return ways;
+}
+
+void Frontier::measure_trials() {
+  if (!task_.trials.empty()) phase("measuring with trials");
+  double per_cost_s = 0;
+  for (const CostTrials& trials : task_.trials) {
+    if (stop_.stop_requested()) return;
+    const auto in_order = [&](std::stop_token stop) -> Result<std::vector<ThresholdEstimate>> {
+      const auto found = trials.measure(std::move(stop));
+      if (!found) return found;
+      std::vector<ThresholdEstimate> ordered;
+      for (const double contrast : delta_t_k_) {
+        const auto at = std::ranges::find(*found, contrast, &ThresholdEstimate::delta_t_k);
+        if (at == found->end()) {
+          return fail(ErrorCode::invalid_input, text_of("so few trials identify no threshold at %g K", contrast));
+        }
+        ordered.push_back(*at);
+      }
+      return ordered;
+    };
+    measure({.point = {.knob = "trials", .setting = trials.setting},
+             .estimate = in_order,
+             .expected_s = trials_share * per_cost_s * trials.relative_cost});
+    if (out_.points.back().measured()) per_cost_s = *out_.points.back().wall_s / trials.relative_cost;
+    if (listener_.on_progress) listener_.on_progress(out_.points.size(), planned_);
+  }
+}
+
+Result<CostFrontier> Frontier::run() {
+  if (auto scouted = scout(); !scouted) return tl::unexpected(scouted.error());
+  if (delta_t_k_.empty()) return std::move(out_);
+  if (auto found = measure_references(); !found) return tl::unexpected(found.error());
+  planned_ = task_.choices.size() + knobs().size() + task_.trials.size();
+  measure_all("measuring the planner's choices", choices());
+  measure_trials();
+  measure_all("measuring each knob alone", knobs());
+  if (stop_.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+  mark_best(out_.points);
+  out_.spent_s = seconds_since(begin_);
+  return std::move(out_);
+}
+
 }  // namespace
 
-Result<CostFrontier> cost_frontier(const CostTask& task,
-                                   const std::function<void(std::size_t, std::size_t)>& on_progress,
-                                   std::stop_token stop) {
-  const std::vector<Setting> settings = settings_of(task);
-  const std::size_t steps = settings.size() + 2;
-  const auto step_done = [&](std::size_t done) {
-    if (on_progress) on_progress(done, steps);
-  };
-  auto whole = timed(task, task.full, Accuracy::reference(), stop);
-  if (!whole) return fail("the reference", whole.error());
-  step_done(1);
-  Accuracy same_draws = Accuracy::reference();
-  same_draws.noise_draws = task.chosen.noise_draws;
-  same_draws.standard_error_percent = task.chosen.standard_error_percent;
-  auto paired = timed(task, task.full, same_draws, stop);
-  if (!paired) return fail("the reference", paired.error());
-  step_done(2);
-
-  CostFrontier out;
-  out.reference_s = whole->wall_s;
-  out.reference_standard_error_percent = largest_standard_error_percent(*whole);
-  for (const Setting& setting : settings) {
-    auto found = timed(task, setting.planned ? task.planned : task.full, setting.accuracy, stop);
-    if (!found) return fail(setting.knob + " " + setting.name, found.error());
-    const bool own = setting.knob != "draws" && setting.knob != "planner";
-    out.points.push_back({.knob = setting.knob,
-                          .setting = setting.name,
-                          .wall_s = found->wall_s,
-                          .error_percent = largest_error_percent(*found, own ? *paired : *whole),
-                          .standard_error_percent = largest_standard_error_percent(*found),
-                          .chosen = setting.chosen,
-                          .best = false});
-    step_done(out.points.size() + 2);
-  }
-  mark_best(out.points);
-  return out;
+Result<CostFrontier> cost_frontier(const CostTask& task, const CostListener& listener, std::stop_token stop) {
+  return Frontier(task, listener, std::move(stop)).run();
 }
 
 }  // namespace todbench

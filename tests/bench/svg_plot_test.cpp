@@ -260,12 +260,16 @@ TEST(SvgPlot, LegendEntriesNeverOverlapAndStayInThePicture) {
   }
 }
 
-TEST(SvgPlot, ADocumentOfItsOwnCarriesItsStyle) {
-  const Result<std::string> document = svg_document(unit_plot());
+TEST(SvgPlot, ADocumentOfItsOwnCarriesAStyleThatEveryViewerKnows) {
+  const std::array plots{unit_plot(), unit_plot()};
+
+  const Result<std::string> document = svg_document(plots);
 
   ASSERT_TRUE(document);
   EXPECT_THAT(*document, ::testing::StartsWith("<?xml"));
-  EXPECT_THAT(*document, HasSubstr("prefers-color-scheme:dark"));
+  EXPECT_THAT(*document, HasSubstr(".tone-a .marker,"));
+  EXPECT_THAT(*document, Not(HasSubstr("var(")));
+  EXPECT_THAT(*document, HasSubstr("viewBox=\"0 0 400.00 824.00\""));  // two of 400 by 400, each with 12 below
 }
 
 TEST(TodFigures, WilsonIntervalsAgreeWithTheScoreEquation) {

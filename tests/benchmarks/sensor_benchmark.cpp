@@ -112,5 +112,25 @@ BENCHMARK_CAPTURE(direct_estimate_three_contrasts, tolerance_1_percent, Accuracy
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(direct_estimate_three_contrasts, normal, Accuracy::normal())->Unit(benchmark::kMillisecond);
 
+/// How the cost grows: the first argument contrasts between 4 and 2 K, whose sizes are alike, with the second number of
+/// draws.
+void direct_estimate_growth(benchmark::State& state) {
+  const SensorSpec spec = test::sc2000();
+  const SensorPlan plan = full_plan(spec, {}, {});
+  DirectEstimateOptions options;
+  options.accuracy.noise_draws = static_cast<int>(state.range(1));
+  std::vector<double> contrasts;
+  for (int i = 0; i < state.range(0); ++i) contrasts.push_back(4.0 / (1 + i / 8.0));
+  for (auto _ : state) {
+    TemplateObserver observer({}, triangle_alternatives());
+    benchmark::DoNotOptimize(direct_estimate(spec, plan, observer, contrasts, options).value());
+  }
+}
+BENCHMARK(direct_estimate_growth)
+    ->ArgNames({"contrasts", "draws"})
+    ->ArgsProduct({{1, 2, 4, 8}, {600}})
+    ->ArgsProduct({{1}, {1200, 2400, 4800}})
+    ->Unit(benchmark::kMillisecond);
+
 }  // namespace
 }  // namespace todbench

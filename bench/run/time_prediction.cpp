@@ -1,0 +1,185 @@
+#include "bench/run/time_prediction.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/run/devices.h"
+#include "bench/session/plan_options.h"
+#include "sim_devices/prediction/direct_timing.h"
+#include "tod/frame_taker.h"
+#include "tod/patch_windows.h"
+#include "tod/registration.h"
+#include "tod/test_pattern.h"
+
+namespace todbench {
+namespace {
+
+constexpr double shapes_per_first_draw = 1.5;  // a first picture has two of three of the shapes of all mountings
+constexpr double fit_s = 0.01;                 // of one contrast, both intervals
+
+/// Seconds of each kind of work on one plate.
+struct PlateSpeed {
+  double first_draw = 0;  ///< a picture with shapes and tables that were not there
+  double draw = 0;        ///< a picture at another place
+  double frame = 0;       ///< a frame of an unchanged scene, taken and added up
+  double registration = 0, contrast = 0;
+  double prepare = 0;  ///< the observer for all its sizes
+  double answers = 0;  ///< all triangles of a presentation
+};
+
+template <typename Work>
+double seconds_of(Work&& work) {
+  const double start = thread_seconds();
+  work();
+  return thread_seconds() - start;
+}
+
+/// How often a side does what.
+struct Counts {
+  double set_ups = 0;        ///< of one plate
+  double presentations = 0;  ///< of one plate, over all contrasts
+  double contrasts = 0;
+};
+
+/// The decisions on one picture, and what preparing for them takes.
+Result<void> time_answers(const TargetPlate& plate, const Registration& registration, const cv::Mat1d& picture,
+                          TemplateObserver& observer, const MeasurementOptions& options, double contrast_k,
+                          PlateSpeed& speed) {
+  for (const auto& t : plate.triangles) {
+    Result<std::shared_ptr<const PreparedObserver>> prepared = nullptr;
+    speed.prepare += seconds_of(
+        [&] { prepared = observer.prepare(t.size_mm * registration.scale_px_per_mm, options.samples_per_pitch); });
+    if (!prepared) return tl::unexpected(prepared.error());
+    const auto window = patch_window(registration.pixel(t.position_mm), (*prepared)->window_samples());
+    if ((window.pixels & cv::Rect({0, 0}, picture.size())) != window.pixels) continue;
+    speed.answers += seconds_of([&] {
+      const Patch patch{.kelvin = picture(window.pixels).clone(), .phase = window.phase, .noise_k = 0};
+      (void)(*prepared)->choose(patch, contrast_k, RandomStream(1, "time_prediction"));
+    });
+  }
+  return {};
+}
+
+Result<PlateSpeed> speed_on(const TargetPlate& plate, const std::shared_ptr<const SensorModel>& model,
+                            TemplateObserver& observer, const MeasurementOptions& options,
+                            const ExperimentInputs& inputs, std::stop_token stop) {
+  constexpr int frames = 4;
+  PlateSpeed speed;
+  PlateScene scene;
+  scene.plate = plate;
+  scene.delta_t_k = 1;
+  scene.distance_m = options.distance_m;
+  scene.motion = inputs.motion;
+  scene.background_k = model->spec().scene_temperature_k;
+  std::shared_ptr<const cv::Mat1f> unit;
+  speed.first_draw = seconds_of([&] { unit = model->unit_signal(scene); });
+  scene.shift_mm = {0.1, 0.2};
+  speed.draw = seconds_of([&] { unit = model->unit_signal(scene); });
+  const auto holder = std::make_shared<SceneHolder>(scene);
+  const auto source = simulated_source(model, holder, "time");
+  if (auto started = source->start(); !started) return tl::unexpected(started.error());
+  FrameTakerOptions taker_options;
+  taker_options.frames_after_change = 0;
+  taker_options.integrity.reject_frozen = false;
+  taker_options.integrity.width = source->info().width;
+  taker_options.integrity.height = source->info().height;
+  FrameTaker taker(*source, taker_options);
+  Result<AveragedPicture> averaged = AveragedPicture{};
+  speed.frame = seconds_of([&] { averaged = taker.average(frames, stop); }) / frames;
+  if (!averaged) return tl::unexpected(averaged.error());
+  const cv::Mat1d picture = *unit;
+  RegistrationOptions registration = options.registration;
+  registration.expected_scale_px_per_mm = 1 / (options.distance_m * options.ifov_mrad);
+  Result<Registration> found = Registration{};
+  speed.registration = seconds_of([&] { found = register_plate(picture, plate, registration); });
+  if (!found) return tl::unexpected(found.error());
+  speed.contrast = seconds_of([&] { (void)effective_contrast(picture, plate, *found, options.min_reference_px); });
+  if (auto timed = time_answers(plate, *found, picture, observer, options, 1, speed); !timed)
+    return tl::unexpected(timed.error());
+  return speed;
+}
+
+/// The contrast estimate's response: four mountings at two phases.
+double response_s(const PlateSpeed& speed) {
+  return shapes_per_first_draw * (speed.first_draw - speed.draw) +
+         8 * (speed.draw + speed.registration + speed.contrast);
+}
+
+/// What is computed while one plate is looked at, pictures excepted.
+double looking_s(const PlateSpeed& speed, const Counts& counts) {
+  return speed.prepare + counts.set_ups * speed.registration + counts.set_ups * counts.contrasts * speed.contrast +
+         counts.presentations * speed.answers;
+}
+
+double frames_of(const Plan& plan, const Counts& counts) {
+  return counts.set_ups * (plan.measurement.registration_frames + counts.contrasts * plan.measurement.contrast_frames) +
+         counts.presentations;
+}
+
+Counts counts_of(const Plan& plan, const ExperimentInputs& inputs, int phases) {
+  Counts counts{.set_ups = static_cast<double>(plan.target.mountings.size()),
+                .presentations = 0,
+                .contrasts = static_cast<double>(plan.target.delta_t_k.size())};
+  counts.presentations = counts.set_ups * counts.contrasts * phases;
+  if (plan.schedule.kind == ScheduleKind::adaptive) {
+    // At most; where the answers suffice earlier it takes less.
+    counts.presentations = std::min(counts.presentations * 8, static_cast<double>(plan.schedule.max_presentations) /
+                                                                  static_cast<double>(inputs.plates.size()));
+  }
+  return counts;
+}
+
+/// What the camera waits for: the target, its frames, its corrections.
+double waiting_s(const Plan& plan, const ExperimentInputs& inputs, const Counts& counts) {
+  if (plan.target.kind == TargetKind::scene) return 0;  // a simulated camera is as fast as the processor
+  const double plates = static_cast<double>(inputs.plates.size());
+  const double set_ups = plates * counts.set_ups, contrasts = set_ups * counts.contrasts;
+  const double shown = plates * counts.presentations;
+  const double changes = plates * plan.target.plate_change_s + (set_ups - plates) * plan.target.mounting_change_s +
+                         (contrasts - set_ups) * plan.target.contrast_change_s +
+                         (shown - contrasts) * plan.target.shift_change_s;
+  const double frames = plates * frames_of(plan, counts) + (shown + contrasts) * plan.measurement.frames_after_change;
+  const double running = changes + frames / inputs.sensor.frame_rate_hz;
+  const double corrections = plan.camera.nuc_interval_s > 0 ? running / plan.camera.nuc_interval_s + 1 : 0;
+  return running + corrections * plan.camera.nuc_wait_s;
+}
+
+}  // namespace
+
+double needed_draws(const Accuracy& accuracy, double q_eff) {
+  if (!(accuracy.standard_error_percent > 0)) return accuracy.noise_draws;
+  const double needed = std::pow((0.08 + 0.5 * q_eff) / (accuracy.standard_error_percent / 100), 2);
+  return std::max<double>(accuracy.noise_draws, needed);
+}
+
+Result<TimePrediction> predict_time(const Plan& plan, const ExperimentInputs& inputs,
+                                    const std::vector<ContrastOutlook>& outlooks, std::stop_token stop) {
+  const auto model = std::make_shared<const SensorModel>(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
+  TemplateObserver observer(inputs.observer, triangle_alternatives());
+  const MeasurementOptions options = simulated_options(plan, inputs);
+  const Counts simulated = counts_of(plan, inputs, plan.simulation.phases);
+  const Counts measured = counts_of(plan, inputs, plan.target.phases);
+  TimePrediction out;
+  double camera_s = 0;
+  for (const auto& plate : inputs.plates) {
+    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+    const auto speed = speed_on(plate, model, observer, options, inputs, stop);
+    if (!speed) return fail("timing plate " + plate.name, speed.error());
+    const double drawing = simulated.presentations * speed->draw + frames_of(plan, simulated) * speed->frame;
+    out.simulation_s += response_s(*speed) + looking_s(*speed, simulated) + drawing;
+    camera_s += response_s(*speed) + looking_s(*speed, measured) + frames_of(plan, measured) * speed->frame;
+    if (plan.target.kind == TargetKind::scene) camera_s += measured.presentations * speed->draw;
+  }
+  out.simulation_s += simulated.contrasts * fit_s;
+  for (const auto& outlook : outlooks) {
+    const double draws = std::min<double>(needed_draws(inputs.accuracy, outlook.q_eff), Accuracy::max_noise_draws);
+    const auto seconds = measured_direct_seconds(inputs.sensor, inputs.effects, inputs.observer, outlook.delta_t_k,
+                                                 outlook.s75_pitch, draws, inputs.accuracy, inputs.motion);
+    if (!seconds) return tl::unexpected(seconds.error());
+    out.simulation_s += *seconds;
+  }
+  if (!plan.camera.id.empty()) out.measurement_s = camera_s + waiting_s(plan, inputs, measured);
+  return out;
+}
+
+}  // namespace todbench

@@ -1,0 +1,72 @@
+#include "sim_devices/prediction/direct_timing.h"
+
+#include <ctime>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim_devices/prediction/size_trial.h"
+#include "sim_devices/sensor/image_chain.h"
+#include "tod/test_pattern.h"
+
+namespace todbench {
+namespace {
+
+constexpr int timed_draws = 24;
+constexpr int scout_draws = 64;  // of direct_estimate()
+constexpr int final_sizes = 5;
+
+/// Sizes beyond the final ones that the search looks at: from 2 pitches upwards in steps of four, then down one by one.
+double scouted_sizes(double s75_pitch) {
+  const double index = std::log(s75_pitch) / std::log(1.08);
+  const double upwards = index < 8 ? 1 : 1 + std::ceil((index - 8) / 4);
+  const double downwards = index < 8 ? 9 - index : 2;
+  return std::max(0.0, upwards + downwards - 3);  // three of them are among the final ones
+}
+
+}  // namespace
+
+double thread_seconds() {
+  timespec now{};
+  (void)::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+Result<double> measured_direct_seconds(const SensorSpec& spec, const SensorPlan& plan,
+                                       const TemplateObserverSpec& observer_spec, double delta_t_k, double s75_pitch,
+                                       double noise_draws, const Accuracy& accuracy, SceneMotion motion) {
+  const SensorSpec sensor = as_planned(spec, plan);
+  const int samples_per_pitch = sensor.samples_per_pitch();
+  const TrialConditions conditions{.sensor = sensor,
+                                   .motion = motion,
+                                   .samples_per_pitch = samples_per_pitch,
+                                   .phases_per_axis = accuracy.phases_per_axis,
+                                   .search_step_samples = observer_spec.search_step_samples};
+  TemplateObserver observer(observer_spec, triangle_alternatives());
+  const ImageChain chain(spec, plan, accuracy, motion);
+  const WhiteNoise white{.sensor = sensor.netd_k * observer_spec.sensor_noise_factor /
+                                   std::sqrt(sensor.exposures_per_sample()) / std::abs(delta_t_k),
+                         .internal = observer_spec.internal_noise};
+  (void)chain.image(triangle(s75_pitch, Apex::up));  // tabulates the transfer function: timed with the first size
+  const double t0 = thread_seconds();
+  auto bank = observer.bank(s75_pitch * samples_per_pitch, samples_per_pitch);
+  if (!bank) return tl::unexpected(bank.error());
+  SizeTrial trial(chain, *bank, s75_pitch, conditions, RandomStream(1, "direct_timing"));
+  const double t1 = thread_seconds();
+  (void)trial.proportion(white, std::abs(delta_t_k), timed_draws);
+  const double t2 = thread_seconds();
+  (void)trial.proportion(white, std::abs(delta_t_k), timed_draws);
+  const double t3 = thread_seconds();
+  const double build = t1 - t0;
+  const double compare = (t3 - t2) / timed_draws;
+  const double project = std::max(0.0, (t2 - t1) / timed_draws - compare);
+  // With a demanded standard error a first pass is made with fewer draws, whose comparisons are made again.
+  const double first_pass = accuracy.standard_error_percent > 0 && noise_draws > accuracy.noise_draws
+                                ? static_cast<double>(accuracy.noise_draws)
+                                : 0.0;
+  const double scouts = scouted_sizes(s75_pitch);
+  return (final_sizes + scouts) * build + scouts * scout_draws * (project + compare) +
+         final_sizes * (noise_draws * project + (noise_draws + first_pass + scout_draws) * compare);
+}
+
+}  // namespace todbench
