@@ -5,6 +5,7 @@
 #include <deque>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "acquisition/aravis/aravis_backend.h"
@@ -51,6 +52,8 @@ class AravisSource : public FrameSource {
 
   [[nodiscard]] Result<void> refresh();
   [[nodiscard]] Result<void> check_byte_order();
+  /// Takes over a scale that was measured on the bench. It has precedence over what the camera says.
+  [[nodiscard]] Result<void> state_scale(const std::string& feature, const std::string& value);
   [[nodiscard]] Result<std::shared_ptr<ArvStream>> create_stream();
   void configure_transport();
   void check_socket_buffer(ArvStream* stream);
@@ -72,6 +75,7 @@ class AravisSource : public FrameSource {
   CameraFamily family_;
   bool bytes_swapped_ = false;  ///< against what the camera says of their order
   bool corrections_taken_over_ = false;
+  std::optional<double> stated_kelvin_per_count_, stated_offset_k_;
   StreamFormat format_;
   std::shared_ptr<const RadiometricScale> scale_;
   FrameSequence sequence_{FrameIdKind::gvsp16};

@@ -40,7 +40,7 @@ std::optional<VideoCameraKind> video_kind(const std::string& camera) {
 std::vector<std::string> emulated_cameras() {
   std::vector<std::string> cameras{std::string(gige)};
 #ifdef TODBENCH_WITH_ARAVIS
-  cameras.insert(cameras.end(), {"gige-ax5", "gige-a-series", "gige-legacy-science"});
+  cameras.insert(cameras.end(), {"gige-ax5", "gige-a-series", "gige-legacy-science", "gige-unlisted"});
 #endif
 #ifdef TODBENCH_WITH_EMULATED_USB
   cameras.insert(cameras.end(), {"u3v", "seek"});

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "acquisition/aravis/aravis_backend.h"
+#include "acquisition/core/control_text.h"
 #include "sim_devices/lab/camera_models.h"
 
 namespace todbench {
@@ -21,7 +22,13 @@ class GvspLaboratoryCamera final : public LaboratoryCamera {
     return camera_id("gige", description.genicam.vendor, config.serial);
   }
   [[nodiscard]] std::string address() const override { return camera_->config().interface_address; }
-  [[nodiscard]] std::map<std::string, std::string> client_environment() const override { return {}; }
+  [[nodiscard]] std::map<std::string, std::string> settings() const override {
+    const GvspCameraConfig& config = camera_->config();
+    if (config.model != CameraModel::unlisted) return {};
+    // It says nothing of temperature.
+    return {{"TemperatureLinearScale", control_text(config.kelvin_per_count)},
+            {"TemperatureLinearOffset", control_text(config.offset_k)}};
+  }
 
  private:
   std::unique_ptr<GvspCamera> camera_;

@@ -220,6 +220,24 @@ TEST(Families, ACameraNobodyKnowsWorksInCountsAndItsShutterIsFoundByName) {
   EXPECT_EQ(*source->get("FlagMode"), "Manual");
 }
 
+TEST(Families, ACameraNobodyKnowsTakesAScaleThatWasMeasuredOnTheBench) {
+  auto config = quick();
+  config.model = CameraModel::unlisted;
+  const auto camera = start_gvsp_camera(config);
+  const auto source = open_started();
+  ASSERT_TRUE(source);
+
+  ASSERT_TRUE(source->set("TemperatureLinearOffset", "250"));
+  EXPECT_FALSE(source->info().scale.calibrated());
+  ASSERT_TRUE(source->set("TemperatureLinearScale", "0.01"));
+
+  EXPECT_EQ(*source->get("TemperatureLinearScale"), "0.01");
+  EXPECT_EQ(source->info().settings.at("TemperatureLinearOffset"), "250");
+  EXPECT_DOUBLE_EQ(*source->info().scale.kelvin(5000), 300);
+  EXPECT_EQ(source->set("TemperatureLinearScale", "0").error().code, ErrorCode::invalid_input);
+  EXPECT_EQ(source->set("TemperatureLinearOffset", "warm").error().code, ErrorCode::invalid_input);
+}
+
 TEST(GvspFaults, LostPacketsAreSentAgainAndNoFrameIsLost) {
   auto config = quick();
   config.frame_rate_hz = 50;

@@ -18,6 +18,24 @@ INSTANTIATE_TEST_SUITE_P(Wire, WireFaultMatrix,
                          testing::Combine(testing::ValuesIn(wire_faults()), testing::Values(0.05)),
                          [](const testing::TestParamInfo<WireCell>& cell) { return name_of(cell); });
 
+TEST(EveryModel, DecidesAsTheSimulatedSensorForTheSameExposures) {
+  for (const auto model : {CameraModel::ax5, CameraModel::a_series, CameraModel::legacy_science}) {
+    const WireBench bench(model);
+    const auto camera = bench.camera();
+    const auto source = testing_support::open_camera();
+    ASSERT_TRUE(camera && source) << to_string(model);
+
+    const WireRun run = run_over_the_wire(bench, *source);
+
+    ASSERT_TRUE(run.result) << to_string(model) << ": " << run.result.error().message;
+    EXPECT_EQ(run.result->trials.size(), bench.trials_of_a_run());
+    expect_only_true_frames_were_used(bench, run);
+    const auto same = undisturbed(bench, run);
+    ASSERT_TRUE(same) << same.error().message;
+    expect_same_decisions(run.result->trials, same->trials);
+  }
+}
+
 TEST(FaultCounts, OfFramesThatWereNotUsedAreThoseOfTheCamera) {
   const WireBench bench;
   const auto camera = bench.camera();

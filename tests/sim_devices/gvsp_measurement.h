@@ -110,17 +110,21 @@ class ReplayedSource final : public FrameSource {
   std::size_t at_ = 0;
 };
 
-/// One plate, one mounting, two contrasts on an Ax5-like camera at 100 Hz whose counts are those of the sensor.
+/// One plate, one mounting, two contrasts on a camera at 100 Hz whose counts are those of the sensor.
 struct WireBench : SimulatedBench {
   std::shared_ptr<SceneHolder> holder;
   std::shared_ptr<const SensorModel> model;
   std::shared_ptr<ExposureLog> log;
   GvspCameraConfig config;
 
-  WireBench() {
-    spec.kelvin_per_count = 0.04;
+  explicit WireBench(CameraModel camera_model = CameraModel::ax5) {
+    const bool ax5 = camera_model == CameraModel::ax5;
+    spec.kelvin_per_count = ax5 ? 0.04 : 0.01;
     spec.offset_k = 0;
-    spec.bits = 14;
+    spec.bits = ax5 ? 14 : 16;
+    config.model = camera_model;
+    config.significant_bits = spec.bits;
+    config.kelvin_per_count = spec.kelvin_per_count;
     plates = {two_plates().front()};
     mountings = {Mounting::identity};
     contrasts = {16.9, 1.93};

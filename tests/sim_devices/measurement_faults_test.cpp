@@ -1,7 +1,9 @@
 // The measurement when something goes wrong, and on a bench with a hand only.
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <cmath>
+#include <limits>
 
 #include "tests/sim_devices/measurement_bench.h"
 #include "tod/tod_curve.h"
@@ -31,10 +33,12 @@ class FaultySource final : public FrameSource {
   }
   [[nodiscard]] Result<void> correct_nonuniformity() override {
     ++corrections;
+    if (!takes_commands) return fail(ErrorCode::invalid_input, "there is no such command");
     return {};
   }
   void pretend(SourceInfo info) { info_ = std::move(info); }
   int corrections = 0;
+  bool takes_commands = true;
 
  private:
   std::unique_ptr<FrameSource> camera_;
@@ -338,6 +342,115 @@ TEST(MeasurementNuc, CorrectsBeforeTheRunAndKeepsFramesOutUntilItHasPassed) {
   EXPECT_EQ(source.corrections, 1);
   EXPECT_GT(result->frames_rejected.at("nonuniformity_correction"), 0u);
   for (const auto& trial : result->trials) EXPECT_GE(trial.since_nuc_s, 0.5);
+}
+
+TEST(MeasurementNuc, IsLeftToACameraThatTakesNoCommandAndTellsOfItsCorrections) {
+  const SmallBench bench;
+  MeasurementOptions options = test::options_of(bench);
+  options.nuc_interval_s = 60;
+  FaultySource source(bench.camera(), [](std::uint64_t index, Frame frame) -> Result<Frame> {
+    frame.correction = index % 40 < 3 ? CorrectionState::running : CorrectionState::idle;
+    return frame;
+  });
+  source.takes_commands = false;
+
+  const auto result = bench.run(source, options);
+
+  ASSERT_TRUE(result.has_value()) << result.error().message;
+  EXPECT_FALSE(result->ended_by.has_value());
+  EXPECT_EQ(source.corrections, 1);
+  EXPECT_THAT(result->notes, testing::Contains(testing::HasSubstr("there is no such command")));
+  EXPECT_GT(result->frames_rejected.at("nonuniformity_correction"), 3u);
+}
+
+TEST(MeasurementNuc, IsRefusedWhereTheCameraTakesNoCommandAndTellsNothing) {
+  const SmallBench bench;
+  MeasurementOptions options = test::options_of(bench);
+  options.nuc_interval_s = 60;
+  FaultySource source(bench.camera(), [](std::uint64_t, Frame frame) -> Result<Frame> { return frame; });
+  source.takes_commands = false;
+
+  const auto result = bench.run(source, options);
+
+  ASSERT_FALSE(result.has_value());
+  EXPECT_EQ(result.error().code, ErrorCode::invalid_input);
+}
+
+/// Settles only when the camera has sent so many frames more, longer than any queue, or when it has sent its last.
+class SlowTarget final : public Target {
+ public:
+  SlowTarget(std::unique_ptr<Target> target, const std::atomic<std::uint64_t>& frames,
+             std::uint64_t last = std::numeric_limits<std::uint64_t>::max())
+      : target_(std::move(target)), frames_(frames), last_(last) {}
+  [[nodiscard]] const TargetCapabilities& capabilities() const override { return target_->capabilities(); }
+  [[nodiscard]] Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) override {
+    const std::uint64_t enough = frames_ + 100;
+    for (std::uint64_t now = frames_; now < enough && now != last_; now = frames_) frames_.wait(now);
+    return target_->present(state, stop);
+  }
+
+ private:
+  std::unique_ptr<Target> target_;
+  const std::atomic<std::uint64_t>& frames_;
+  std::uint64_t last_;
+};
+
+TEST(MeasurementFaults, NoFrameIsLeftToAQueueWhileTheTargetSettles) {
+  SmallBench bench;
+  bench.contrasts = {16.9};
+  std::atomic<std::uint64_t> frames = 0;
+  FaultySource source(bench.camera(), [&](std::uint64_t, Frame frame) -> Result<Frame> {
+    ++frames;
+    frames.notify_all();
+    return frame;
+  });
+  SlowTarget target(scene_target(bench.holder, bench.plates), frames);
+  MeasurementOptions options = test::options_of(bench);
+  options.frames_while_presenting = FramesMeanwhile::take;
+  std::vector<std::int64_t> asked;
+  MeasurementListener listener;
+  listener.asked_while_presenting = [&](std::int64_t calls) {
+    asked.push_back(calls);
+    return calls;
+  };
+
+  const auto result = bench.run(source, target, options, listener);
+
+  ASSERT_TRUE(result.has_value()) << result.error().message;
+  EXPECT_FALSE(result->ended_by.has_value());
+  EXPECT_EQ(result->trials.size(), 3u * 20u);
+  EXPECT_EQ(result->frames_lost, 0u);
+  EXPECT_THAT(asked, testing::SizeIs(3));
+  EXPECT_THAT(asked, testing::Each(testing::Ge(100)));
+}
+
+TEST(MeasurementFaults, ACameraThatIsLostWhileTheTargetSettlesIsALostCamera) {
+  SmallBench bench;
+  constexpr std::uint64_t last = 250;
+  std::atomic<std::uint64_t> frames = 0;
+  FaultySource source(bench.camera(), [&](std::uint64_t, Frame frame) -> Result<Frame> {
+    const std::uint64_t now = ++frames;
+    frames.notify_all();
+    if (now == last) return fail(ErrorCode::disconnected, "unplugged");
+    return frame;
+  });
+  SlowTarget target(scene_target(bench.holder, bench.plates), frames, last);
+  MeasurementOptions options = test::options_of(bench);
+  options.frames_while_presenting = FramesMeanwhile::take;
+  MeasurementListener listener;
+  int losses = 0;
+  listener.on_lost = [&](const Error&, std::stop_token) -> Result<void> {
+    ++losses;
+    return {};
+  };
+
+  const auto result = bench.run(source, target, options, listener);
+
+  ASSERT_TRUE(result.has_value()) << result.error().message;
+  EXPECT_FALSE(result->ended_by.has_value());
+  EXPECT_EQ(losses, 1);
+  EXPECT_THAT(result->interruptions, testing::SizeIs(1));
+  EXPECT_EQ(result->trials.size(), 2u * 3u * 20u);
 }
 
 }  // namespace

@@ -1,0 +1,244 @@
+// What is said to a camera: how it is set up when it is opened, its features, its corrections, its scale.
+#include <algorithm>
+#include <optional>
+
+#include "acquisition/aravis/aravis_source.h"
+#include "acquisition/aravis/genicam_features.h"
+#include "acquisition/aravis/socket_buffer.h"
+#include "acquisition/aravis/test_ramp.h"
+#include "acquisition/core/control_text.h"
+
+namespace todbench {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A camera on loopback is a program: 8000 bytes need six times fewer packets than 1500, and the MTU is 65536.
+constexpr int loopback_packet_bytes = 8000;
+/// A test pattern is in the picture some frames after it was chosen.
+constexpr int ramp_frames = 10;
+constexpr auto ramp_patience = 1s;
+/// What a plan states of a scale that was measured on the bench; never written into the camera.
+constexpr const char* scale_feature = "TemperatureLinearScale";
+constexpr const char* offset_feature = "TemperatureLinearOffset";
+
+/// GVCP capability register of the GigE Vision standard: bit 29 in its numbering says that packets can be had again.
+bool says_it_can_resend(ArvDevice* device) {
+  if (!ARV_IS_GV_DEVICE(device)) return false;
+  guint32 capability = 0;
+  return arv_device_read_register(device, 0x0934, &capability, nullptr) != 0 && (capability & 0x4U) != 0;
+}
+
+std::shared_ptr<ArvStream> shared(ArvStream* stream) {
+  return {stream, GObjectUnref()};
+}
+
+}  // namespace
+
+AravisSource::AravisSource(GObjectPtr<ArvCamera> camera, AravisOptions options, SourceInfo info,
+                           std::string device_address)
+    : camera_(std::move(camera)),
+      options_(std::move(options)),
+      info_(std::move(info)),
+      device_address_(std::move(device_address)),
+      loopback_(device_address_.starts_with("127.")),
+      can_resend_(says_it_can_resend(arv_camera_get_device(camera_.get()))) {
+  auto* shared_events = new std::shared_ptr<Events>(events_);
+  control_lost_handler_ = g_signal_connect_data(
+      arv_camera_get_device(camera_.get()), "control-lost", G_CALLBACK(&AravisSource::on_control_lost), shared_events,
+      [](void* data, GClosure*) { delete static_cast<std::shared_ptr<Events>*>(data); }, GConnectFlags{});
+}
+
+Result<std::unique_ptr<FrameSource>> AravisSource::create(GObjectPtr<ArvCamera> camera, AravisOptions options,
+                                                          SourceInfo info, std::string device_address) {
+  std::unique_ptr<AravisSource> source(
+      new AravisSource(std::move(camera), std::move(options), std::move(info), std::move(device_address)));
+  // A client that crashed may have left the camera streaming to nowhere, with its parameters locked. Refusal is
+  // harmless.
+  arv_camera_stop_acquisition(source->camera_.get(), nullptr);
+  source->family_ = family_of(arv_camera_get_device(source->camera_.get()), source->info_);
+  source->bytes_swapped_ = source->family_.high_byte_first;
+  auto warnings = prepare_camera(source->camera_.get(), source->family_, source->options_.pixel_format);
+  if (!warnings) return tl::unexpected(warnings.error());
+  source->setup_warnings_ = std::move(*warnings);
+  source->configure_transport();
+  const auto read = source->refresh();
+  if (!read) return tl::unexpected(read.error());
+  // A stream is opened once here so that info() tells about the socket buffer before the first run.
+  const auto stream = source->create_stream();
+  if (!stream) return tl::unexpected(stream.error());
+  if (const auto checked = source->check_byte_order(); !checked) return tl::unexpected(checked.error());
+  return std::unique_ptr<FrameSource>(std::move(source));
+}
+
+Result<void> AravisSource::check_byte_order() {
+  ArvDevice* device = arv_camera_get_device(camera_.get());
+  if (family_.test_pattern.empty()) return {};
+  const auto patterns = enumeration_entries(device, family_.test_pattern);
+  if (std::find(patterns.begin(), patterns.end(), family_.test_ramp) == patterns.end()) return {};
+  if (auto set = set_feature(device, family_.test_pattern, family_.test_ramp); !set) {
+    if (set.error().code == ErrorCode::disconnected) return set;
+    setup_warnings_.push_back("The camera refuses its test ramp, so the order of its bytes is not checked.");
+    publish_socket_buffer();
+    return {};
+  }
+  RampVerdict verdict = RampVerdict::no_ramp;
+  if (auto started = start(); !started) return started;
+  for (int i = 0; i < ramp_frames && verdict == RampVerdict::no_ramp; ++i) {
+    const auto frame = next(ramp_patience);
+    if (!frame) break;
+    if (frame->status == FrameStatus::complete) verdict = judge_test_ramp(frame->counts);
+  }
+  stop();
+  if (auto off = set_feature(device, family_.test_pattern, "Off"); !off) return off;
+  if (verdict == RampVerdict::swapped) {
+    bytes_swapped_ = !bytes_swapped_;
+    setup_warnings_.push_back("The test ramp arrives with its bytes swapped; they are put in order.");
+  } else if (verdict == RampVerdict::no_ramp) {
+    setup_warnings_.push_back("The test ramp did not arrive as one, so the order of bytes is not checked.");
+  }
+  return refresh();
+}
+
+void AravisSource::configure_transport() {
+  ArvCamera* camera = camera_.get();
+  if (arv_camera_is_gv_device(camera) == 0) return;
+  // With the privilege for a packet ring Aravis listens on the interface that the discovery came through; a camera on
+  // this host then never delivers a frame. Plain sockets behave the same for every user and have a receive buffer that
+  // can be checked.
+  arv_camera_gv_set_stream_options(camera, ARV_GV_STREAM_OPTION_PACKET_SOCKET_DISABLED);
+  const int packet_bytes = options_.packet_size_bytes > 0 ? options_.packet_size_bytes
+                           : loopback_                    ? loopback_packet_bytes
+                                                          : 0;
+  if (packet_bytes > 0) {
+    GErrorSlot error;
+    arv_camera_gv_set_packet_size_adjustment(camera, ARV_GV_PACKET_SIZE_ADJUSTMENT_NEVER);
+    arv_camera_gv_set_packet_size(camera, packet_bytes, error.out());
+    if (error) setup_warnings_.push_back("The camera refuses packets of " + std::to_string(packet_bytes) + " bytes.");
+  }
+}
+
+Result<void> AravisSource::refresh() {
+  ArvDevice* device = arv_camera_get_device(camera_.get());
+  auto format = read_stream_format(camera_.get());
+  if (!format) return tl::unexpected(format.error());
+  format_ = std::move(*format);
+  if (bytes_swapped_) format_.big_endian = !format_.big_endian;
+  RadiometricScale scale = read_scale(device, family_);
+  if (stated_kelvin_per_count_) {
+    scale = RadiometricScale::linear({*stated_kelvin_per_count_, stated_offset_k_.value_or(0)}).value_or(scale);
+  }
+  scale_ = std::make_shared<const RadiometricScale>(scale);
+  info_.width = format_.width;
+  info_.height = format_.height;
+  info_.pixel_format = format_.name;
+  info_.significant_bits = format_.significant_bits;
+  info_.frame_rate_hz = read_frame_rate(camera_.get(), family_);
+  info_.scale = *scale_;
+  info_.settings = read_settings(device);
+  info_.settings["CameraFamily"] = family_.name;
+  if (stated_kelvin_per_count_) info_.settings[scale_feature] = control_text(*stated_kelvin_per_count_);
+  if (stated_offset_k_) info_.settings[offset_feature] = control_text(*stated_offset_k_);
+  publish_socket_buffer();
+  return {};
+}
+
+Result<std::shared_ptr<ArvStream>> AravisSource::create_stream() {
+  GErrorSlot error;
+  auto* shared_events = new std::shared_ptr<Events>(events_);
+  ArvStream* raw = arv_camera_create_stream_full(
+      camera_.get(), &AravisSource::on_stream_event, shared_events,
+      [](void* data) { delete static_cast<std::shared_ptr<Events>*>(data); }, error.out());
+  if (raw == nullptr) return error.failure(ErrorCode::not_found, "creating the frame stream");
+  auto stream = shared(raw);
+  if (ARV_IS_GV_STREAM(raw)) {
+    const bool resend = options_.packet_resend == PacketResend::always ||
+                        (options_.packet_resend == PacketResend::automatic && can_resend_);
+    g_object_set(raw, "packet-resend", resend ? ARV_GV_STREAM_PACKET_RESEND_ALWAYS : ARV_GV_STREAM_PACKET_RESEND_NEVER,
+                 nullptr);
+    check_socket_buffer(raw);
+  }
+  return stream;
+}
+
+void AravisSource::check_socket_buffer(ArvStream* stream) {
+  // AUTO makes the buffer one payload big, which loses most frames of a camera that sends in bursts.
+  const std::uint64_t wanted = std::max<std::uint64_t>(options_.min_socket_buffer_bytes, 8 * format_.payload_bytes);
+  g_object_set(stream, "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size",
+               static_cast<gint>(std::min<std::uint64_t>(wanted, G_MAXINT / 2)), nullptr);
+  const auto granted = request_socket_buffer(arv_gv_stream_get_port(ARV_GV_STREAM(stream)), wanted);
+  socket_buffer_bytes_ = granted ? std::to_string(*granted) : "unknown";
+  socket_buffer_warning_.clear();
+  if (!granted) {
+    socket_buffer_warning_ = "The size of the socket receive buffer cannot be read.";
+  } else if (*granted < wanted) {
+    socket_buffer_warning_ =
+        "The system granted a socket receive buffer of " + std::to_string(*granted) + " instead of " +
+        std::to_string(wanted) +
+        " bytes; frames may be lost. Mend it with: sysctl -w net.core.rmem_max=" + std::to_string(wanted);
+  }
+  publish_socket_buffer();
+}
+
+void AravisSource::publish_socket_buffer() {
+  info_.warnings = setup_warnings_;
+  if (!socket_buffer_bytes_.empty()) info_.settings["SocketBufferBytes"] = socket_buffer_bytes_;
+  if (!socket_buffer_warning_.empty()) info_.warnings.push_back(socket_buffer_warning_);
+}
+
+Result<std::string> AravisSource::get(const std::string& feature) {
+  const std::lock_guard control(control_);
+  if (is_lost()) return tl::unexpected(disconnected());
+  if (feature == scale_feature && stated_kelvin_per_count_) return control_text(*stated_kelvin_per_count_);
+  if (feature == offset_feature && stated_offset_k_) return control_text(*stated_offset_k_);
+  auto value = get_feature(arv_camera_get_device(camera_.get()), feature);
+  if (!value && value.error().code == ErrorCode::disconnected) mark_lost();
+  return value;
+}
+
+Result<void> AravisSource::set(const std::string& feature, const std::string& value) {
+  const std::lock_guard control(control_);
+  if (is_lost()) return tl::unexpected(disconnected());
+  auto done = feature == scale_feature || feature == offset_feature
+                  ? state_scale(feature, value)
+                  : set_feature(arv_camera_get_device(camera_.get()), feature, value);
+  if (done) done = refresh();
+  if (!done && done.error().code == ErrorCode::disconnected) mark_lost();
+  return done;
+}
+
+Result<void> AravisSource::state_scale(const std::string& feature, const std::string& value) {
+  const bool is_scale = feature == scale_feature;
+  const auto stated = control_number(value);
+  if (!stated || (is_scale && !(*stated > 0))) {
+    return fail(ErrorCode::invalid_input,
+                feature + " = " + value + ": expected " + (is_scale ? "kelvin per count, above 0" : "kelvin"));
+  }
+  (is_scale ? stated_kelvin_per_count_ : stated_offset_k_) = *stated;
+  return {};
+}
+
+Result<void> AravisSource::correct_nonuniformity() {
+  const std::lock_guard control(control_);
+  if (is_lost()) return tl::unexpected(disconnected());
+  ArvDevice* device = arv_camera_get_device(camera_.get());
+  const auto commands = nonuniformity_commands(device, family_);
+  if (commands.empty()) {
+    return fail(ErrorCode::invalid_input, "camera " + info_.id + " has no command to correct its non-uniformity");
+  }
+  if (!corrections_taken_over_) {
+    const auto warning = take_over_corrections(device, family_);
+    if (!warning) {
+      mark_lost();
+      return tl::unexpected(warning.error());
+    }
+    corrections_taken_over_ = true;
+    if (*warning) setup_warnings_.push_back(**warning);
+    if (auto read = refresh(); !read) return read;
+  }
+  auto done = set_feature(device, commands.front(), "1");
+  if (!done && done.error().code == ErrorCode::disconnected) mark_lost();
+  return done;
+}
+
+}  // namespace todbench
