@@ -76,6 +76,7 @@ class Recorder {
     };
     if (bench.reconnecting != nullptr) {
       events.on_lost = [&](const Error&, std::stop_token abort) {
+        if (listener_.on_lost) listener_.on_lost(bench.camera->info(), bench.reconnecting->patience());
         return bench.reconnecting->recover(std::move(abort));
       };
       events.on_resumed = [&] { bench.reconnecting->confirm_registration(); };

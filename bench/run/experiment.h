@@ -1,6 +1,7 @@
 // From a plan to a session folder: measure, simulate the twin, compare, judge, report.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
@@ -25,6 +26,8 @@ struct ExperimentListener {
   std::function<void(std::string_view phase)> on_phase{};
   std::function<void(std::size_t done, std::size_t planned)> on_progress{};
   std::function<void(std::string_view sentence)> on_note{};
+  /// The camera was lost and is waited for, `patience` at most; also said as a note. A replay waits for nothing: 0.
+  std::function<void(const SourceInfo& camera, std::chrono::milliseconds patience)> on_lost{};
   /// The folder exists and holds the plan.
   std::function<void(const std::filesystem::path& folder)> on_session{};
   std::function<void(const SourceInfo&)> on_open{};

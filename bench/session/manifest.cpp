@@ -12,9 +12,10 @@ namespace todbench {
 
 namespace {
 
-constexpr std::array<std::string_view, 12> known_files{
+constexpr std::array<std::string_view, 13> known_files{
     "comparison.json", "curve.csv",       "fits.json",   "fits_human.json", "report.pdf", "trials_human.csv",
-    "log.txt",         "provenance.json", "report.html", "session.toml",    "trials.csv", "trials_simulated.csv"};
+    "log.txt",         "provenance.json", "report.html", "session.toml",    "trials.csv", "trials_simulated.csv",
+    "shown_human.csv"};
 constexpr std::array<std::string_view, 2> known_folders{"inputs", "frames"};
 constexpr std::string_view schema = "todbench-manifest-1";
 
