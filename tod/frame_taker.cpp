@@ -12,11 +12,6 @@ constexpr std::uint64_t frames_before_share_counts = 100;
 
 }  // namespace
 
-std::int64_t monotonic_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
 FrameTaker::FrameTaker(FrameSource& source, FrameTakerOptions options)
     : source_(source), options_(std::move(options)), gate_(options_.integrity) {}
 
@@ -48,6 +43,7 @@ Result<void> FrameTaker::check_share() const {
     bad += count;
     reasons += (reasons.empty() ? "" : ", ") + std::to_string(count) + " " + std::string(to_string(reason));
   }
+  bad -= excused_;
   const std::uint64_t all = seen_ + gate_.lost();
   if (all < frames_before_share_counts ||
       static_cast<double>(bad) <= options_.max_rejected_share * static_cast<double>(all))
@@ -57,6 +53,7 @@ Result<void> FrameTaker::check_share() const {
 }
 
 void FrameTaker::note_told_correction(const Frame& frame) {
+  told_of_corrections_ = told_of_corrections_ || frame.correction != CorrectionState::unknown;
   if (frame.correction == CorrectionState::running) nuc_ns_ = known_nuc_ns_ = frame.host_time_ns;
   if (frame.since_correction_s < 0) return;
   const std::int64_t told = frame.host_time_ns - static_cast<std::int64_t>(frame.since_correction_s * 1e9);
@@ -64,19 +61,20 @@ void FrameTaker::note_told_correction(const Frame& frame) {
   known_nuc_ns_ = std::max(known_nuc_ns_.value_or(told), told);
 }
 
-std::optional<CorrectionSign> FrameTaker::see_correction(const Frame& frame, std::optional<Rejection> rejection) {
+std::optional<CorrectionSign> FrameTaker::see_correction(const Frame& frame, std::optional<Rejection> rejection,
+                                                         Scene scene) {
   // A camera that says when it corrects is believed; frames without noise tell nothing.
   if (!options_.integrity.reject_frozen || frame.correction != CorrectionState::unknown) return std::nullopt;
   if (rejection == Rejection::frozen) return watch_.see_frozen();
   if (rejection && rejection != Rejection::gapped) return std::nullopt;
-  if (frame.host_time_ns < valid_from_ns_ || to_discard_ > 0) return std::nullopt;
+  if (scene == Scene::moving || frame.host_time_ns < valid_from_ns_ || to_discard_ > 0) return std::nullopt;
   return watch_.see(frame);
 }
 
-std::optional<RejectedFrame> FrameTaker::judge(const Frame& frame) {
+std::optional<RejectedFrame> FrameTaker::judge(const Frame& frame, Scene scene) {
   const auto rejection = gate_.judge(frame);
   note_told_correction(frame);
-  const auto seen = see_correction(frame, rejection);
+  const auto seen = see_correction(frame, rejection, scene);
   if (seen) nuc_ns_ = frame.host_time_ns;
   if (rejection == Rejection::frozen && known_nuc_ns_ &&
       static_cast<double>(frame.host_time_ns - *known_nuc_ns_) * 1e-9 < options_.nuc_wait_s) {
@@ -91,6 +89,32 @@ std::optional<RejectedFrame> FrameTaker::judge(const Frame& frame) {
   return RejectedFrame{.sequence = frame.sequence, .reason = Rejection::nonuniformity_correction, .seen = seen};
 }
 
+Result<bool> FrameTaker::accept(const Frame& frame, Scene scene) {
+  ++seen_;
+  const auto rejected = judge(frame, scene);
+  if (rejected && options_.on_rejected) options_.on_rejected(*rejected);
+  // A black body on its way may fill the picture; what the transport does wrong is wrong at any time.
+  const auto of_the_picture = {Rejection::saturated, Rejection::byte_swapped, Rejection::frozen};
+  const bool excused =
+      scene == Scene::moving && rejected &&
+      std::find(of_the_picture.begin(), of_the_picture.end(), rejected->reason) != of_the_picture.end();
+  excused_ += excused ? 1 : 0;
+  if (auto healthy = check_share(); !healthy) return tl::unexpected(healthy.error());
+  return !rejected;
+}
+
+Result<void> FrameTaker::take_while_presenting(const std::function<bool(std::int64_t calls)>& enough) {
+  // How long the end of a change may be noticed too late when no frame comes.
+  constexpr std::chrono::milliseconds look_every{100};
+  for (std::int64_t calls = 0; !enough(calls); ++calls) {
+    const auto frame = source_.next(std::min(look_every, options_.frame_timeout));
+    if (!frame && frame.error().code == ErrorCode::timeout) continue;
+    if (!frame) return tl::unexpected(frame.error());
+    if (auto accepted = accept(*frame, Scene::moving); !accepted) return tl::unexpected(accepted.error());
+  }
+  return {};
+}
+
 Result<Frame> FrameTaker::next(std::stop_token stop) {
   while (true) {
     if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
@@ -103,11 +127,9 @@ Result<Frame> FrameTaker::next(std::stop_token stop) {
       }
       return frame;
     }
-    ++seen_;
-    const auto rejected = judge(*frame);
-    if (rejected && options_.on_rejected) options_.on_rejected(*rejected);
-    if (auto healthy = check_share(); !healthy) return tl::unexpected(healthy.error());
-    if (rejected || frame->host_time_ns < valid_from_ns_) continue;
+    const auto accepted = accept(*frame, Scene::still);
+    if (!accepted) return tl::unexpected(accepted.error());
+    if (!*accepted || frame->host_time_ns < valid_from_ns_) continue;
     if (to_discard_ > 0) {
       --to_discard_;
       continue;

@@ -10,6 +10,7 @@
 
 #include "acquisition/core/correction_watch.h"
 #include "acquisition/core/frame_source.h"
+#include "acquisition/core/host_clock.h"
 #include "acquisition/core/integrity_gate.h"
 
 namespace todbench {
@@ -20,9 +21,6 @@ struct RejectedFrame {
   Rejection reason = Rejection::incomplete;
   std::optional<CorrectionSign> seen{};  ///< the picture in which a correction was seen
 };
-
-/// CLOCK_MONOTONIC in nanoseconds, the clock of Frame::host_time_ns.
-[[nodiscard]] std::int64_t monotonic_ns();
 
 struct FrameTakerOptions {
   IntegrityOptions integrity;
@@ -54,6 +52,10 @@ class FrameTaker {
   /// The next good frame. Errors: `integrity` (too many rejected), `disconnected` (lost, or silent for the frame
   /// timeout), `interrupted`.
   [[nodiscard]] Result<Frame> next(std::stop_token stop);
+  /// Takes frames, and judges them, until `enough` says so: asked before every call of the source with the number of
+  /// calls so far. For the time in which the target changes: the scene may move, and a source that is silent is no
+  /// error. Errors: those of next() but for the silence.
+  [[nodiscard]] Result<void> take_while_presenting(const std::function<bool(std::int64_t calls)>& enough);
   /// Takes one good frame off the source without counting it as used.
   [[nodiscard]] Result<void> discard(std::stop_token stop);
   /// Average of `count` good frames.
@@ -62,16 +64,22 @@ class FrameTaker {
   [[nodiscard]] std::uint64_t used() const { return used_; }
   [[nodiscard]] std::uint64_t lost() const { return gate_.lost(); }
   [[nodiscard]] std::map<std::string, std::uint64_t> rejected() const;
+  /// Whether a frame said if it was exposed during a correction.
+  [[nodiscard]] bool camera_tells_of_corrections() const { return told_of_corrections_; }
   /// Seconds between the last correction (commanded, told by the camera, or seen in the picture) and a frame; negative
   /// when none is known.
   [[nodiscard]] double since_nuc_s(const Frame& frame) const;
 
  private:
+  enum class Scene { still, moving };
   [[nodiscard]] Result<void> check_share() const;
   /// The gate, then what is known of corrections.
-  [[nodiscard]] std::optional<RejectedFrame> judge(const Frame& frame);
+  [[nodiscard]] std::optional<RejectedFrame> judge(const Frame& frame, Scene scene);
+  /// judge(), with everybody told who wants to know. Whether the frame is good, or why the run cannot go on.
+  [[nodiscard]] Result<bool> accept(const Frame& frame, Scene scene);
   void note_told_correction(const Frame& frame);
-  [[nodiscard]] std::optional<CorrectionSign> see_correction(const Frame& frame, std::optional<Rejection> rejection);
+  [[nodiscard]] std::optional<CorrectionSign> see_correction(const Frame& frame, std::optional<Rejection> rejection,
+                                                             Scene scene);
 
   FrameSource& source_;
   FrameTakerOptions options_;
@@ -83,6 +91,8 @@ class FrameTaker {
   std::optional<std::int64_t> known_nuc_ns_;  ///< of the last that was commanded, or that the camera told of
   std::uint64_t used_ = 0;
   std::uint64_t seen_ = 0;
+  std::uint64_t excused_ = 0;  ///< pictures of a moving scene that look bad
+  bool told_of_corrections_ = false;
 };
 
 /// A window of a frame in kelvin. `calibration` when a pixel has no temperature.

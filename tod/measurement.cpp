@@ -1,10 +1,12 @@
 #include "tod/measurement.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <optional>
 #include <span>
+#include <thread>
 #include <tuple>
 
 #include "tod/frame_taker.h"
@@ -73,7 +75,7 @@ class Run {
     while (const auto state = schedule_.next()) {
       const std::size_t before = result_.trials.size();
       auto shown = show(*state);
-      while (!shown && shown.error().code == ErrorCode::disconnected && listener_.on_lost) {
+      while (!shown && camera_lost(shown.error()) && listener_.on_lost) {
         const std::int64_t lost_ns = options_.now_ns();
         const Error why = shown.error();
         note("the camera was lost in presentation " + std::to_string(presentation_) + ": " + why.message);
@@ -124,7 +126,23 @@ class Run {
     const std::int64_t now_ns = options_.now_ns();
     if (last_nuc_ns_ && static_cast<double>(now_ns - *last_nuc_ns_) * 1e-9 < options_.nuc_interval_s) return {};
     last_nuc_ns_ = now_ns;
-    return taker_.correct_nonuniformity();
+    auto corrected = taker_.correct_nonuniformity();
+    if (corrected || corrected.error().code != ErrorCode::invalid_input) return corrected;
+    return rely_on_what_the_camera_tells(corrected.error());
+  }
+
+  /// A camera that takes no command is still measured when its frames say that they are corrections.
+  Result<void> rely_on_what_the_camera_tells(const Error& refused) {
+    if (auto looked = taker_.discard(stop_); !looked) return looked;
+    if (!taker_.camera_tells_of_corrections()) return tl::unexpected(refused);
+    options_.nuc_interval_s = 0;
+    note("corrections are left to the camera, which tells of them: " + refused.message);
+    return {};
+  }
+
+  /// Instruments that are lost say so with the same code; they come back by themselves or end the run.
+  [[nodiscard]] bool camera_lost(const Error& error) const {
+    return error.code == ErrorCode::disconnected && !target_failed_;
   }
 
   /// The camera that was lost in this presentation is back: it is made again.
@@ -160,6 +178,37 @@ class Run {
     return {};
   }
 
+  /// Changes the target; the camera goes on meanwhile.
+  Result<void> present(const TargetState& state) {
+    Result<void> taken;
+    Result<PresentedTarget> presented;
+    if (options_.frames_while_presenting == FramesMeanwhile::repeat) {
+      const std::int64_t calls = listener_.asked_while_presenting ? listener_.asked_while_presenting(0) : 0;
+      taken = taker_.take_while_presenting([calls](std::int64_t asked) { return asked >= calls; });
+    }
+    if (options_.frames_while_presenting == FramesMeanwhile::take) {
+      std::atomic<bool> there = false;
+      std::int64_t calls = 0;
+      {
+        const std::jthread frames([&] {
+          taken = taker_.take_while_presenting([&](std::int64_t asked) {
+            calls = asked;
+            return there.load();
+          });
+        });
+        presented = target_.present(state, stop_);
+        there = true;
+      }
+      // The call that failed counts too.
+      if (listener_.asked_while_presenting) (void)listener_.asked_while_presenting(taken ? calls : calls + 1);
+    } else {
+      presented = target_.present(state, stop_);
+    }
+    target_failed_ = !presented;
+    if (!presented) return fail("presenting the target", presented.error());
+    return taken;
+  }
+
   /// One presentation: target, frame, answers.
   Result<void> show(const TargetState& state) {
     if (auto resumed = wait_while_paused(); !resumed) return resumed;
@@ -170,8 +219,7 @@ class Run {
       return fail(ErrorCode::invalid_input,
                   "the schedule names a plate '" + state.plate + "' that the plan does not have");
     if (auto corrected = correct_when_due(); !corrected) return corrected;
-    auto presented = target_.present(state, stop_);
-    if (!presented) return fail("presenting the target", presented.error());
+    if (auto presented = present(state); !presented) return presented;
     taker_.scene_changed();
     const TargetPlate mounted_plate = mounted(plate->plate, state.mounting);
     const SetUp set_up{state.plate, state.mounting};
@@ -325,6 +373,7 @@ class Run {
   double scale_px_per_mm_ = 0;               ///< of the first registration: one scale for the whole run
   std::optional<std::int64_t> last_nuc_ns_;  ///< when the last one was commanded
   std::int64_t presentation_ = 0;
+  bool target_failed_ = false;  ///< the error of this presentation is the target's
   MeasurementResult result_;
 };
 

@@ -22,6 +22,14 @@
 
 namespace todbench {
 
+/// What becomes of the frames that a camera sends while the target changes.
+enum class FramesMeanwhile {
+  leave,  ///< nobody asks for them: a camera that exposes only when it is asked
+  take,   ///< taken as they come, on a thread of their own, so that no queue has to hold the minutes in which a black
+          ///< body settles, and no correction in them is missed
+  repeat  ///< taken as often as MeasurementListener::asked_while_presenting says: a replay
+};
+
 struct MeasurementOptions {
   double ifov_mrad = 0;             ///< of one pixel, from the plan
   double distance_m = 0;            ///< entrance pupil to plate
@@ -43,6 +51,7 @@ struct MeasurementOptions {
   IntegrityOptions integrity;
   RegistrationOptions registration;  ///< expected scale is filled in from distance and IFOV
   std::uint64_t seed = 1;
+  FramesMeanwhile frames_while_presenting = FramesMeanwhile::leave;
   bool free_running = true;  ///< the camera exposes whether its frames are taken or not: they are taken in a pause too
 };
 
@@ -57,7 +66,8 @@ struct Interruption {
 
 struct SetUpRecord;
 
-/// What the run says while it goes on. Called from the measuring thread; a slow listener slows the measurement, it
+/// What the run says while it goes on. Called from the measuring thread, but on_rejected also from the one that takes
+/// frames while the measuring thread waits for the target: never two at once. A slow listener slows the measurement, it
 /// never loses trials.
 struct MeasurementListener {
   std::function<void(const Trial&)> on_trial;
@@ -66,6 +76,9 @@ struct MeasurementListener {
   std::function<void(const SetUpRecord&)> on_set_up{};
   /// Asked before every presentation and again while it says true; may take a tenth of a second to answer.
   std::function<bool()> paused{};
+  /// Told how often a frame was asked for while the target changed, says how often it was: a recording remembers; a
+  /// replay is told 0.
+  std::function<std::int64_t(std::int64_t calls)> asked_while_presenting{};
   std::function<void(std::size_t done, std::size_t planned)> on_progress;
   std::function<void(const std::string& sentence)> on_note;
   std::function<void(const RejectedFrame&)> on_rejected{};  ///< every frame that was not used, with the reason

@@ -9,6 +9,7 @@
 #include "acquisition/aravis/gvcp_client.h"
 #include "acquisition/aravis/socket_buffer.h"
 #include "acquisition/aravis/test_ramp.h"
+#include "acquisition/core/host_clock.h"
 
 namespace todbench {
 namespace {
@@ -26,11 +27,6 @@ constexpr int ramp_frames = 10;
 constexpr auto ramp_patience = 1s;
 /// Two unanswered pings and this much silence make a camera lost.
 constexpr auto silence_before_lost = 3s;
-
-std::int64_t monotonic_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 FrameIdKind frame_id_kind(ArvDevice* device, AravisTransport transport) {
   if (transport == AravisTransport::usb3_vision) return FrameIdKind::wide;

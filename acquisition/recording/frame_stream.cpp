@@ -176,7 +176,9 @@ class StreamIndex {
     }
     // Kinds that are not known are from a later version and of no concern here.
     const bool header_record = is(head, "HEAD") && !header && head.payload_bytes <= most_header;
-    const bool failure_record = is(head, "FAIL") && head.payload_bytes >= 4 && head.payload_bytes <= most_failure;
+    const bool correction_record = is(head, "FCOR");
+    const bool failure_record =
+        (is(head, "FAIL") || correction_record) && head.payload_bytes >= 4 && head.payload_bytes <= most_failure;
     const bool reading_record = is(head, "READ") && head.payload_bytes == 8;
     if (!header_record && !failure_record && !reading_record) return {};
     const std::string payload = payload_text(file_, offset, head.payload_bytes);
@@ -191,7 +193,9 @@ class StreamIndex {
       std::uint32_t code = 0;
       std::memcpy(&code, payload.data(), 4);
       const auto last = static_cast<std::uint32_t>(ErrorCode::internal);
-      failures.push_back({frames.size(), {static_cast<ErrorCode>(std::min(code, last)), payload.substr(4)}});
+      failures.push_back({.before_frame = frames.size(),
+                          .error = {static_cast<ErrorCode>(std::min(code, last)), payload.substr(4)},
+                          .call = correction_record ? FailedCall::correct_nonuniformity : FailedCall::next});
     } else {
       std::memcpy(&readings.emplace_back(), payload.data(), 8);
     }
@@ -293,10 +297,11 @@ Result<void> FrameStreamWriter::append(const Frame& frame) {
   return written;
 }
 
-Result<void> FrameStreamWriter::append_failure(const Error& error) {
+Result<void> FrameStreamWriter::append_failure(const Error& error, FailedCall call) {
   const auto code = static_cast<std::uint32_t>(error.code);
   const std::string message = error.message.substr(0, most_failure - 4);
-  return write_record("FAIL", &code, sizeof code, message.data(), message.size());
+  return call == FailedCall::next ? write_record("FAIL", &code, sizeof code, message.data(), message.size())
+                                  : write_record("FCOR", &code, sizeof code, message.data(), message.size());
 }
 
 Result<void> FrameStreamWriter::append_reading(std::int64_t value) {

@@ -35,8 +35,8 @@ class FrameStreamWriter {
 
   /// A frame as it came, whatever its status; `invalid_input` for one of more than 2^29 pixels.
   [[nodiscard]] Result<void> append(const Frame& frame);
-  /// Instead of a frame the camera failed.
-  [[nodiscard]] Result<void> append_failure(const Error& error);
+  /// Instead of a frame, or of a correction, the camera failed.
+  [[nodiscard]] Result<void> append_failure(const Error& error, FailedCall call);
   /// What the measuring program read from its clock, or was told otherwise, between two frames.
   [[nodiscard]] Result<void> append_reading(std::int64_t value);
   /// Waits until everything is on the disk.

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <utility>
 
+#include "acquisition/core/host_clock.h"
+
 namespace todbench {
 namespace {
 
@@ -25,10 +27,7 @@ class RecordedSource : public FrameSource {
   [[nodiscard]] Result<Frame> next(std::chrono::milliseconds) override {
     if (dead_) return tl::unexpected(end());
     if (!running_) return fail(ErrorCode::interrupted, recording_.info.id + " is stopped");
-    if (playback_ == Playback::replay && failure_ < recording_.failures.size() &&
-        recording_.failures[failure_].before_frame <= position_) {
-      return tl::unexpected(recording_.failures[failure_++].error);
-    }
+    if (fails_now(FailedCall::next)) return tl::unexpected(recording_.failures[failure_++].error);
     if (position_ >= recording_.frame_count) {
       dead_ = true;
       return tl::unexpected(end());
@@ -55,11 +54,19 @@ class RecordedSource : public FrameSource {
   }
 
   [[nodiscard]] Result<void> correct_nonuniformity() override {
+    if (fails_now(FailedCall::correct_nonuniformity)) return tl::unexpected(recording_.failures[failure_++].error);
     if (playback_ == Playback::replay) return {};
     return fail(ErrorCode::invalid_input, "a recording cannot correct its non-uniformity");
   }
 
  private:
+  /// Whether the camera failed at this point when it was asked for the same.
+  [[nodiscard]] bool fails_now(FailedCall call) const {
+    if (playback_ != Playback::replay || failure_ >= recording_.failures.size()) return false;
+    const RecordedFailure& failure = recording_.failures[failure_];
+    return failure.before_frame <= position_ && failure.call == call;
+  }
+
   [[nodiscard]] Frame frame(RecordedFrame recorded) {
     Frame result;
     result.counts = std::move(recorded.counts);
@@ -67,7 +74,7 @@ class RecordedSource : public FrameSource {
     next_sequence_ = result.sequence + 1;
     ++position_;
     result.device_time_ns = recorded.device_time_ns;
-    result.host_time_ns = playback_ == Playback::replay ? recorded.host_time_ns : now_ns();
+    result.host_time_ns = playback_ == Playback::replay ? recorded.host_time_ns : monotonic_ns();
     result.correction = recorded.correction;
     result.since_correction_s = recorded.since_correction_s;
     result.significant_bits = recorded.significant_bits.value_or(recording_.info.significant_bits);
@@ -79,11 +86,6 @@ class RecordedSource : public FrameSource {
 
   [[nodiscard]] Error end() const {
     return {ErrorCode::disconnected, recording_.info.id + " ends after " + std::to_string(position_) + " frames"};
-  }
-
-  [[nodiscard]] static std::int64_t now_ns() {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-        .count();
   }
 
   Recording recording_;

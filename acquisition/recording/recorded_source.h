@@ -23,10 +23,14 @@ struct RecordedFrame {
   std::optional<int> significant_bits;  ///< nothing: those of the recording
 };
 
-/// Something else than a frame that the recorded camera answered with.
+/// What the recorded camera was asked for when it failed.
+enum class FailedCall { next, correct_nonuniformity };
+
+/// Something else than a frame, or than success, that the recorded camera answered with.
 struct RecordedFailure {
   std::uint64_t before_frame = 0;  ///< index of the frame that came next
   Error error;
+  FailedCall call = FailedCall::next;
 };
 
 /// An opened recording: who took it, how many frames, and how to read one. `read` is called from the thread of next()
@@ -41,7 +45,7 @@ struct Recording {
 /// How a recording is served.
 enum class Playback {
   camera,  ///< as a camera of now: the time of arrival is now, failures of then are left out
-  replay,  ///< as it was: times of then, failures of then, a correction of the non-uniformity succeeds
+  replay,  ///< as it was: times of then, failures of then, also of a correction of the non-uniformity
 };
 
 /// Serves the frames in order, as fast as they are asked for, sequence 0 first unless the recording says otherwise.

@@ -15,7 +15,7 @@ class RecordingCamera final : public FrameSource {
 
   [[nodiscard]] Result<Frame> next(std::chrono::milliseconds timeout) override {
     auto frame = camera_->next(timeout);
-    auto written = frame ? stream_->append(*frame) : stream_->append_failure(frame.error());
+    auto written = frame ? stream_->append(*frame) : stream_->append_failure(frame.error(), FailedCall::next);
     if (!written && frame) return fail("recording", written.error());
     return frame;
   }
@@ -25,7 +25,11 @@ class RecordingCamera final : public FrameSource {
   [[nodiscard]] Result<void> set(const std::string& feature, const std::string& value) override {
     return camera_->set(feature, value);
   }
-  [[nodiscard]] Result<void> correct_nonuniformity() override { return camera_->correct_nonuniformity(); }
+  [[nodiscard]] Result<void> correct_nonuniformity() override {
+    auto done = camera_->correct_nonuniformity();
+    if (!done) (void)stream_->append_failure(done.error(), FailedCall::correct_nonuniformity);
+    return done;
+  }
 
  private:
   std::unique_ptr<FrameSource> camera_;

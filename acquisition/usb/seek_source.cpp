@@ -1,8 +1,7 @@
 #include "acquisition/usb/seek_source.h"
 
-#include <array>
-#include <charconv>
-#include <cmath>
+#include "acquisition/core/control_text.h"
+#include "acquisition/core/host_clock.h"
 
 namespace todbench {
 namespace {
@@ -14,26 +13,8 @@ constexpr int initialisation_attempts = 3;
 /// Frames until the shutter's; a camera sends it among the first ten.
 constexpr int most_calibration_frames = 40;
 constexpr auto calibration_frame_timeout = 900ms;
-/// Four seconds of the fastest camera.
-constexpr std::size_t frames_kept = 64;
-
-std::int64_t monotonic_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
-std::optional<double> number(const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
-std::string text_of(double value) {
-  std::array<char, 40> text{};
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} ? std::string(text.data(), end) : std::string();
-}
+/// Eight seconds of the fastest camera, 23 MiB.
+constexpr std::size_t frames_kept = 128;
 
 }  // namespace
 
@@ -246,8 +227,8 @@ Result<std::string> SeekSource::get(const std::string& feature) {
   if (feature == "DeviceVendorName") return info_.vendor;
   if (feature == "DeviceModelName") return info_.model;
   if (feature == "DeviceSerialNumber") return info_.serial;
-  if (feature == "TemperatureLinearScale") return text_of(kelvin_per_count_);
-  if (feature == "TemperatureLinearOffset") return text_of(offset_k_);
+  if (feature == "TemperatureLinearScale") return control_text(kelvin_per_count_);
+  if (feature == "TemperatureLinearOffset") return control_text(offset_k_);
   if (const auto found = info_.settings.find(feature); found != info_.settings.end()) return found->second;
   return fail(ErrorCode::invalid_input, "camera " + info_.id + " has no feature '" + feature + "'");
 }
@@ -258,13 +239,13 @@ Result<void> SeekSource::set(const std::string& feature, const std::string& valu
   if (!is_scale && feature != "TemperatureLinearOffset") {
     return fail(ErrorCode::invalid_input, "camera " + info_.id + " has no feature '" + feature + "' that can be set");
   }
-  const auto kelvin = number(value);
+  const auto kelvin = control_number(value);
   if (!kelvin || (is_scale && !(*kelvin > 0))) {
     return fail(ErrorCode::invalid_input,
                 feature + " = " + value + ": expected " + (is_scale ? "kelvin per count, above 0" : "kelvin"));
   }
   (is_scale ? kelvin_per_count_ : offset_k_) = *kelvin;
-  info_.settings[feature] = text_of(*kelvin);
+  info_.settings[feature] = control_text(*kelvin);
   update_scale();
   return {};
 }

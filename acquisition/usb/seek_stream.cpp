@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "acquisition/core/host_clock.h"
+
 namespace todbench {
 namespace {
 
@@ -14,16 +16,12 @@ constexpr unsigned read_timeout_ms = 1500;
 /// A transfer that fails for another reason than a timeout is tried again so often.
 constexpr int most_failures = 5;
 
-std::int64_t monotonic_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
 }  // namespace
 
 SeekStream::SeekStream(UsbContext context, UsbConnection& connection, SeekModel model, std::size_t waiting)
     : context_(std::move(context)),
       connection_(connection),
+      model_(model),
       frame_bytes_(geometry(model).frame_bytes()),
       most_waiting_(waiting),
       frame_(frame_bytes_),
@@ -138,7 +136,12 @@ void SeekStream::deliver() {
   arrival.bytes.assign(frame_.begin(), frame_.begin() + static_cast<std::ptrdiff_t>(received_));
   arrival.host_time_ns = monotonic_ns();
   const std::lock_guard lock(mutex_);
-  if (arrivals_.size() >= most_waiting_) return;
+  if (arrivals_.size() >= most_waiting_) {
+    // A reader this far behind loses the newest, but for the shutter's picture: the frames behind it hang on it.
+    const auto parsed = parse_seek_frame(arrival.bytes, model_);
+    if (!parsed || !parsed->is(SeekFrameKind::shutter)) return;
+    arrivals_.pop_back();
+  }
   arrivals_.push_back(std::move(arrival));
   changed_.notify_all();
 }

@@ -58,6 +58,7 @@ class SeekStream {
 
   UsbContext context_;
   UsbConnection& connection_;
+  SeekModel model_;
   std::size_t frame_bytes_;
   std::size_t most_waiting_;
   std::vector<std::uint8_t> request_, frame_;  ///< buffers of the transfers

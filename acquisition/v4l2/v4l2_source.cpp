@@ -6,8 +6,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
+
+#include "acquisition/core/control_text.h"
+#include "acquisition/core/host_clock.h"
 
 namespace todbench {
 namespace {
@@ -18,24 +19,6 @@ constexpr std::chrono::milliseconds longest_nap{250};
 constexpr std::chrono::seconds patience_with_first_frame{5};
 /// Frames between the receiving thread and the reader: 5 s of a 50 Hz camera, 37 MiB of 320 x 240.
 constexpr std::size_t most_arrivals = 256;
-
-std::int64_t monotonic_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
-std::optional<double> number(const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
-std::string text_of(double value) {
-  std::array<char, 40> text{};
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} ? std::string(text.data(), end) : std::string();
-}
 
 std::string kernel_version(std::uint32_t version) {
   return std::to_string(version >> 16U & 0xFFU) + "." + std::to_string(version >> 8U & 0xFFU) + "." +
@@ -307,9 +290,9 @@ Result<std::string> V4l2Source::get(const std::string& feature) {
   if (feature == "DeviceVendorName") return info_.vendor;
   if (feature == "DeviceModelName") return info_.model;
   if (feature == "DeviceSerialNumber") return info_.serial;
-  if (feature == "AcquisitionFrameRate") return text_of(info_.frame_rate_hz);
-  if (feature == "TemperatureLinearScale") return text_of(info_.scale.kelvin_per_count(0).value_or(0));
-  if (feature == "TemperatureLinearOffset") return text_of(info_.scale.kelvin(0).value_or(0));
+  if (feature == "AcquisitionFrameRate") return control_text(info_.frame_rate_hz);
+  if (feature == "TemperatureLinearScale") return control_text(info_.scale.kelvin_per_count(0).value_or(0));
+  if (feature == "TemperatureLinearOffset") return control_text(info_.scale.kelvin(0).value_or(0));
   const VideoControl* known = find_control(controls_, feature);
   if (known == nullptr)
     return fail(ErrorCode::invalid_input, "camera " + info_.id + " has no feature '" + feature + "'");
@@ -324,14 +307,14 @@ Result<void> V4l2Source::set(const std::string& feature, const std::string& valu
   };
   Result<void> done;
   if (feature == "TemperatureLinearScale" || feature == "TemperatureLinearOffset") {
-    const auto kelvin = number(value);
+    const auto kelvin = control_number(value);
     const bool is_scale = feature == "TemperatureLinearScale";
     if (!kelvin || (is_scale && !(*kelvin > 0))) return refused(is_scale ? "kelvin per count, above 0" : "kelvin");
     (is_scale ? stated_kelvin_per_count_.emplace() : stated_offset_k_) = *kelvin;
   } else if (feature == "PixelFormat" || feature == "AcquisitionFrameRate") {
     if (receiver_.joinable())
       return fail(ErrorCode::invalid_input, feature + " cannot change while the camera streams");
-    const auto rate = number(value);
+    const auto rate = control_number(value);
     if (feature == "PixelFormat") {
       done = take_layout(value);
       if (!done && done.error().code == ErrorCode::not_found) return refused(done.error().message);

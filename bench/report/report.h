@@ -83,7 +83,8 @@ struct ReportData {
 
   std::vector<std::pair<std::string, std::string>> provenance;  ///< versions, seeds, host, digests
   std::vector<std::string> notes;
-  std::optional<std::string> interrupted;  ///< why the run ended early
+  std::optional<std::string> interrupted;   ///< why the run ended early
+  std::vector<Interruption> interruptions;  ///< losses of the camera after which the run went on
 };
 
 /// fail > interrupted > inconclusive > pass; not_judged without limits.

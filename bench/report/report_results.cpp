@@ -174,6 +174,21 @@ Headline headline(ReportVerdict verdict) {
   return {"NO VERDICT", "The plan asks for no limits; this report states results only.", "open"};
 }
 
+/// A run in several pieces says so beside its verdict.
+Markup resumptions(const ReportData& data) {
+  Markup content;
+  for (std::size_t i = 0; i < data.interruptions.size(); ++i) {
+    const Interruption& loss = data.interruptions[i];
+    content += paragraph(literal("<b>Interrupted and resumed:</b> ") +
+                         escaped("segment " + std::to_string(i + 2) + " begins with presentation " +
+                                 std::to_string(loss.presentation) + ". The camera was away for " +
+                                 fixed(loss.away_s, 1) + " s (" + loss.reason + "); it came back with the same " +
+                                 "serial number and settings, the plate " + fixed(loss.moved_px, 2) +
+                                 " pixels from where it was."));
+  }
+  return content;
+}
+
 }  // namespace
 
 Markup verdict_box(const ReportData& data) {
@@ -184,6 +199,7 @@ Markup verdict_box(const ReportData& data) {
     content += paragraph(literal("<b>Decision rule:</b> ") + text_or_missing(data.decision_rule, "not stated"));
   if (data.interrupted)
     content += paragraph(literal("<b>Interrupted:</b> ") + text_or_missing(*data.interrupted, "no reason recorded"));
+  content += resumptions(data);
   return element("div", content, "class=\"verdict " + std::string(words_of_verdict.css) + "\" role=\"status\"") +
          literal("\n");
 }

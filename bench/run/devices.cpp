@@ -99,18 +99,9 @@ Result<std::unique_ptr<Target>> open_target(const Plan& plan, std::stop_token st
   return open_scpi_target(options, stop);
 }
 
-/// A recording that has ended is not a camera that was lost.
-bool may_come_back(const Plan& plan) {
-  return plan.camera.reconnect_s > 0 && !plan.camera.id.starts_with("file:") &&
-         !plan.camera.id.starts_with(simulated_scheme);
-}
-
-/// The same source, able to open the camera of the plan again.
-std::unique_ptr<ReconnectingSource> reconnecting(std::unique_ptr<FrameSource> camera, const Plan& plan) {
-  return std::make_unique<ReconnectingSource>(
-      std::move(camera), [id = plan.camera.id] { return camera_registry().open(id); },
-      ReconnectionOptions{.patience = std::chrono::milliseconds(static_cast<long>(plan.camera.reconnect_s * 1000)),
-                          .settings = plan.camera.settings});
+/// A camera that sends whether it is asked or not. Neither is a recording, nor is its end a loss.
+bool free_running(const Plan& plan) {
+  return !plan.camera.id.starts_with("file:") && !plan.camera.id.starts_with(simulated_scheme);
 }
 
 Result<void> write_settings(FrameSource& camera, const std::map<std::string, std::string>& settings) {
@@ -122,6 +113,15 @@ Result<void> write_settings(FrameSource& camera, const std::map<std::string, std
 }
 
 }  // namespace
+
+void let_camera_come_back(OpenedBench& bench, ReopenCamera reopen, ReconnectionOptions options) {
+  const auto patience = options.patience;
+  auto camera = std::make_unique<ReconnectingSource>(std::move(bench.camera), std::move(reopen), std::move(options));
+  bench.camera_return = {.patience = patience,
+                         .recover = [source = camera.get()](std::stop_token stop) { return source->recover(stop); },
+                         .confirm = [source = camera.get()] { source->confirm_registration(); }};
+  bench.camera = std::move(camera);
+}
 
 CameraRegistry camera_registry() {
   CameraRegistry registry;
@@ -174,10 +174,11 @@ Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>&
   if (auto written = write_settings(*bench.camera, plan.camera.settings); !written) {
     return fail("camera " + plan.camera.id, written.error());
   }
-  if (may_come_back(plan)) {
-    auto camera_that_comes_back = reconnecting(std::move(bench.camera), plan);
-    bench.reconnecting = camera_that_comes_back.get();
-    bench.camera = std::move(camera_that_comes_back);
+  if (free_running(plan)) bench.frames_while_presenting = FramesMeanwhile::take;
+  if (free_running(plan) && plan.camera.reconnect_s > 0) {
+    let_camera_come_back(bench, [id = plan.camera.id] { return camera_registry().open(id); },
+                         {.patience = std::chrono::milliseconds(static_cast<long>(plan.camera.reconnect_s * 1000)),
+                          .settings = plan.camera.settings});
   }
   auto target = open_target(plan, stop, ask_operator);
   if (!target) return fail("opening the target", target.error());

@@ -53,8 +53,8 @@ std::vector<std::string> emulated_cameras() {
 
 void enter_emulation(const std::string& camera) {
 #ifdef TODBENCH_WITH_EMULATED_VIDEO
-  // All of them but the GigE camera are behind device nodes.
-  if (camera != gige) MockSystem::enter();
+  // All of them but the GigE cameras are behind device nodes.
+  if (!camera.starts_with(gige)) MockSystem::enter();
 #else
   (void)camera;
 #endif

@@ -10,6 +10,7 @@
 #include "bench/run/observed_source.h"
 #include "bench/run/recorded_bench.h"
 #include "bench/run/report_data.h"
+#include "bench/session/text.h"
 #include "sim_devices/prediction/contrast_response.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "tod/measurement.h"
@@ -68,18 +69,19 @@ class Recorder {
       };
     }
     events.on_progress = listener_.on_progress;
+    events.asked_while_presenting = bench.remember_calls;
     events.on_note = [&](const std::string& sentence) { note(folder_, listener_, sentence); };
     events.on_rejected = [&](const RejectedFrame& frame) {
       (void)folder_.log("frame " + std::to_string(frame.sequence) +
                         " not used: " + std::string(to_string(frame.reason)) +
                         (frame.seen ? " (" + std::string(to_string(*frame.seen)) + ")" : ""));
     };
-    if (bench.reconnecting != nullptr) {
+    if (bench.camera_return.recover) {
       events.on_lost = [&](const Error&, std::stop_token abort) {
-        if (listener_.on_lost) listener_.on_lost(bench.camera->info(), bench.reconnecting->patience());
-        return bench.reconnecting->recover(std::move(abort));
+        say_that_camera_is_awaited(bench);
+        return bench.camera_return.recover(std::move(abort));
       };
-      events.on_resumed = [&] { bench.reconnecting->confirm_registration(); };
+      events.on_resumed = bench.camera_return.confirm;
     }
     auto result = measure(*bench.camera, *bench.target, observer, schedule, options, events, halt_.get_token());
     if (auto synced = writer->sync(); !synced && !write_error) write_error = synced.error();
@@ -91,6 +93,17 @@ class Recorder {
   }
 
  private:
+  void say_that_camera_is_awaited(const OpenedBench& bench) {
+    const SourceInfo& info = bench.camera->info();
+    const auto patience_s = std::chrono::duration<double>(bench.camera_return.patience).count();
+    if (patience_s > 0) {
+      note(folder_, listener_,
+           "camera lost, waiting " + number_text(patience_s) + " s for " + info.model + " with serial number " +
+               info.serial);
+    }
+    if (listener_.on_lost) listener_.on_lost(info, bench.camera_return.patience);
+  }
+
   SessionFolder& folder_;
   const ExperimentListener& listener_;
   std::stop_source halt_;
@@ -303,6 +316,7 @@ Result<MeasurementResult> run_measured(const Plan& plan, const ExperimentInputs&
   options.contrast_response = std::move(*response);
   options.now_ns = bench.now_ns;
   options.free_running = !bench.simulated;
+  options.frames_while_presenting = bench.frames_while_presenting;
   const auto schedule =
       make_schedule(plan, inputs.plates, plan.camera.ifov_mrad, Side::measured, RandomStream(plan.seed, "schedule"));
   return Recorder(folder, listener, std::move(stop)).run(bench, observer, *schedule, options, SessionCurve::main);

@@ -45,7 +45,6 @@ class ReconnectingSource final : public FrameSource {
   void confirm_registration();
 
   [[nodiscard]] LinkState state() const { return state_; }
-  [[nodiscard]] std::chrono::milliseconds patience() const { return options_.patience; }
 
  private:
   struct Restored {

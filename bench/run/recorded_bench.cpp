@@ -15,6 +15,11 @@ namespace {
 constexpr const char* target_key = "target";
 constexpr const char* sets_shift_key = "target_sets_shift";
 constexpr const char* simulated_key = "simulated";
+constexpr const char* comes_back_key = "camera_comes_back";
+constexpr const char* frames_meanwhile_key = "frames_while_presenting";
+
+/// A reading that says how waiting for a lost camera ended.
+constexpr std::int64_t stayed_away = 0, came_back = 1;
 
 std::string yes_no(bool value) {
   return value ? "yes" : "no";
@@ -60,7 +65,9 @@ Result<void> record_bench(OpenedBench& bench, const std::filesystem::path& sessi
   header.created_host_ns = bench.now_ns();
   header.annotations = {{target_key, bench.target->capabilities().description},
                         {sets_shift_key, yes_no(bench.target->capabilities().sets_shift)},
-                        {simulated_key, yes_no(bench.simulated)}};
+                        {simulated_key, yes_no(bench.simulated)},
+                        {comes_back_key, yes_no(bench.camera_return.recover != nullptr)},
+                        {frames_meanwhile_key, yes_no(bench.frames_while_presenting == FramesMeanwhile::take)}};
   auto writer = FrameStreamWriter::create(file, header);
   if (!writer) return tl::unexpected(writer.error());
   const auto stream = std::make_shared<FrameStreamWriter>(*std::move(writer));
@@ -75,6 +82,17 @@ Result<void> record_bench(OpenedBench& bench, const std::filesystem::path& sessi
     (void)stream->append_reading(rests ? 1 : 0);
     return rests;
   };
+  bench.remember_calls = [stream](std::int64_t calls) {
+    (void)stream->append_reading(calls);
+    return calls;
+  };
+  if (bench.camera_return.recover) {
+    bench.camera_return.recover = [stream, recover = std::move(bench.camera_return.recover)](std::stop_token stop) {
+      auto back = recover(std::move(stop));
+      (void)stream->append_reading(back ? came_back : stayed_away);
+      return back;
+    };
+  }
   return {};
 }
 
@@ -102,6 +120,16 @@ Result<OpenedBench> open_recorded_bench(const std::filesystem::path& session) {
   const std::int64_t last = readings->values.empty() ? 0 : readings->values.back();
   bench.now_ns = [readings, last] { return readings->take().value_or(last); };
   bench.remember_rest = [readings](bool) { return readings->take().value_or(0) == 1; };
+  if (annotations[frames_meanwhile_key] == "yes") {
+    bench.frames_while_presenting = FramesMeanwhile::repeat;
+    bench.remember_calls = [readings](std::int64_t) { return readings->take().value_or(0); };
+  }
+  if (annotations[comes_back_key] == "yes") {
+    bench.camera_return.recover = [readings](const std::stop_token&) -> Result<void> {
+      if (readings->take().value_or(stayed_away) == came_back) return {};
+      return fail(ErrorCode::disconnected, "the recorded camera was lost and did not come back");
+    };
+  }
   bench.camera = recorded_source(std::move(stream->recording), Playback::replay);
   return bench;
 }

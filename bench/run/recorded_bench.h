@@ -11,7 +11,8 @@ namespace todbench {
 [[nodiscard]] std::filesystem::path recorded_frames(const std::filesystem::path& session);
 
 /// From now on everything that the measurement learns from the bench beside what the plan says is appended to the
-/// recording of the session: every frame, every failure, every reading of the clock, and what the target can do. `io`.
+/// recording of the session: every frame, every failure, every reading of the clock, what the target can do,
+/// how often a frame was asked for while the target changed, and whether a lost camera came back. `io`.
 [[nodiscard]] Result<void> record_bench(OpenedBench& bench, const std::filesystem::path& session);
 
 /// The bench as the recording of a session knows it. A measurement that asks it in the same order gets the same

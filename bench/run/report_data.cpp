@@ -136,6 +136,7 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
     data.frames_lost = provenance.run->frames_lost;
     data.temporal_noise_k = provenance.run->temporal_noise_k;
     data.notes.insert(data.notes.end(), provenance.run->notes.begin(), provenance.run->notes.end());
+    data.interruptions = provenance.run->interruptions;
     if (!provenance.run->ended_by.empty()) data.interrupted = provenance.run->ended_by;
   }
   if (!session.complete() && !data.interrupted) data.interrupted = "the session was not finished";

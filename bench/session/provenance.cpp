@@ -222,10 +222,20 @@ Provenance begin_provenance(const Plan& plan, Side side) {
   return provenance;
 }
 
+std::size_t segments(const Provenance& provenance) {
+  return 1 + (provenance.run ? provenance.run->interruptions.size() : 0);
+}
+
+bool was_interrupted(const Provenance& provenance) {
+  return provenance.state == SessionState::interrupted || segments(provenance) > 1;
+}
+
 Json provenance_json(const Provenance& provenance) {
   Json json;
   json["schema"] = "todbench-provenance-1";
   json["state"] = to_string(provenance.state);
+  json["interrupted"] = was_interrupted(provenance);
+  json["segments"] = segments(provenance);
   json["side"] = to_string(provenance.side);
   json["program_version"] = provenance.program_version;
   json["git_commit"] = provenance.git_commit;

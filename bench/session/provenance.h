@@ -63,6 +63,12 @@ struct Provenance {
   std::optional<RunRecord> twin_run;  ///< of trials_simulated.csv
 };
 
+/// The parts between losses of the camera; 1: it was never lost.
+[[nodiscard]] std::size_t segments(const Provenance& provenance);
+/// Ended early, or the camera was lost on the way and came back: nobody may take it for a run in one piece. `state`
+/// says whether it has all its trials.
+[[nodiscard]] bool was_interrupted(const Provenance& provenance);
+
 /// Program, host, start and the seed and instruments of the plan filled in; state running.
 [[nodiscard]] Provenance begin_provenance(const Plan& plan, Side side);
 /// Now, as "2026-01-31T12:34:56Z".

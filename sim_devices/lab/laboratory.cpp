@@ -1,6 +1,7 @@
 #include "sim_devices/lab/laboratory.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "acquisition/aravis/aravis_backend.h"
 
@@ -44,7 +45,19 @@ struct Laboratory::State {
   std::unique_ptr<PlateStage> stage;
   std::string camera_id, camera_address;
   std::map<std::string, std::string> camera_settings, client_environment;
+  std::atomic<std::uint64_t> next_exposure = 0;
   std::unique_ptr<LaboratoryCamera> camera;  // last: its thread looks at the others
+
+  /// Frame k shows what is before the camera at that moment, with the noise of exposure k.
+  [[nodiscard]] Result<void> connect_camera() {
+    auto connected = options.connect(options.sensor, [this, first = next_exposure.load()](std::uint64_t index) {
+      next_exposure = first + index + 1;
+      return model->expose(scene(), first + index);
+    });
+    if (!connected) return tl::unexpected(connected.error());
+    camera = std::move(*connected);
+    return {};
+  }
 
   [[nodiscard]] PlateScene scene() const {
     const PlateStageState on_stage = stage->state();
@@ -84,11 +97,7 @@ Result<std::unique_ptr<Laboratory>> Laboratory::start(LaboratoryOptions options)
   state->stage = std::move(*stage);
 
   if (!o.connect) o.connect = connect_gige(o.camera);
-  // Frame k shows what is before the camera at that moment, with the noise of exposure k.
-  auto camera = o.connect(
-      o.sensor, [seen = state.get()](std::uint64_t index) { return seen->model->expose(seen->scene(), index); });
-  if (!camera) return tl::unexpected(camera.error());
-  state->camera = std::move(*camera);
+  if (auto connected = state->connect_camera(); !connected) return tl::unexpected(connected.error());
   state->camera_id = state->camera->id();
   state->camera_address = state->camera->address();
   state->camera_settings = state->camera->settings();
@@ -122,6 +131,9 @@ const SensorModel& Laboratory::model() const {
 }
 void Laboratory::switch_camera_off() {
   state_->camera.reset();
+}
+Result<void> Laboratory::switch_camera_on() {
+  return state_->camera ? Result<void>() : state_->connect_camera();
 }
 
 }  // namespace todbench

@@ -33,7 +33,7 @@ struct LaboratoryOptions {
   std::uint64_t seed = 1;
 };
 
-/// Runs from creation to destruction. Thread-safe.
+/// Runs from creation to destruction. Thread-safe, but for switching the camera: one thread at a time.
 class Laboratory {
  public:
   /// Precondition: validate(sensor) succeeds. Errors: `not_found` (address or port in use), `invalid_input` (options).
@@ -59,6 +59,9 @@ class Laboratory {
 
   /// Switches the camera off without a word to its client, as a pulled cable does.
   void switch_camera_off();
+  /// Switches the same camera on again, with the same serial number and the settings of power-up; harmless when it is
+  /// on. Its exposures go on where they ended. Errors: those of start().
+  [[nodiscard]] Result<void> switch_camera_on();
 
  private:
   struct State;

@@ -1,19 +1,11 @@
 #include "sim_devices/lab/usb_laboratory.h"
 
-#include <array>
-#include <charconv>
-
 #include "acquisition/aravis/aravis_backend.h"
+#include "acquisition/core/control_text.h"
 #include "sim_devices/lab/usbfs_host.h"
 
 namespace todbench {
 namespace {
-
-std::string text_of(double value) {
-  std::array<char, 40> text{};
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} ? std::string(text.data(), end) : std::string();
-}
 
 class UsbLaboratoryCamera final : public LaboratoryCamera {
  public:
@@ -75,8 +67,8 @@ ConnectCamera connect_seek(std::shared_ptr<MockSystem> system, SeekCameraConfig 
         auto camera = SeekCamera::create(config, std::move(exposure));
         if (!camera) return tl::unexpected(camera.error());
         return plugged(system, std::move(*camera), seek_camera_id(config.model, config.serial),
-                       {{"TemperatureLinearScale", text_of(sensor.kelvin_per_count)},
-                        {"TemperatureLinearOffset", text_of(sensor.offset_k)}});
+                       {{"TemperatureLinearScale", control_text(sensor.kelvin_per_count)},
+                        {"TemperatureLinearOffset", control_text(sensor.offset_k)}});
       };
 }
 

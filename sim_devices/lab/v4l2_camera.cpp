@@ -176,6 +176,7 @@ void EmulatedV4l2Camera::State::deliver(const cv::Mat1w& counts, std::uint64_t i
   buffer.field = V4L2_FIELD_NONE;
   buffer.flags = V4L2_BUF_FLAG_DONE;
   buffer.timestamp = {.tv_sec = time_us / 1'000'000, .tv_usec = time_us % 1'000'000};
+  if (arrives_short(config, index)) buffer.bytesused /= 2;
   if (truncated) {
     buffer.bytesused = std::min(buffer.bytesused, *truncated);
     buffer.flags |= V4L2_BUF_FLAG_ERROR;

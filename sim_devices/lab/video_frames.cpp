@@ -72,6 +72,11 @@ Result<void> validate(const VideoCameraConfig& config) {
   return {};
 }
 
+bool arrives_short(const VideoCameraConfig& config, std::uint64_t exposure) {
+  return config.short_frame_interval > 0 &&
+         (exposure + 1) % static_cast<std::uint64_t>(config.short_frame_interval) == 0;
+}
+
 double kelvin_per_count(VideoCameraKind kind) {
   switch (kind) {
     case VideoCameraKind::lepton:

@@ -28,7 +28,11 @@ struct VideoCameraConfig {
   int width = 320, height = 240;  ///< of the picture
   double frame_rate_hz = 50;      ///< at power-up; 0.1 ... 1000
   int nuc_freeze_frames = 0;      ///< how long the last picture is repeated after a correction
+  int short_frame_interval = 0;   ///< every so manieth exposure is sent with half its bytes, not marked; 0: none
 };
+
+/// Whether this exposure since power-up is one that is sent with half its bytes.
+[[nodiscard]] bool arrives_short(const VideoCameraConfig& config, std::uint64_t exposure);
 
 /// Errors: `invalid_input` for geometry (8 ... 4096, even), rate, or a serial number that is no printable ASCII.
 [[nodiscard]] Result<void> validate(const VideoCameraConfig& config);

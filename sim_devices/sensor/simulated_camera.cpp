@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <atomic>
 
+#include "acquisition/core/host_clock.h"
+
 namespace todbench {
 namespace {
-
-std::int64_t monotonic_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 class SimulatedSource final : public FrameSource {
  public:

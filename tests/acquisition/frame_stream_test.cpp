@@ -214,10 +214,10 @@ TEST_F(Recordings, KeepFailuresAndReadingsInTheirPlaces) {
   {
     auto writer = written(file("a"), 2);
     ASSERT_TRUE(writer.append_reading(77).has_value());
-    ASSERT_TRUE(writer.append_failure({ErrorCode::timeout, "no frame"}).has_value());
+    ASSERT_TRUE(writer.append_failure({ErrorCode::timeout, "no frame"}, FailedCall::next).has_value());
     ASSERT_TRUE(writer.append(frame(2)).has_value());
     ASSERT_TRUE(writer.append_reading(-5).has_value());
-    ASSERT_TRUE(writer.append_failure({ErrorCode::disconnected, "gone"}).has_value());
+    ASSERT_TRUE(writer.append_failure({ErrorCode::disconnected, "gone"}, FailedCall::next).has_value());
   }
   auto stream = open_frame_stream(file("a"));
   ASSERT_TRUE(stream.has_value());
@@ -232,6 +232,29 @@ TEST_F(Recordings, KeepFailuresAndReadingsInTheirPlaces) {
 
   EXPECT_THAT(seen, testing::ElementsAre("100", "101", "no frame", "102", "gone"));
   EXPECT_THAT(stream->readings, testing::ElementsAre(77, -5));
+}
+
+TEST_F(Recordings, RepeatAFailedCorrectionWhenACorrectionIsAskedFor) {
+  {
+    auto writer = written(file("a"), 1);
+    ASSERT_TRUE(writer.append_failure({ErrorCode::disconnected, "gone"}, FailedCall::correct_nonuniformity));
+    ASSERT_TRUE(writer.append(frame(1)));
+  }
+  auto stream = open_frame_stream(file("a"));
+  ASSERT_TRUE(stream);
+  const auto source = recorded_source(stream->recording, Playback::replay);
+  ASSERT_TRUE(source->start());
+
+  const auto before = source->correct_nonuniformity();
+  ASSERT_TRUE(source->next(std::chrono::milliseconds(1)));
+  const auto failed = source->correct_nonuniformity();
+  const auto after = source->correct_nonuniformity();
+
+  EXPECT_TRUE(before);
+  ASSERT_FALSE(failed);
+  EXPECT_EQ(failed.error().code, ErrorCode::disconnected);
+  EXPECT_TRUE(after);
+  EXPECT_TRUE(source->next(std::chrono::milliseconds(1)));
 }
 
 TEST_F(Recordings, AreCamerasByTheirPath) {

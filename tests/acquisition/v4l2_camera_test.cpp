@@ -5,6 +5,7 @@
 #include <future>
 #include <thread>
 
+#include "acquisition/core/host_clock.h"
 #include "tests/acquisition/video_test_support.h"
 
 namespace todbench {
@@ -32,11 +33,6 @@ VideoCameraConfig small(VideoCameraKind kind) {
 /// Exposure since power-up of a frame, from the camera's clock.
 std::uint64_t exposure_of(const Frame& frame, double frame_rate_hz) {
   return static_cast<std::uint64_t>(std::llround(static_cast<double>(frame.device_time_ns) * 1e-9 * frame_rate_hz)) - 1;
-}
-
-std::int64_t monotonic_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
 }
 
 bool same_pixels(const cv::Mat1w& a, const cv::Mat1w& b) {

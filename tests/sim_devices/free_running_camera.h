@@ -12,15 +12,11 @@
 #include <mutex>
 #include <vector>
 
+#include "acquisition/core/host_clock.h"
 #include "sim_devices/sensor/simulated_camera.h"
 #include "tod/trial.h"
 
 namespace todbench::test {
-
-inline std::int64_t steady_now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 /// Which scene every exposure of a free-running camera looked at. Thread-safe.
 class ExposureLog {
@@ -86,7 +82,7 @@ class PresentScene final : public PlainSource {
       if (log_.scene(index) != present_.scene()) continue;
       exposures_.push_back(index);
       frame->sequence = exposures_.size() - 1;
-      frame->host_time_ns = steady_now_ns();
+      frame->host_time_ns = monotonic_ns();
       return frame;
     }
   }
@@ -100,18 +96,24 @@ class PresentScene final : public PlainSource {
   std::vector<std::uint64_t> exposures_;
 };
 
-/// The simulated camera, exposing the present scene with these indices.
+/// The simulated camera, exposing the present scene with these indices. Of those that are `spoiled` only a part
+/// arrives.
 class GivenExposures final : public PlainSource {
  public:
   GivenExposures(SourceInfo info, const SensorModel& model, const SceneHolder& present,
-                 std::vector<std::uint64_t> exposures)
-      : PlainSource(std::move(info)), model_(model), present_(present), exposures_(std::move(exposures)) {}
+                 std::vector<std::uint64_t> exposures, std::function<bool(std::uint64_t exposure)> spoiled = {})
+      : PlainSource(std::move(info)),
+        model_(model),
+        present_(present),
+        exposures_(std::move(exposures)),
+        spoiled_(std::move(spoiled)) {}
   [[nodiscard]] Result<Frame> next(std::chrono::milliseconds) override {
     if (next_ >= exposures_.size()) return fail(ErrorCode::disconnected, "no exposure left");
     Frame frame;
     frame.counts = model_.expose(*present_.scene(), exposures_[next_]);
+    if (spoiled_ && spoiled_(exposures_[next_])) frame.status = FrameStatus::incomplete;
     frame.sequence = next_++;
-    frame.host_time_ns = steady_now_ns();
+    frame.host_time_ns = monotonic_ns();
     frame.significant_bits = info().significant_bits;
     frame.correction = CorrectionState::idle;
     frame.scale = std::make_shared<const RadiometricScale>(info().scale);
@@ -122,6 +124,7 @@ class GivenExposures final : public PlainSource {
   const SensorModel& model_;
   const SceneHolder& present_;
   std::vector<std::uint64_t> exposures_;
+  std::function<bool(std::uint64_t exposure)> spoiled_;
   std::size_t next_ = 0;
 };
 

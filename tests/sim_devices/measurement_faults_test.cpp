@@ -148,6 +148,43 @@ TEST(MeasurementFaults, ASilentCameraIsALostCamera) {
   EXPECT_EQ(result->ended_by->code, ErrorCode::disconnected);
 }
 
+/// Its instruments vanish after some presentations.
+class VanishingTarget final : public Target {
+ public:
+  VanishingTarget(std::unique_ptr<Target> target, int presentations)
+      : target_(std::move(target)), presentations_(presentations) {}
+  [[nodiscard]] const TargetCapabilities& capabilities() const override { return target_->capabilities(); }
+  [[nodiscard]] Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) override {
+    if (presentations_-- <= 0) return fail(ErrorCode::disconnected, "the black body is gone");
+    return target_->present(state, stop);
+  }
+
+ private:
+  std::unique_ptr<Target> target_;
+  int presentations_;
+};
+
+TEST(MeasurementFaults, ALostTargetIsNotTakenForALostCamera) {
+  const SmallBench bench;
+  const auto camera = bench.camera();
+  VanishingTarget target(scene_target(bench.holder, bench.plates), 3);
+  int reconnections = 0;
+  MeasurementListener listener;
+  listener.on_lost = [&](const Error&, std::stop_token) -> Result<void> {
+    if (++reconnections > 10) return fail(ErrorCode::internal, "connected again and again");
+    return {};
+  };
+
+  const auto result = bench.run(*camera, target, test::options_of(bench), listener);
+
+  ASSERT_TRUE(result.has_value()) << result.error().message;
+  ASSERT_TRUE(result->ended_by.has_value());
+  EXPECT_EQ(result->ended_by->code, ErrorCode::disconnected);
+  EXPECT_THAT(result->ended_by->message, testing::HasSubstr("the black body is gone"));
+  EXPECT_EQ(result->trials.size(), 3u * 20u);
+  EXPECT_EQ(reconnections, 0);
+}
+
 TEST(MeasurementFaults, AStopRequestEndsTheRunWithItsTrials) {
   const SmallBench bench;
   std::stop_source stop;

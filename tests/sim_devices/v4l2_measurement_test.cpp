@@ -1,6 +1,8 @@
 // A measurement through an emulated V4L2 camera makes the decisions of the simulated camera for the same exposures.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "acquisition/v4l2/v4l2_backend.h"
 #include "sim_devices/lab/v4l2_camera.h"
 #include "sim_devices/lab/v4l2_laboratory.h"
@@ -19,9 +21,16 @@ using test::SimulatedBench;
 
 class V4l2Measurement : public testing::TestWithParam<VideoCameraKind> {};
 
-TEST_P(V4l2Measurement, DecidesAsTheSimulatedCameraForTheSameExposures) {
+/// A measurement through the node, and that of the simulated camera over the exposures that came through it, without
+/// those that arrived short.
+struct Both {
+  MeasurementResult measured, simulated;
+  std::uint64_t arrived_short = 0;
+};
+
+void measure_both(VideoCameraConfig config, Both& both) {
   SimulatedBench bench;
-  bench.spec = with_counts_of(GetParam(), bench.spec);
+  bench.spec = with_counts_of(config.kind, bench.spec);
   bench.spec.frame_rate_hz = 100;
   bench.contrasts = {1.93, 0.23};
   bench.mountings = {Mounting::identity};
@@ -31,13 +40,12 @@ TEST_P(V4l2Measurement, DecidesAsTheSimulatedCameraForTheSameExposures) {
   options.registration_frames = 8;
   options.contrast_frames = 8;
   options.frame_timeout = std::chrono::seconds(20);
+  options.max_rejected_share = 0.2;
   const SensorModel model(bench.spec, full_plan(bench.spec, {}, {}), Accuracy::normal(), 1);
   PlateScene empty;
   empty.distance_m = bench.distance_m;
   SceneHolder before_camera(empty);
   ExposureLog log;
-  VideoCameraConfig config;
-  config.kind = GetParam();
   const auto camera = connect_v4l2(MockSystem::create(), config)(bench.spec, [&](std::uint64_t index) {
     auto scene = before_camera.scene();
     log.add(index, scene);
@@ -56,14 +64,36 @@ TEST_P(V4l2Measurement, DecidesAsTheSimulatedCameraForTheSameExposures) {
   ASSERT_FALSE(measured->ended_by) << measured->ended_by->message;
 
   SceneHolder before_simulation(empty);
-  GivenExposures given(fresh.info(), model, before_simulation, fresh.exposures());
+  const auto is_short = [&](std::uint64_t exposure) { return arrives_short(config, exposure); };
+  GivenExposures given(fresh.info(), model, before_simulation, fresh.exposures(), is_short);
   auto same_schedule = schedule_of(bench);
   const auto simulated =
       measure(given, *scene_target(share(before_simulation), bench.plates), observer, same_schedule, options, {}, {});
   ASSERT_TRUE(simulated) << simulated.error().message;
+  const auto exposures = fresh.exposures();
+  both = {.measured = *measured,
+          .simulated = *simulated,
+          .arrived_short = static_cast<std::uint64_t>(std::count_if(exposures.begin(), exposures.end(), is_short))};
+}
 
-  ASSERT_GE(measured->trials.size(), 2U * 2 * 3 * 20);  // plates, contrasts, phases, triangles
-  test::expect_same_decisions(measured->trials, simulated->trials);
+TEST_P(V4l2Measurement, DecidesAsTheSimulatedCameraForTheSameExposures) {
+  Both both;
+  ASSERT_NO_FATAL_FAILURE(measure_both({.kind = GetParam()}, both));
+
+  ASSERT_GE(both.measured.trials.size(), 2U * 2 * 3 * 20);  // plates, contrasts, phases, triangles
+  test::expect_same_decisions(both.measured.trials, both.simulated.trials);
+}
+
+TEST_P(V4l2Measurement, FramesOfAnotherSizeAreCountedAndNeverMeasured) {
+  // Registration and contrast take 16 frames in succession: there is a short one among them.
+  Both both;
+  ASSERT_NO_FATAL_FAILURE(measure_both({.kind = GetParam(), .short_frame_interval = 10}, both));
+
+  EXPECT_GT(both.arrived_short, 0U);
+  EXPECT_EQ(both.measured.frames_rejected, (std::map<std::string, std::uint64_t>{{"wrong_size", both.arrived_short}}));
+  EXPECT_EQ(both.measured.frames_lost, 0U);
+  ASSERT_GE(both.measured.trials.size(), 2U * 2 * 3 * 20);
+  test::expect_same_decisions(both.measured.trials, both.simulated.trials);
 }
 
 std::string name_of(const testing::TestParamInfo<VideoCameraKind>& kind) {
