@@ -6,6 +6,7 @@
 #include "bench/run/comparison_forecast.h"
 #include "bench/run/report_data.h"
 #include "bench/session/files.h"
+#include "bench/session/human_record.h"
 #include "bench/session/manifest.h"
 #include "bench/session/plan_options.h"
 #include "bench/session/session_folder.h"
@@ -72,6 +73,9 @@ int run_report(Console& console, const std::string& folder) {
   const auto path = std::filesystem::path(folder);
   auto data = report_data(*session, session_name(path));
   if (!data) return report_error(console, data.error());
+  auto human = read_human(path);
+  if (!human) return report_error(console, human.error());
+  if (*human) data->human = (*human)->curve;
   const auto file = path / "report.html";
   if (auto written = write_file_atomically(file, render_report(*data)); !written)
     return report_error(console, written.error());

@@ -1,5 +1,7 @@
 #include "bench/gui/align_presenter.h"
 
+#include <cmath>
+
 namespace todbench {
 
 AlignPresenter::AlignPresenter(Workbench& bench, QObject* parent) : QObject(parent), bench_(bench) {}
@@ -29,7 +31,10 @@ std::vector<std::pair<QString, QString>> AlignPresenter::figures() const {
   if (!alignment_ || !alignment_->registration) return {};
   const Registration& r = *alignment_->registration;
   const auto number = [](double value, int decimals, const char* unit) {
-    return QString("%1 %2").arg(value, 0, 'f', decimals).arg(QString::fromUtf8(unit));
+    const double smallest = std::pow(10.0, -decimals);
+    // Nothing is shown as minus nothing.
+    const double shown = std::abs(value) < smallest / 2 ? 0 : value;
+    return QString("%1 %2").arg(shown, 0, 'f', decimals).arg(QString::fromUtf8(unit));
   };
   return {{"Residual", number(r.residual_px, 3, "px rms")},
           {"Scale", number(r.scale_px_per_mm, 4, "px/mm")},

@@ -32,13 +32,14 @@ AlignView::AlignView(Workbench& bench, AlignPresenter& presenter, LookPresenter&
   side->addWidget(title_label("Registration"));
   verdict_ = new QLabel("Not aligned yet");
   verdict_->setObjectName("alignVerdict");
+  verdict_->setProperty("role", "verdict");
   verdict_->setWordWrap(true);
   side->addWidget(verdict_);
   figures_ = plain_table({"Quantity", "Value"}, "alignFigures");
   figures_->setColumnWidth(0, 150);
   side->addWidget(figures_, 1);
   side->addWidget(title_label("To mend"));
-  hints_ = hint_label("–");
+  hints_ = hint_label("Nothing known yet.");
   hints_->setObjectName("alignHints");
   side->addWidget(hints_);
   side->addWidget(
@@ -67,7 +68,7 @@ void AlignView::show_alignment() {
   for (const auto& [name, value] : presenter_.figures()) rows << QStringList{name, value};
   fill_table(*figures_, rows);
   const QStringList hints = presenter_.hints();
-  hints_->setText(hints.isEmpty() ? "–" : "• " + hints.join("\n• "));
+  hints_->setText(hints.isEmpty() ? "Nothing." : "• " + hints.join("\n• "));
   const auto& alignment = presenter_.alignment();
   if (!alignment) {
     verdict_->setText("Not aligned yet");
@@ -88,7 +89,7 @@ void AlignView::show_alignment() {
 void AlignView::show_activity() {
   const bool aligning = bench_.activity() == Activity::aligning;
   start_->setText(aligning ? "Stop alignment" : "Start alignment");
-  start_->setEnabled(bench_.activity() != Activity::measuring);
+  start_->setEnabled(bench_.activity() != Activity::measuring && bench_.activity() != Activity::replaying);
 }
 
 }  // namespace todbench

@@ -46,14 +46,18 @@ std::vector<JudgedTrial> patches_for_a_person(const std::vector<JudgedTrial>& tr
   return out;
 }
 
-QImage picture_for_a_person(const JudgedTrial& judged, int magnification) {
+LevelSpan grey_levels(const JudgedTrial& judged) {
   const double surround = median(judged.patch_k);
   cv::Scalar mean, sd;
   cv::meanStdDev(judged.patch_k, mean, sd);
   const double half = 1.5 * std::max(std::abs(judged.trial.delta_t_k), sd[0]);
+  return {surround - half, surround + half};
+}
+
+QImage picture_for_a_person(const JudgedTrial& judged, int magnification) {
   cv::Mat1d fine;
   cv::resize(cv::Mat1d(judged.patch_k), fine, {}, magnification, magnification, cv::INTER_CUBIC);
-  return to_image(fine, {surround - half, surround + half}, ColourMap::white_hot);
+  return to_image(fine, grey_levels(judged), ColourMap::white_hot);
 }
 
 HumanPresenter::HumanPresenter(QObject* parent) : QObject(parent) {
@@ -73,6 +77,7 @@ QString HumanPresenter::begin(const std::vector<JudgedTrial>& trials, const Plan
   session_ = session;
   patches_ = patches_for_a_person(trials, options);
   answers_.clear();
+  shown_.clear();
   record_.reset();
   problem_.clear();
   show_next();
@@ -86,6 +91,7 @@ void HumanPresenter::show_next() {
   }
   picture_ = picture_for_a_person(patches_[answers_.size()], options_.magnification);
   state_ = HumanState::showing;
+  since_shown_.start();
   if (options_.shown_ms) hide_.start(*options_.shown_ms);
   emit updated();
 }
@@ -93,7 +99,15 @@ void HumanPresenter::show_next() {
 void HumanPresenter::answer(Apex apex) {
   if (state_ != HumanState::showing && state_ != HumanState::hidden) return;
   hide_.stop();
-  Trial trial = patches_[answers_.size()].trial;
+  const JudgedTrial& patch = patches_[answers_.size()];
+  const LevelSpan grey = grey_levels(patch);
+  shown_.push_back({.kelvin = patch.patch_k,
+                    .black_k = grey.low,
+                    .white_k = grey.high,
+                    .magnification = options_.magnification,
+                    .limit_ms = options_.shown_ms,
+                    .response_s = static_cast<double>(since_shown_.nsecsElapsed()) * 1e-9});
+  Trial trial = patch.trial;
   trial.answer = apex;
   trial.scores = {};
   answers_.push_back(std::move(trial));
@@ -114,7 +128,7 @@ void HumanPresenter::abort() {
 void HumanPresenter::finish() {
   picture_ = {};
   state_ = HumanState::finished;
-  auto record = human_record(answers_, plan_);
+  auto record = human_record(answers_, shown_, plan_);
   if (!record) {
     problem_ = QString::fromStdString(record.error().message);
   } else {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "bench/gui/colour_map.h"
 #include "bench/gui/measure_presenter.h"
 #include "bench/session/human_record.h"
 
@@ -25,6 +26,8 @@ enum class HumanState { idle, showing, hidden, finished };
 /// A balanced random choice of the camera's patches in random order.
 [[nodiscard]] std::vector<JudgedTrial> patches_for_a_person(const std::vector<JudgedTrial>& trials,
                                                             const HumanOptions& options);
+/// The temperatures that are shown black and white.
+[[nodiscard]] LevelSpan grey_levels(const JudgedTrial& judged);
 /// The patch enlarged by bicubic interpolation. Grey levels span three contrasts and more round the surround, the same
 /// for every answer: nothing depends on where the triangle points.
 [[nodiscard]] QImage picture_for_a_person(const JudgedTrial& judged, int magnification);
@@ -65,6 +68,8 @@ class HumanPresenter final : public QObject {
   std::filesystem::path session_;
   std::vector<JudgedTrial> patches_;
   std::vector<Trial> answers_;
+  std::vector<ShownPatch> shown_;
+  QElapsedTimer since_shown_;
   QImage picture_;
   HumanState state_ = HumanState::idle;
   std::optional<HumanRecord> record_;

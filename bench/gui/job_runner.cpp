@@ -4,17 +4,19 @@
 
 namespace todbench {
 
-JobRunner::JobRunner(QObject* parent) : QObject(parent), thread_([this](const std::stop_token& end) { run(end); }) {}
+JobRunner::JobRunner(QObject* parent) : QObject(parent), thread_(QThread::create([this] { run(end_.get_token()); })) {
+  thread_->start();
+}
 
 JobRunner::~JobRunner() {
   shut_down();
 }
 
 void JobRunner::shut_down() {
-  thread_.request_stop();
+  end_.request_stop();
   (void)stop();
   wake_.notify_all();
-  if (thread_.joinable()) thread_.join();
+  thread_->wait();
 }
 
 void JobRunner::start(Job job) {

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <QObject>
+#include <QThread>
 #include <condition_variable>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <stop_token>
-#include <thread>
 
 namespace todbench {
 
@@ -40,7 +40,8 @@ class JobRunner final : public QObject {
   std::condition_variable_any wake_;
   std::optional<Job> waiting_;
   std::optional<std::stop_source> running_;
-  std::jthread thread_;  // last: runs with everything above
+  std::stop_source end_;
+  std::unique_ptr<QThread> thread_;  ///< Qt's own: documents of a report have timers
 };
 
 }  // namespace todbench

@@ -55,7 +55,7 @@ LookView::LookView(Workbench& bench, LookPresenter& presenter, QWidget* parent)
   picture_->set_placeholder("Choose a camera and start its live picture.");
   middle->addWidget(picture_, 1);
   auto* line = new QHBoxLayout;
-  reading_ = new QLabel("–");
+  reading_ = new QLabel("Point at a pixel to read it.");
   reading_->setObjectName("pixelReading");
   counters_ = new QLabel(presenter_.counters());
   counters_->setObjectName("frameCounters");

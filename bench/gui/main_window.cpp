@@ -3,6 +3,7 @@
 #include <QActionGroup>
 #include <QApplication>
 #include <QCloseEvent>
+#include <QComboBox>
 #include <QFrame>
 #include <QHBoxLayout>
 #include <QListWidget>
@@ -12,6 +13,7 @@
 #include <QStackedWidget>
 #include <QStatusBar>
 #include <QStyleFactory>
+#include <algorithm>
 
 #include "bench/gui/align_view.h"
 #include "bench/gui/chain_view.h"
@@ -96,6 +98,11 @@ void MainWindow::make_views() {
   views_->addWidget(new ChainView(chain_));
   auto* report = new ReportView(sessions_);
   connect(report, &ReportView::again, this, [this] { show_view(View::measure); });
+  connect(report, &ReportView::replay, this, [this] {
+    if (!sessions_.current()) return;
+    show_view(View::measure);
+    measure_.replay(sessions_.current()->folder, sessions_.current()->session.plan);
+  });
   views_->addWidget(report);
 
   message_ = new QFrame;
@@ -107,8 +114,10 @@ void MainWindow::make_views() {
   message_text_->setTextInteractionFlags(Qt::TextSelectableByMouse);
   retry_ = primary_button("Try again", "retry");
   auto* close = plain_button("Close", "closeMessage");
+  abandon_ = primary_button("Abort the run", "abandonRun");
+  other_camera_ = plain_button("Choose another camera", "otherCamera");
   line->addWidget(message_text_, 1);
-  line->addWidget(retry_);
+  for (QPushButton* button : {retry_, abandon_, other_camera_}) line->addWidget(button);
   line->addWidget(close);
   connect(close, &QPushButton::clicked, message_, &QWidget::hide);
   message_->hide();
@@ -165,10 +174,17 @@ void MainWindow::connect_parts() {
   connect(&bench_, &Workbench::devices_changed, this, &MainWindow::show_state);
   connect(retry_, &QPushButton::clicked, this, [this] {
     message_->hide();
-    if (last_activity_ == Activity::measuring) measure_.start();
+    if (last_activity_ == Activity::measuring || last_activity_ == Activity::replaying) measure_.again();
     if (last_activity_ == Activity::aligning) align_.start();
     if (last_activity_ == Activity::looking || last_activity_ == Activity::idle) look_.start();
   });
+  connect(abandon_, &QPushButton::clicked, this, [this] { measure_.abort(); });
+  connect(other_camera_, &QPushButton::clicked, this, [this] {
+    measure_.abort();
+    message_->hide();
+    show_view(View::look);
+  });
+  connect(&measure_, &MeasurePresenter::updated, this, &MainWindow::show_camera_away);
   connect(&plan_, &PlanPresenter::updated, this, [this] {
     measure_.set_predicted(plan_.expected_known() ? std::optional(as_curve(plan_.expected())) : std::nullopt);
   });
@@ -183,7 +199,26 @@ void MainWindow::connect_parts() {
 
 void MainWindow::show_trouble(const QString& sentence) {
   message_text_->setText(sentence);
+  retry_->show();
+  abandon_->hide();
+  other_camera_->setVisible(last_activity_ != Activity::replaying);
+  away_ = false;
   message_->show();
+}
+
+void MainWindow::show_camera_away() {
+  const QString sentence = measure_.camera_away();
+  const bool stopping = measure_.state() == RunState::stopping;
+  if (!sentence.isEmpty() && !stopping) {
+    message_text_->setText(sentence);
+    retry_->hide();
+    abandon_->show();
+    other_camera_->show();
+    message_->show();
+  } else if (away_) {
+    message_->hide();
+  }
+  away_ = !sentence.isEmpty() && !stopping;
 }
 
 void MainWindow::show_state() {
@@ -207,6 +242,7 @@ void MainWindow::set_theme(Theme theme) {
   theme_ = theme;
   QApplication::setStyle(QStyleFactory::create("Fusion"));
   QApplication::setPalette(palette_of(theme));
+  QApplication::setPalette(box_palette_of(theme), "QCheckBox");
   setStyleSheet(style_sheet(theme));
   for (QAction* action : findChildren<QAction*>()) {
     if (action->isCheckable() && action->actionGroup() != nullptr)
@@ -221,6 +257,10 @@ void MainWindow::recall() {
   const QString device = settings.value("device", emulated_laboratory).toString();
   // A device that is not there any more leaves the one that always is.
   if (!device.isEmpty() && device != bench_.device()) (void)bench_.select_device(device);
+  // A plan that this version does not read any more leaves the shipped one.
+  if (const QString plan = settings.value("plan").toString(); !plan.isEmpty()) (void)plan_.apply_toml(plan);
+  if (auto* colours = findChild<QComboBox*>("colourMap"))
+    colours->setCurrentIndex(std::clamp(settings.value("colourMap", 0).toInt(), 0, colours->count() - 1));
 }
 
 void MainWindow::remember() {
@@ -228,6 +268,8 @@ void MainWindow::remember() {
   settings.setValue("geometry", saveGeometry());
   settings.setValue("theme", theme_ == Theme::dark ? 1 : 0);
   settings.setValue("device", bench_.device());
+  settings.setValue("plan", plan_.toml());
+  if (const auto* colours = findChild<QComboBox*>("colourMap")) settings.setValue("colourMap", colours->currentIndex());
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {

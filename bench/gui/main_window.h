@@ -61,6 +61,8 @@ class MainWindow final : public QMainWindow {
   void make_menu();
   void connect_parts();
   void show_trouble(const QString& sentence);
+  /// Message with the time left and the ways back while a lost camera is waited for.
+  void show_camera_away();
   void show_state();
   void recall();
   void remember();
@@ -75,12 +77,13 @@ class MainWindow final : public QMainWindow {
   ChainPresenter chain_;
   SessionPresenter sessions_;
   Theme theme_ = Theme::light;
+  bool away_ = false;  ///< the message says that a camera is waited for
   Activity last_activity_ = Activity::idle;
   QListWidget* navigation_ = nullptr;
   QStackedWidget* views_ = nullptr;
   QFrame* message_ = nullptr;
   QLabel* message_text_ = nullptr;
-  QPushButton* retry_ = nullptr;
+  QPushButton *retry_ = nullptr, *abandon_ = nullptr, *other_camera_ = nullptr;
   QLabel* state_ = nullptr;
 };
 

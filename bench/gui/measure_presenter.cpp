@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "bench/report/tod_figures.h"
+#include "bench/run/replay.h"
+#include "bench/run/report_data.h"
 #include "bench/session/plan_options.h"
 
 namespace todbench {
@@ -50,7 +52,19 @@ ExperimentListener MeasurePresenter::listener() {
   };
   out.on_session = [this](const std::filesystem::path& folder) { bench_.post([this, folder] { folder_ = folder; }); };
   out.on_open = [this](const SourceInfo& info) { bench_.feed().open(info); };
-  out.on_frame = [this](const Frame& frame) { bench_.feed().put(frame); };
+  out.on_frame = [this](const Frame& frame) {
+    bench_.feed().put(frame);
+    const std::lock_guard lock(inbox_.mutex);
+    inbox_.frame_came = true;
+  };
+  out.on_lost = [this](const SourceInfo& camera, std::chrono::milliseconds patience) {
+    if (patience.count() <= 0) return;
+    {
+      const std::lock_guard lock(inbox_.mutex);
+      inbox_.frame_came = false;
+    }
+    bench_.post([this, camera, patience] { camera_lost(camera, patience); });
+  };
   out.on_progress = [this](std::size_t done, std::size_t planned) {
     const std::lock_guard lock(inbox_.mutex);
     inbox_.progress = {done, planned};
@@ -78,9 +92,8 @@ ExperimentListener MeasurePresenter::listener() {
   return out;
 }
 
-void MeasurePresenter::start() {
-  if (state_ != RunState::idle) return;
-  plan_ = bench_.plan();
+void MeasurePresenter::begin(const Plan& plan) {
+  plan_ = plan;
   phase_ = "starting";
   notes_.clear();
   request_.clear();
@@ -93,29 +106,66 @@ void MeasurePresenter::start() {
   measured_.reset();
   twin_.reset();
   outcome_.reset();
+  same_.reset();
+  away_.reset();
   pause_.resume();
   {
     const std::lock_guard lock(inbox_.mutex);
     inbox_.trials.clear();
     inbox_.progress.reset();
   }
-  const std::uint64_t run = ++run_;
-  const std::filesystem::path folder = bench_.sessions_folder() / session_folder_name(plan_.name);
+  ++run_;
   set_state(RunState::running);
   timer_.start();
   since_fit_.start();
-  bench_.run(Activity::measuring, [this, run, folder](const Plan& plan, const std::stop_token& stop) -> Result<void> {
-    auto outcome = measure_plan(plan, {.folder = folder, .existing = ExistingFolder::number}, listener(), stop);
-    std::optional<Error> failure;
-    if (!outcome) failure = outcome.error();
-    if (outcome && outcome->ended_by) failure = outcome->ended_by;
-    bench_.post([this, run, outcome = std::move(outcome)] {
-      if (run == run_) conclude(outcome);
-    });
-    if (failure) return tl::unexpected(*failure);
-    return {};
+}
+
+void MeasurePresenter::start() {
+  if (state_ != RunState::idle) return;
+  begin(bench_.plan());
+  replayed_.reset();
+  const std::filesystem::path folder = bench_.sessions_folder() / session_folder_name(plan_.name);
+  bench_.run(Activity::measuring, [this, run = run_, folder](const Plan& plan, const std::stop_token& stop) {
+    return hand_over(run, measure_plan(plan, {.folder = folder, .existing = ExistingFolder::number}, listener(), stop),
+                     {});
   });
   emit updated();
+}
+
+void MeasurePresenter::replay(const std::filesystem::path& session, const Plan& plan) {
+  if (state_ != RunState::idle) return;
+  begin(plan);
+  replayed_ = session;
+  const std::filesystem::path folder =
+      bench_.sessions_folder() / session_folder_name(session_name(session) + "-replay");
+  bench_.run_without_devices(
+      Activity::replaying, [this, run = run_, session, folder](const Plan&, const std::stop_token& stop) {
+        const auto replayed =
+            replay_session(session, {.folder = folder, .existing = ExistingFolder::number}, listener(), stop);
+        if (!replayed) return hand_over(run, tl::unexpected(replayed.error()), {});
+        return hand_over(run, replayed->run, replayed->same_trials && replayed->same_fits.value_or(true));
+      });
+  emit updated();
+}
+
+void MeasurePresenter::again() {
+  if (replayed_) {
+    replay(*replayed_, plan_);
+  } else {
+    start();
+  }
+}
+
+Result<void> MeasurePresenter::hand_over(std::uint64_t run, const Result<ExperimentOutcome>& outcome,
+                                         std::optional<bool> same) {
+  bench_.post([this, run, outcome, same] {
+    if (run != run_) return;
+    same_ = same;
+    conclude(outcome);
+  });
+  if (!outcome) return tl::unexpected(outcome.error());
+  if (outcome->ended_by) return tl::unexpected(*outcome->ended_by);
+  return {};
 }
 
 void MeasurePresenter::pause() {
@@ -137,6 +187,24 @@ void MeasurePresenter::abort() {
   bench_.stop();
 }
 
+void MeasurePresenter::camera_lost(const SourceInfo& camera, std::chrono::milliseconds patience) {
+  if (state_ == RunState::idle) return;
+  away_ = Away{QString::fromStdString(camera.model + ", serial " + camera.serial),
+               std::chrono::steady_clock::now() + patience};
+  bench_.report_health(DeviceHealth::lost);
+  emit updated();
+}
+
+QString MeasurePresenter::camera_away() const {
+  if (!away_) return {};
+  const auto left = std::chrono::ceil<std::chrono::seconds>(away_->until - std::chrono::steady_clock::now());
+  return QString(
+             "Camera %1 is gone. It is waited for: %2 s left. When it is back the run goes on by itself; what was "
+             "measured is kept in any case.")
+      .arg(away_->camera)
+      .arg(std::max<qint64>(0, left.count()));
+}
+
 void MeasurePresenter::set_state(RunState state) {
   if (state_ == state) return;
   state_ = state;
@@ -147,10 +215,19 @@ void MeasurePresenter::set_state(RunState state) {
 void MeasurePresenter::collect() {
   std::vector<JudgedTrial> arrived;
   std::optional<std::pair<std::size_t, std::size_t>> progress;
+  bool back = false;
   {
     const std::lock_guard lock(inbox_.mutex);
     arrived.swap(inbox_.trials);
     progress = std::exchange(inbox_.progress, std::nullopt);
+    back = inbox_.frame_came;
+  }
+  if (away_) {
+    if (back) {
+      away_.reset();
+      bench_.report_health(DeviceHealth::in_use);
+    }
+    emit updated();  // the time left
   }
   if (arrived.empty() && !progress) return;
   const std::size_t newest = arrived.size() > recent_trials ? arrived.size() - recent_trials : 0;
@@ -205,6 +282,7 @@ void MeasurePresenter::conclude(const Result<ExperimentOutcome>& outcome) {
   if (state_ == RunState::idle) return;
   collect();
   timer_.stop();
+  away_.reset();
   request_.clear();
   if (outcome) {
     outcome_ = *outcome;
@@ -213,6 +291,10 @@ void MeasurePresenter::conclude(const Result<ExperimentOutcome>& outcome) {
     twin_ = outcome->twin;
     phase_ = outcome->ended_by ? "ended early: " + QString::fromStdString(outcome->ended_by->message)
                                : "verdict: " + QString::fromUtf8(to_string(outcome->verdict.overall).data());
+    if (same_)
+      phase_ = (*same_ ? "✓ replayed: trials and fits are the same, byte for byte; "
+                       : "✗ replayed: the answers DIFFER from those of the session; ") +
+               phase_;
   } else {
     phase_ = "ended: " + QString::fromStdString(outcome.error().message);
   }

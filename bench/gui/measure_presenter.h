@@ -7,6 +7,7 @@
 #include <QString>
 #include <QStringList>
 #include <QTimer>
+#include <chrono>
 #include <deque>
 #include <memory>
 #include <mutex>
@@ -38,6 +39,10 @@ class MeasurePresenter final : public QObject {
 
   /// Measures the plan of the workbench into a new session folder.
   void start();
+  /// Measures again from the recorded frames of a session, whose plan is `plan`, into a new session folder.
+  void replay(const std::filesystem::path& session, const Plan& plan);
+  /// The same as last time: start() or replay().
+  void again();
   void pause();
   void resume();
   /// Ends the run within a second; what was measured stays.
@@ -52,6 +57,8 @@ class MeasurePresenter final : public QObject {
   /// "1 min 12 s left", from the presentations of this phase; empty when not known.
   [[nodiscard]] QString time_left() const;
   [[nodiscard]] QString operator_request() const { return request_; }
+  /// While a lost camera is waited for: what happened, how long it is still waited for; empty otherwise.
+  [[nodiscard]] QString camera_away() const;
   [[nodiscard]] const QStringList& notes() const { return notes_; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
@@ -61,6 +68,8 @@ class MeasurePresenter final : public QObject {
   /// What the simulated sensor lets expect, shown until its own trials come.
   void set_predicted(std::optional<TodCurve> predicted) { predicted_ = std::move(predicted); }
   [[nodiscard]] const std::optional<ExperimentOutcome>& outcome() const { return outcome_; }
+  /// Of a finished replay: whether trials and fits are those of the session, byte for byte.
+  [[nodiscard]] std::optional<bool> same_as_recorded() const { return same_; }
   /// Trials of the camera.
   [[nodiscard]] const std::vector<JudgedTrial>& trials() const { return trials_; }
   /// The last answers of either curve, newest first.
@@ -84,10 +93,21 @@ class MeasurePresenter final : public QObject {
     std::mutex mutex;
     std::vector<JudgedTrial> trials;
     std::optional<std::pair<std::size_t, std::size_t>> progress;
+    bool frame_came = false;
+  };
+  /// A camera that was lost and may come back.
+  struct Away {
+    QString camera;
+    std::chrono::steady_clock::time_point until;
   };
 
   [[nodiscard]] ExperimentListener listener();
+  void begin(const Plan& plan);
+  /// Hands the end of a run over to the window; what ended it early is the job's own error.
+  [[nodiscard]] Result<void> hand_over(std::uint64_t run, const Result<ExperimentOutcome>& outcome,
+                                       std::optional<bool> same);
   void set_state(RunState state);
+  void camera_lost(const SourceInfo& camera, std::chrono::milliseconds patience);
   void collect();
   void fit();
   void conclude(const Result<ExperimentOutcome>& outcome);
@@ -108,6 +128,9 @@ class MeasurePresenter final : public QObject {
   std::uint64_t run_ = 0;
   std::optional<TodCurve> measured_, twin_, predicted_;
   std::optional<ExperimentOutcome> outcome_;
+  std::optional<bool> same_;
+  std::optional<Away> away_;
+  std::optional<std::filesystem::path> replayed_;  ///< nothing: the last run was of the camera
   Pause pause_;
   std::shared_ptr<OperatorDesk> desk_ = std::make_shared<OperatorDesk>();
   Inbox inbox_;

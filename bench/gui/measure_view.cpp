@@ -48,6 +48,8 @@ MeasureView::MeasureView(Workbench& bench, MeasurePresenter& presenter, QWidget*
   progress_->setFormat("%v of %m presentations");
   phase_ = new QLabel;
   phase_->setObjectName("measurePhase");
+  phase_->setProperty("role", "verdict");
+  phase_->setWordWrap(true);
   left_ = new QLabel;
   left_->setMinimumWidth(fontMetrics().horizontalAdvance("00 min 00 s left"));
   for (QWidget* widget : {static_cast<QWidget*>(start_), static_cast<QWidget*>(pause_), static_cast<QWidget*>(abort_)})
@@ -118,8 +120,10 @@ QWidget* MeasureView::log_panel() {
   auto* panel = new QWidget;
   auto* layout = new QHBoxLayout(panel);
   layout->setContentsMargins(0, 0, 0, 0);
-  log_ = plain_table({"ΔT (K)", "S (mrad)", "Truth", "Answer", "up", "right", "down", "left", "Triangle"}, "trialLog");
-  const std::vector<int> widths{52, 56, 46, 60, 40, 40, 42, 40};
+  log_ = plain_table({"ΔT (K)", "S (mrad)", "Truth", "Answer", "up", "right", "down", "left", "Of", "Triangle"},
+                     "trialLog");
+  log_->setToolTip("Scores of the four alternatives: the observer answers with the highest");
+  const std::vector<int> widths{48, 56, 42, 58, 38, 38, 40, 38, 58};
   for (std::size_t i = 0; i < widths.size(); ++i) log_->setColumnWidth(static_cast<int>(i), widths[i]);
   layout->addWidget(log_, 1);
   auto* side = new QVBoxLayout;
@@ -193,8 +197,8 @@ void MeasureView::show_log() {
     QStringList row{QString::number(t.delta_t_k, 'f', 3), QString::number(t.size_mrad, 'f', 2),
                     text_of(to_string(t.truth)), text_of(to_string(t.answer)) + (t.correct() ? " ✓" : " ✗")};
     for (const double score : t.scores) row << QString::number(score, 'f', 2);
-    row << text_of(recent[i].curve == SessionCurve::main ? "" : "simulated: ") +
-               QString::fromStdString(t.plate + ", " + t.triangle);
+    row << (recent[i].curve == SessionCurve::main ? "camera" : "twin")
+        << QString::fromStdString(t.plate + ", " + t.triangle);
     rows << row;
   }
   fill_table(*log_, rows);

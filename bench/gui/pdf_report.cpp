@@ -41,6 +41,7 @@ const char* const style = R"(
 std::vector<Plot> figures_of(const ReportData& data) {
   std::vector<Plot> plots{tod_plot(data)};
   for (auto& plot : psychometric_plots(data)) plots.push_back(std::move(plot));
+  for (auto& plot : human_plots(data)) plots.push_back(std::move(plot));
   return plots;
 }
 
@@ -85,6 +86,7 @@ void paint_pages(QPdfWriter& writer, QTextDocument& document, const QString& lab
     painter.translate(margin, margin);
     QFont font("DejaVu Sans");
     font.setPixelSize(9);
+    font.setStyleStrategy(QFont::PreferNoShaping);
     painter.setFont(font);
     painter.setPen(QColor(80, 80, 80));
     const QRectF foot_line(0, body_height + foot / 4, document.pageSize().width(), foot);
@@ -104,11 +106,11 @@ void paint_pages(QPdfWriter& writer, QTextDocument& document, const QString& lab
 
 namespace {
 
-/// Figures of a group two in a row, in a table without lines.
-void put_figures_in_pairs(QString& html) {
+/// Figures of a group two in a row, in a table without lines. False: there was none.
+bool put_figures_in_pairs(QString& html) {
   const QString opening = "<div class=\"pairs\"><figure>";
   const auto begin = html.indexOf(opening);
-  if (begin < 0) return;
+  if (begin < 0) return false;
   const auto end = html.indexOf("</div>", begin);
   const QStringList figures = html.mid(begin, end - begin).split("</figure>", Qt::SkipEmptyParts);
   QString rows;
@@ -121,6 +123,7 @@ void put_figures_in_pairs(QString& html) {
     ++number;
   }
   html.replace(begin, end - begin, "<div><table class=\"figures\">" + rows + "</tr></table>");
+  return true;
 }
 
 }  // namespace
@@ -135,7 +138,8 @@ QString rich_text(const std::string& report_html) {
     if (!found.hasMatch()) break;
     html.replace(found.capturedStart(), found.capturedLength(), QString("<p>@@%1@@</p>").arg(number));
   }
-  put_figures_in_pairs(html);
+  while (put_figures_in_pairs(html)) {
+  }
   html.replace("<figcaption>", "<p class=\"note\">").replace("</figcaption>", "</p>");
   html.replace("<table", "<table width=\"100%\" cellspacing=\"0\"");
   return html;
@@ -151,6 +155,11 @@ Result<void> write_pdf_report(const ReportData& data, const std::filesystem::pat
   document.setUndoRedoEnabled(false);
   document.setDocumentMargin(0);
   document.setUseDesignMetrics(true);
+  // One glyph per character: a ligature is read back as another character, and words as other words.
+  QFont font("DejaVu Sans");
+  font.setPixelSize(10);
+  font.setStyleStrategy(QFont::PreferNoShaping);
+  document.setDefaultFont(font);
   document.documentLayout()->registerHandler(PlotTextObject::object_type, &drawing);
   document.setDefaultStyleSheet(style);
   document.setHtml(rich_text(render_report(data)));

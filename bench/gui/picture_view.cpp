@@ -72,7 +72,7 @@ QPoint PictureView::pixel_at(const QPointF& place) const {
 
 void PictureView::paintEvent(QPaintEvent* /*event*/) {
   QPainter painter(this);
-  painter.fillRect(rect(), surround_.value_or(palette().color(QPalette::Base)));
+  painter.fillRect(rect(), surround_.value_or(palette().color(image_.isNull() ? QPalette::Base : QPalette::Window)));
   if (image_.isNull()) {
     painter.setPen(surround_ ? QColor(Qt::white) : palette().color(QPalette::PlaceholderText));
     painter.drawText(rect().adjusted(20, 20, -20, -20), Qt::AlignCenter | Qt::TextWordWrap, placeholder_);
@@ -155,6 +155,10 @@ void PictureView::keyPressEvent(QKeyEvent* event) {
       return;
   }
   update();
+  if (image_.isNull()) return;
+  // The keys read the middle, as the mouse reads what it points at.
+  const QPoint pixel = pixel_at(middle);
+  emit hovered(pixel.x(), pixel.y());
 }
 
 }  // namespace todbench

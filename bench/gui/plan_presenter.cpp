@@ -153,7 +153,7 @@ void PlanPresenter::refresh() {
 
 void PlanPresenter::foresee() {
   const bool priced = !prices_.empty();
-  const bool measuring = bench_.activity() == Activity::measuring;
+  const bool measuring = bench_.activity() == Activity::measuring || bench_.activity() == Activity::replaying;
   forecasts_.start([this, plan = bench_.plan(), plates = plates_, rate_hz = frame_rate_hz_, priced,
                     measuring](const std::stop_token& stop) {
     auto seen = todbench::forecast(plan);
@@ -179,7 +179,7 @@ void PlanPresenter::foresee() {
 void PlanPresenter::look_ahead() {
   const Plan plan = bench_.plan();
   // A running measurement needs the processor more than a forecast does.
-  if (bench_.activity() == Activity::measuring) return;
+  if (bench_.activity() == Activity::measuring || bench_.activity() == Activity::replaying) return;
   const auto known = expected_.empty() ? std::nullopt : std::optional(expected_);
   jobs_.start([this, plan, known](const std::stop_token& stop) {
     auto seen = looked_ahead(plan, known, stop);

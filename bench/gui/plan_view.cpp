@@ -259,6 +259,13 @@ void PlanView::add_fields(QFormLayout& form) {
                if (good) p.limits.equivalence_margin_percent = value;
                return good || text.isEmpty() ? QString() : not_a_number(text);
              }});
+  add_field(form, "Keep frames, for a replay: yes, no", "planRecord",
+            {nullptr, [](const Plan& p) { return QString(p.measurement.record_frames ? "yes" : "no"); },
+             [](Plan& p, const QString& text) {
+               if (text != "yes" && text != "no") return "'" + text + "' is neither yes nor no";
+               p.measurement.record_frames = text == "yes";
+               return QString();
+             }});
   add_text(form, "Notes", "planNotes", [](Plan& p) -> std::string& { return p.notes; });
 }
 

@@ -11,20 +11,6 @@ namespace {
 constexpr double font_px = 13;
 constexpr int most_labels = 7;
 
-Qt::PenStyle pen_style(PlotLine line) {
-  switch (line) {
-    case PlotLine::none:
-      return Qt::NoPen;
-    case PlotLine::solid:
-      return Qt::SolidLine;
-    case PlotLine::dashed:
-      return Qt::DashLine;
-    case PlotLine::dotted:
-      return Qt::DotLine;
-  }
-  return Qt::SolidLine;
-}
-
 /// Works in the user units of the plot.
 class PlotPainting {
  public:
@@ -37,6 +23,8 @@ class PlotPainting {
   void operator()() {
     QFont font("DejaVu Sans");
     font.setPixelSize(static_cast<int>(font_px));
+    // In a PDF a ligature would be read back as another character.
+    font.setStyleStrategy(QFont::PreferNoShaping);
     painter_.setFont(font);
     draw_axes();
     painter_.save();
@@ -180,6 +168,20 @@ class PlotPainting {
 };
 
 }  // namespace
+
+Qt::PenStyle pen_style(PlotLine line) {
+  switch (line) {
+    case PlotLine::none:
+      return Qt::NoPen;
+    case PlotLine::solid:
+      return Qt::SolidLine;
+    case PlotLine::dashed:
+      return Qt::DashLine;
+    case PlotLine::dotted:
+      return Qt::DotLine;
+  }
+  return Qt::SolidLine;
+}
 
 QColor PlotColours::of(PlotTone tone) const {
   switch (tone) {

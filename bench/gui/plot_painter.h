@@ -19,6 +19,9 @@ struct PlotColours {
 [[nodiscard]] PlotColours light_plot_colours();
 [[nodiscard]] PlotColours dark_plot_colours();
 
+/// How a line of a plot is drawn, here and in the window.
+[[nodiscard]] Qt::PenStyle pen_style(PlotLine line);
+
 /// Fills `area` with the plot, as lines and text. Thread-safe for painters of its own.
 void paint_plot(QPainter& painter, const QRectF& area, const Plot& plot, const PlotColours& colours);
 

@@ -38,20 +38,6 @@ class ReportTicker final : public QCPAxisTicker {
   PlotAxis axis_;
 };
 
-Qt::PenStyle pen_style(PlotLine line) {
-  switch (line) {
-    case PlotLine::none:
-      return Qt::NoPen;
-    case PlotLine::solid:
-      return Qt::SolidLine;
-    case PlotLine::dashed:
-      return Qt::DashLine;
-    case PlotLine::dotted:
-      return Qt::DotLine;
-  }
-  return Qt::SolidLine;
-}
-
 QCPScatterStyle scatter_of(PlotMarker marker, const QColor& colour) {
   switch (marker) {
     case PlotMarker::none:

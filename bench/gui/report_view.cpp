@@ -56,7 +56,7 @@ ReportView::ReportView(SessionPresenter& presenter, QWidget* parent) : QWidget(p
   splitter->addWidget(session_panel());
   splitter->setStretchFactor(0, 2);
   splitter->setStretchFactor(1, 5);
-  splitter->setSizes({360, 800});
+  splitter->setSizes({400, 770});
   layout->addWidget(splitter);
   connect(&presenter_, &SessionPresenter::listed, this, &ReportView::list_sessions);
   connect(&presenter_, &SessionPresenter::opened, this, &ReportView::show_session);
@@ -73,8 +73,9 @@ QWidget* ReportView::browser() {
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(title_label("Sessions"));
   sessions_ = plain_table({"Started (UTC)", "Session", "State", "Unit under test"}, "sessionTable");
-  sessions_->setColumnWidth(0, 135);
-  sessions_->setColumnWidth(1, 215);
+  sessions_->setColumnWidth(0, 132);
+  sessions_->setColumnWidth(1, 92);
+  sessions_->setColumnWidth(2, 74);
   layout->addWidget(sessions_, 1);
   auto* buttons = new QHBoxLayout;
   auto* open = primary_button("Open", "openSession");
@@ -110,6 +111,7 @@ QWidget* ReportView::session_panel() {
   layout->addWidget(title_);
   verdict_ = new QLabel;
   verdict_->setObjectName("sessionVerdict");
+  verdict_->setProperty("role", "verdict");
   verdict_->setWordWrap(true);
   layout->addWidget(verdict_);
   plot_ = new PlotView;
@@ -132,14 +134,21 @@ QWidget* ReportView::session_panel() {
   auto* buttons = new QHBoxLayout;
   export_ = primary_button("Write HTML and PDF", "exportReports");
   page_ = plain_button("Show the PDF", "showPdf");
+  replay_ = plain_button("Replay", "replaySession");
+  replay_->setToolTip(
+      "Measures again from the recorded frames of the session and says whether every answer is the same.");
   again_ = plain_button("Measure this plan again", "measureAgain");
-  for (QPushButton* button : {export_, page_, again_}) {
+  again_->setToolTip("A new measurement with the plan of this session and the camera that is chosen now.");
+  for (QPushButton* button : {export_, page_, replay_, again_}) {
     button->setEnabled(false);
     buttons->addWidget(button);
   }
   compare_->setEnabled(false);
   buttons->addStretch();
   layout->addLayout(buttons);
+  frames_ = hint_label();
+  frames_->setObjectName("sessionFrames");
+  layout->addWidget(frames_);
   files_ = hint_label();
   files_->setObjectName("exportedFiles");
   layout->addWidget(files_);
@@ -150,6 +159,7 @@ QWidget* ReportView::session_panel() {
       QDesktopServices::openUrl(
           QUrl::fromLocalFile(QString::fromStdString((presenter_.current()->folder / "report.pdf").string())));
   });
+  connect(replay_, &QPushButton::clicked, this, &ReportView::replay);
   connect(again_, &QPushButton::clicked, this, [this] {
     presenter_.use_plan_again();
     emit again();
@@ -188,6 +198,11 @@ void ReportView::show_session() {
   fill_table(*limits_, rows);
   files_->clear();
   for (QPushButton* button : {export_, again_, compare_}) button->setEnabled(true);
+  replay_->setEnabled(opened.recorded);
+  frames_->setText(opened.recorded
+                       ? "The frames are in the session: Replay judges them again."
+                       : "No frames were recorded in this session: it cannot be replayed, only measured again. "
+                         "\"Keep frames\" in the plan records them.");
   std::error_code none;
   page_->setEnabled(std::filesystem::exists(opened.folder / "report.pdf", none));
   show_plot();

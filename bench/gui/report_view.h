@@ -21,6 +21,8 @@ class ReportView final : public QWidget {
   explicit ReportView(SessionPresenter& presenter, QWidget* parent = nullptr);
 
  signals:
+  /// The session that is open is to be replayed from its frames.
+  void replay();
   /// The plan of the session that is open is to be measured again.
   void again();
 
@@ -37,8 +39,8 @@ class ReportView final : public QWidget {
 
   SessionPresenter& presenter_;
   QTableWidget *sessions_, *ratios_, *limits_;
-  QLabel *title_, *verdict_, *files_;
-  QPushButton *compare_, *export_, *again_, *page_;
+  QLabel *title_, *verdict_, *frames_, *files_;
+  QPushButton *compare_, *export_, *replay_, *again_, *page_;
   QCheckBox* log_log_;
   PlotView* plot_;
 };

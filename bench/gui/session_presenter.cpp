@@ -1,11 +1,13 @@
 #include "bench/gui/session_presenter.h"
 
+#include <QRegularExpression>
 #include <algorithm>
 #include <system_error>
 #include <utility>
 
 #include "bench/gui/pdf_report.h"
 #include "bench/report/tod_figures.h"
+#include "bench/run/recorded_bench.h"
 #include "bench/run/report_data.h"
 #include "bench/session/files.h"
 #include "bench/session/plan_options.h"
@@ -13,6 +15,12 @@
 
 namespace todbench {
 namespace {
+
+/// Without "session-" and the time, which stands in a column of its own.
+QString short_name(const QString& session) {
+  static const QRegularExpression stamp("^session-[0-9]{8}T[0-9]{6}Z-");
+  return QString(session).remove(stamp);
+}
 
 Result<SessionEntry> entry_of(const std::filesystem::path& folder) {
   const auto text = read_text_file(folder / "provenance.json");
@@ -23,7 +31,7 @@ Result<SessionEntry> entry_of(const std::filesystem::path& folder) {
   if (!provenance) return tl::unexpected(provenance.error());
   SessionEntry entry;
   entry.folder = folder;
-  entry.name = QString::fromStdString(session_name(folder));
+  entry.name = short_name(QString::fromStdString(session_name(folder)));
   entry.when = QString::fromStdString(provenance->started_utc).replace('T', ' ').remove('Z');
   entry.state = QString::fromUtf8(to_string(provenance->state).data());
   if (provenance->camera)
@@ -60,7 +68,11 @@ Result<OpenedSession> read_opened_session(const std::filesystem::path& folder) {
   if (!data) return tl::unexpected(data.error());
   auto human = read_human(folder);
   if (!human) return tl::unexpected(human.error());
-  return OpenedSession{folder, QString::fromStdString(name), *std::move(session), *std::move(data), *std::move(human)};
+  if (*human) data->human = (*human)->curve;
+  std::error_code none;
+  const bool recorded = std::filesystem::exists(recorded_frames(folder), none);
+  return OpenedSession{folder,  QString::fromStdString(name), *std::move(session), *std::move(data), *std::move(human),
+                       recorded};
 }
 
 std::vector<SessionEntry> sessions_below(const std::filesystem::path& folder) {
@@ -150,21 +162,7 @@ Plot SessionPresenter::tod_figure(AxisScale acuity_axis) const {
                             acuity_axis);
   }
   if (!current_) return {};
-  Plot plot = tod_plot(current_->report);
-  if (current_->human) {
-    // The person's curve as the figure draws a curve, in the third tone.
-    const Plot human = todbench::tod_figure({"human", &current_->human->curve}, {}, {});
-    for (PlotSeries series : human.series) {
-      series.tone = PlotTone::third;
-      series.marker = PlotMarker::square;
-      series.dodge_px = 0;
-      plot.series.push_back(std::move(series));
-    }
-    plot.x.high = std::max(plot.x.high, human.x.high);
-    plot.y.low = std::min(plot.y.low, human.y.low);
-    plot.y.high = std::max(plot.y.high, human.y.high);
-  }
-  return with_acuity_axis(std::move(plot), acuity_axis);
+  return with_acuity_axis(tod_plot(current_->report), acuity_axis);
 }
 
 }  // namespace todbench

@@ -26,6 +26,7 @@ struct OpenedSession {
   Session session;
   ReportData report;
   std::optional<HumanRecord> human;
+  bool recorded = false;  ///< the frames are in it: it can be replayed
 };
 
 /// Two sessions side by side.

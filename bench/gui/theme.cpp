@@ -25,6 +25,12 @@ QPalette palette_of(Theme theme) {
   return palette;
 }
 
+QPalette box_palette_of(Theme theme) {
+  QPalette palette = palette_of(theme);
+  if (theme == Theme::dark) palette.setColor(QPalette::Base, QColor(84, 88, 96));
+  return palette;
+}
+
 PlotColours plot_colours_of(Theme theme) {
   return theme == Theme::dark ? dark_plot_colours() : light_plot_colours();
 }
@@ -46,6 +52,7 @@ QString style_sheet(Theme theme) {
     QFrame#messageBar { background: %3; border: 1px solid %4; border-radius: 3px; }
     QFrame#messageBar QLabel { color: %5; }
     QLabel[role="title"] { font-size: 15px; font-weight: bold; }
+    QLabel[role="verdict"] { font-weight: bold; }
     QLabel[role="hint"] { color: %6; }
     QPushButton[role="primary"] { background: %2; color: white; padding: 5px 14px; border: 0; border-radius: 3px; }
     QPushButton[role="primary"]:disabled { background: %7; }

@@ -10,6 +10,8 @@ namespace todbench {
 
 enum class Theme { light, dark };
 [[nodiscard]] QPalette palette_of(Theme theme);
+/// Of check boxes, whose frames the style derives from the window: on a dark one they would not be seen.
+[[nodiscard]] QPalette box_palette_of(Theme theme);
 [[nodiscard]] PlotColours plot_colours_of(Theme theme);
 /// What the desktop prefers, as its palette tells.
 [[nodiscard]] Theme desktop_theme();

@@ -63,6 +63,8 @@ QString name_of(Activity activity) {
       return "aligning";
     case Activity::measuring:
       return "measuring";
+    case Activity::replaying:
+      return "replaying";
   }
   return {};
 }
@@ -155,25 +157,35 @@ Result<Plan> Workbench::with_devices(Plan plan, const QString& device, const std
 }
 
 void Workbench::run(Activity activity, DeviceJob job) {
+  set_health(DeviceHealth::in_use);
+  begin(activity, Devices::needed, std::move(job));
+}
+
+void Workbench::run_without_devices(Activity activity, DeviceJob job) {
+  set_health(DeviceHealth::ready);
+  begin(activity, Devices::none, std::move(job));
+}
+
+void Workbench::begin(Activity activity, Devices devices, DeviceJob job) {
   const std::uint64_t number = ++run_;
   set_activity(activity);
-  set_health(DeviceHealth::in_use);
-  bench_.start([this, number, plan = plan_, device = device_, job = std::move(job)](const std::stop_token& stop) {
-    Result<void> result;
-    if (auto ready = with_devices(plan, device, stop)) {
-      result = job(*ready, stop);
-    } else {
-      result = tl::unexpected(ready.error());
-    }
+  bench_.start(
+      [this, number, devices, plan = plan_, device = device_, job = std::move(job)](const std::stop_token& stop) {
+        Result<void> result;
+        if (auto ready = devices == Devices::none ? Result<Plan>(plan) : with_devices(plan, device, stop)) {
+          result = job(*ready, stop);
+        } else {
+          result = tl::unexpected(ready.error());
+        }
 #ifdef TODBENCH_WITH_ARAVIS
-    // A laboratory whose camera is gone is of no use any more: the next run starts another.
-    if (!result && result.error().code == ErrorCode::disconnected) {
-      const std::lock_guard lock(laboratory_mutex_);
-      laboratory_.reset();
-    }
+        // A laboratory whose camera is gone is of no use any more: the next run starts another.
+        if (!result && result.error().code == ErrorCode::disconnected) {
+          const std::lock_guard lock(laboratory_mutex_);
+          laboratory_.reset();
+        }
 #endif
-    post([this, number, result] { ended(number, result); });
-  });
+        post([this, number, result] { ended(number, result); });
+      });
 }
 
 void Workbench::stop() {

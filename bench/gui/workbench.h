@@ -29,7 +29,7 @@ struct DeviceEntry {
 inline constexpr const char* emulated_laboratory = "emulated";
 
 /// What the bench does now. One at a time.
-enum class Activity { idle, looking, aligning, measuring };
+enum class Activity { idle, looking, aligning, measuring, replaying };
 [[nodiscard]] QString name_of(Activity activity);
 
 /// Lives in the thread of the window; members marked so may be called from jobs.
@@ -57,6 +57,8 @@ class Workbench final : public QObject {
   /// devices are ready; the error that it returns (`interrupted` is none) becomes a trouble().
   using DeviceJob = std::function<Result<void>(const Plan&, std::stop_token)>;
   void run(Activity activity, DeviceJob job);
+  /// The same for a job that needs none of the devices: it gets the plan as it is.
+  void run_without_devices(Activity activity, DeviceJob job);
   void stop();
   /// Ends all jobs and waits for them. To be called before anything that a job uses goes.
   void shut_down();
@@ -64,6 +66,9 @@ class Workbench final : public QObject {
 
   /// Cuts the power of the emulated camera, as a pulled cable does: to show and to test what happens then. Any thread.
   void switch_emulated_camera_off();
+
+  /// What a job learns about the device it uses. Window's thread.
+  void report_health(DeviceHealth health) { set_health(health); }
 
   /// Calls `what` in the window's thread, unless the workbench is gone by then. Any thread.
   void post(std::function<void()> what);
@@ -81,6 +86,8 @@ class Workbench final : public QObject {
 
  private:
   [[nodiscard]] Result<Plan> with_devices(Plan plan, const QString& device, const std::stop_token& stop);
+  enum class Devices { needed, none };
+  void begin(Activity activity, Devices devices, DeviceJob job);
   void set_activity(Activity activity);
   void set_health(DeviceHealth health);
   void ended(std::uint64_t run, const Result<void>& result);

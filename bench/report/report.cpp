@@ -44,7 +44,8 @@ std::string render_report(const ReportData& data) {
       element("style", literal(report_style(page_label(data)) + plot_style())) + literal("\n");
   Markup body = element("header", element("h1", escaped(data.title)) + literal("\n") + subtitle(data)) + literal("\n");
   body += verdict_box(data);
-  body += identification_section(data) + limits_section(data) + curve_section(data) + psychometric_section(data);
+  body += identification_section(data) + limits_section(data) + curve_section(data) + psychometric_section(data) +
+          human_section(data);
   body += comparison_section(data) + set_up_section(data) + effects_section(data);
   if (data.cost) body += cost_section(*data.cost);
   body += frames_section(data);

@@ -68,6 +68,7 @@ struct ReportData {
   FitOptions fit;
   std::optional<TodCurve> measured;  ///< by the camera
   std::optional<TodCurve> simulated;
+  std::optional<TodCurve> human;         ///< a person's answers to patches of the camera's frames
   std::optional<Comparison> comparison;  ///< A is measured, B is simulated
 
   std::string decision_rule;  ///< named and in words
@@ -95,6 +96,8 @@ struct ReportData {
 /// order.
 [[nodiscard]] Plot tod_plot(const ReportData& data);
 [[nodiscard]] std::vector<Plot> psychometric_plots(const ReportData& data);
+/// Those of the person beside the model, which follow; none without a person.
+[[nodiscard]] std::vector<Plot> human_plots(const ReportData& data);
 
 /// The page: HTML 5 that is also well-formed XML, style and figures inside, no script, nothing from outside. A pure
 /// function.

@@ -35,6 +35,7 @@ enum class Mood { good, bad, open };
 [[nodiscard]] Markup limits_section(const ReportData& data);
 [[nodiscard]] Markup curve_section(const ReportData& data);
 [[nodiscard]] Markup psychometric_section(const ReportData& data);
+[[nodiscard]] Markup human_section(const ReportData& data);
 [[nodiscard]] Markup comparison_section(const ReportData& data);
 [[nodiscard]] Markup answers_section(const ReportData& data);
 

@@ -1,4 +1,5 @@
 // What was found: verdict, curves, functions, comparison.
+#include <algorithm>
 #include <cmath>
 
 #include "bench/report/number_format.h"
@@ -218,8 +219,21 @@ Markup limits_section(const ReportData& data) {
 
 Plot tod_plot(const ReportData& data) {
   const std::vector<DrawnLimit> limits = acuity_limits(data);
-  return tod_figure({measured_name(data), pointer(data.measured)}, {simulated_name(data), pointer(data.simulated)},
-                    limits);
+  Plot plot = tod_figure({measured_name(data), pointer(data.measured)}, {simulated_name(data), pointer(data.simulated)},
+                         limits);
+  if (!data.human) return plot;
+  // The person's curve as the figure draws a curve, in the third tone.
+  const Plot human = tod_figure({"human", pointer(data.human)}, {}, {});
+  for (PlotSeries series : human.series) {
+    series.tone = PlotTone::third;
+    series.marker = PlotMarker::square;
+    series.dodge_px = 0;
+    plot.series.push_back(std::move(series));
+  }
+  plot.x.high = std::max(plot.x.high, human.x.high);
+  plot.y.low = std::min(plot.y.low, human.y.low);
+  plot.y.high = std::max(plot.y.high, human.y.high);
+  return plot;
 }
 
 std::vector<Plot> psychometric_plots(const ReportData& data) {

@@ -1,8 +1,12 @@
 #include "bench/session/human_record.h"
 
+#include <algorithm>
+#include <cassert>
+#include <string>
 #include <system_error>
 #include <utility>
 
+#include "bench/session/csv_table.h"
 #include "bench/session/files.h"
 #include "bench/session/fit_record.h"
 #include "bench/session/manifest.h"
@@ -15,14 +19,83 @@ namespace {
 
 constexpr const char* trials_name = "trials_human.csv";
 constexpr const char* fits_name = "fits_human.json";
+constexpr const char* shown_name = "shown_human.csv";
+constexpr const char* shown_header =
+    "answer_number,presentation,triangle,frame,truth,answer,response_s,limit_ms,magnification,black_k,white_k,rows,"
+    "columns,kelvin";
+constexpr std::size_t shown_columns = 14;
+
+/// Samples row by row, separated by blanks; they read back exactly.
+std::string shown_text(const HumanRecord& record) {
+  std::string text = std::string(shown_header) + "\n";
+  for (std::size_t i = 0; i < record.shown.size(); ++i) {
+    const Trial& trial = record.trials[i];
+    const ShownPatch& patch = record.shown[i];
+    text += std::to_string(i + 1) + "," + std::to_string(trial.presentation) + "," + csv_field(trial.triangle) + "," +
+            std::to_string(trial.frame) + "," + std::string(to_string(trial.truth)) + "," +
+            std::string(to_string(trial.answer)) + "," + number_text(patch.response_s) + "," +
+            (patch.limit_ms ? std::to_string(*patch.limit_ms) : "") + "," + std::to_string(patch.magnification) + "," +
+            number_text(patch.black_k) + "," + number_text(patch.white_k) + "," + std::to_string(patch.kelvin.rows) +
+            "," + std::to_string(patch.kelvin.cols) + ",";
+    std::string samples;
+    for (const float kelvin : patch.kelvin) samples += (samples.empty() ? "" : " ") + number_text(kelvin);
+    text += samples + "\n";
+  }
+  return text;
+}
+
+/// The samples of one patch; empty where they are not `rows` times `columns` numbers.
+cv::Mat1f samples_from(const std::string& text, int rows, int columns) {
+  cv::Mat1f kelvin(rows, columns);
+  std::size_t begin = 0;
+  for (float& sample : kelvin) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    const auto value = begin < text.size() ? parse_number(text.substr(begin, end - begin)) : std::nullopt;
+    if (!value) return {};
+    sample = static_cast<float>(*value);
+    begin = end + 1;
+  }
+  return begin > text.size() ? kelvin : cv::Mat1f();
+}
+
+Result<std::vector<ShownPatch>> read_shown(const std::filesystem::path& file, std::size_t trials) {
+  const auto text = read_text_file(file);
+  if (!text) return tl::unexpected(text.error());
+  const auto table = parse_csv(*text, file.string());
+  if (!table) return tl::unexpected(table.error());
+  if (table->header.size() != shown_columns)
+    return table->wrong(1, "expected the columns " + std::string(shown_header));
+  if (table->rows.size() != trials)
+    return table->wrong(1, "expected one row for each of the trials of trials_human.csv");
+  std::vector<ShownPatch> out;
+  for (const auto& row : table->rows) {
+    const auto number = [&](std::size_t column) { return parse_number(row.fields[column]); };
+    constexpr double most = 4096;  // samples on a side
+    const auto rows = number(11), columns = number(12), magnification = number(8);
+    if (!rows || !columns || !(*rows >= 1 && *rows <= most && *columns >= 1 && *columns <= most) || !number(6) ||
+        !magnification || !number(9) || !number(10) || (!row.fields[7].empty() && !number(7)))
+      return table->wrong(row.line, "a number is missing or out of range");
+    ShownPatch patch{.kelvin = samples_from(row.fields[13], static_cast<int>(*rows), static_cast<int>(*columns)),
+                     .black_k = *number(9),
+                     .white_k = *number(10),
+                     .magnification = static_cast<int>(*magnification),
+                     .limit_ms = {},
+                     .response_s = *number(6)};
+    if (const auto limit = number(7)) patch.limit_ms = static_cast<int>(*limit);
+    if (patch.kelvin.empty()) return table->wrong(row.line, "column kelvin: expected rows x columns numbers");
+    out.push_back(std::move(patch));
+  }
+  return out;
+}
 
 }  // namespace
 
-Result<HumanRecord> human_record(std::vector<Trial> answers, const Plan& plan) {
+Result<HumanRecord> human_record(std::vector<Trial> answers, std::vector<ShownPatch> shown, const Plan& plan) {
+  assert(shown.size() == answers.size());
   auto curve = tod_curve(answers, fit_options(plan));
   if (!curve) return tl::unexpected(curve.error());
   curve->observer = "human";
-  return HumanRecord{std::move(answers), *std::move(curve)};
+  return HumanRecord{std::move(answers), *std::move(curve), std::move(shown)};
 }
 
 Result<void> write_human(const std::filesystem::path& session, const HumanRecord& record) {
@@ -34,7 +107,8 @@ Result<void> write_human(const std::filesystem::path& session, const HumanRecord
   if (auto synced = writer->sync(); !synced) return synced;
   if (auto written = write_file_atomically(session / fits_name, to_page(curve_record(record.curve))); !written)
     return written;
-  return refresh_manifest(session, {trials_name, fits_name});
+  if (auto written = write_file_atomically(session / shown_name, shown_text(record)); !written) return written;
+  return refresh_manifest(session, {trials_name, shown_name, fits_name});
 }
 
 Result<std::optional<HumanRecord>> read_human(const std::filesystem::path& session) {
@@ -48,7 +122,13 @@ Result<std::optional<HumanRecord>> read_human(const std::filesystem::path& sessi
   if (json.is_discarded()) return fail(ErrorCode::invalid_input, (session / fits_name).string() + ": not valid JSON");
   auto curve = curve_from(json);
   if (!curve) return tl::unexpected(curve.error());
-  return HumanRecord{*std::move(trials), *std::move(curve)};
+  std::vector<ShownPatch> shown;
+  if (std::filesystem::exists(session / shown_name, none)) {
+    auto patches = read_shown(session / shown_name, trials->size());
+    if (!patches) return tl::unexpected(patches.error());
+    shown = *std::move(patches);
+  }
+  return HumanRecord{*std::move(trials), *std::move(curve), std::move(shown)};
 }
 
 }  // namespace todbench

@@ -47,6 +47,70 @@ TEST(HumanObserver, LeavesItsAnswersBesideTheModelsInTheSameSession) {
   EXPECT_TRUE(wait_until([&] { return window->sessions().current() && window->sessions().current()->human; }));
 }
 
+TEST(HumanObserver, KeepsWhatWasShownSoThatEveryAnswerCanBeChecked) {
+  ShownWindow window("sim:sc2000", 3);
+  window.measure();
+  const auto judged = window->measure().trials();
+  const auto folder = window->measure().folder();
+
+  ASSERT_EQ(window->human().begin(judged, window->bench().plan(), folder, {.per_size = 2, .shown_ms = 5000, .seed = 3}),
+            "");
+  std::vector<QImage> seen;
+  while (window->human().state() == HumanState::showing) {
+    seen.push_back(window->human().picture());
+    window->human().answer(Apex::up);
+  }
+
+  const auto record = read_human(folder);
+  ASSERT_TRUE(record) << record.error().message;
+  ASSERT_TRUE(*record);
+  ASSERT_EQ((*record)->shown.size(), seen.size());
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const Trial& answered = (*record)->trials[i];
+    const ShownPatch& shown = (*record)->shown[i];
+    // The frame's own trial: the truth is that of the plate, and the samples are those that the model judged.
+    const auto original = std::find_if(judged.begin(), judged.end(), [&](const JudgedTrial& j) {
+      return j.trial.presentation == answered.presentation && j.trial.triangle == answered.triangle;
+    });
+    ASSERT_NE(original, judged.end());
+    EXPECT_EQ(answered.truth, original->trial.truth);
+    EXPECT_EQ(answered.frame, original->trial.frame);
+    ASSERT_EQ(shown.kelvin.size(), original->patch_k.size());
+    EXPECT_EQ(cv::norm(shown.kelvin, original->patch_k, cv::NORM_INF), 0);
+    EXPECT_EQ(shown.limit_ms, std::optional(5000));
+    EXPECT_GE(shown.response_s, 0);
+    // What is on disk makes the picture that was seen.
+    const JudgedTrial again{.curve = SessionCurve::main, .trial = answered, .patch_k = shown.kelvin};
+    EXPECT_EQ(grey_levels(again).low, shown.black_k);
+    EXPECT_EQ(grey_levels(again).high, shown.white_k);
+    EXPECT_EQ(picture_for_a_person(again, shown.magnification), seen[i]);
+  }
+}
+
+TEST(HumanObserver, StandsInTheReportBesideTheModel) {
+  ShownWindow window("sim:sc2000", 6);
+  window.measure();
+  const auto folder = window->measure().folder();
+  ASSERT_EQ(window->human().begin(window->measure().trials(), window->bench().plan(), folder,
+                                  {.per_size = 12, .shown_ms = {}, .seed = 3}),
+            "");
+  const auto chosen = patches_for_a_person(window->measure().trials(), {.per_size = 12, .shown_ms = {}, .seed = 3});
+
+  // Someone who sees everything of 2 mrad and more, and says "up" to the rest.
+  for (const auto& patch : chosen) window->human().answer(patch.trial.size_mrad > 2 ? patch.trial.truth : Apex::up);
+
+  const auto opened = read_opened_session(folder);
+  ASSERT_TRUE(opened) << opened.error().message;
+  ASSERT_TRUE(opened->human && opened->report.human);
+  for (const auto& point : opened->report.human->points) {
+    for (const auto& level : point.levels) EXPECT_TRUE(level.size < 2 || level.correct == level.total);
+  }
+  const std::string page = render_report(opened->report);
+  EXPECT_THAT(page, ::testing::HasSubstr("<h2>Human observer</h2>"));
+  EXPECT_EQ(human_plots(opened->report).size(), 2u);
+  EXPECT_EQ(human_plots(opened->report).front().series.empty(), false);
+}
+
 TEST(HumanObserver, SeesThePatchesOfTheCameraInRandomOrderAndNothingElse) {
   ShownWindow window("sim:sc2000", 2);
   window.measure();

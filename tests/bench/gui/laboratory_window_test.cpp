@@ -1,6 +1,7 @@
 // The real window with the emulated laboratory: a GigE camera at 50 Hz, instruments on the network.
 #include <QLabel>
 #include <QListWidget>
+#include <QSlider>
 #include <QTableWidget>
 #include <QTreeWidget>
 
@@ -97,6 +98,38 @@ TEST(LaboratoryWindow, SaysThatTheCameraIsGoneAndMeasuresAgainWhenAskedTo) {
   EXPECT_TRUE(wait_until([&] { return window->bench().activity() == Activity::idle; }));
 }
 
+TEST(LaboratoryWindow, SaysHowLongItWaitsForALostCameraAndOffersTheWaysBack) {
+  ShownWindow window(emulated_laboratory, 1000);
+  Plan plan = window->bench().plan();
+  plan.camera.reconnect_s = 300;
+  window->bench().set_plan(plan);
+  window->show_view(View::measure);
+  window.click("startMeasuring");
+  ASSERT_TRUE(wait_until([&] { return window->measure().trials().size() >= 40; }));
+
+  window->bench().switch_emulated_camera_off();
+  ASSERT_TRUE(wait_until([&] { return !window->measure().camera_away().isEmpty(); }));
+
+  EXPECT_EQ(window->measure().state(), RunState::running);
+  EXPECT_EQ(window->bench().devices().front().health, DeviceHealth::lost);
+  const auto& message = window.part<QLabel>("messageText");
+  EXPECT_TRUE(message.isVisible());
+  EXPECT_THAT(message.text().toStdString(), HasSubstr("TB0001"));
+  EXPECT_THAT(message.text().toStdString(), HasSubstr(" s left"));
+  EXPECT_FALSE(window.part<QPushButton>("retry").isVisible()) << "nothing to try while it is waited for";
+  EXPECT_EQ(QApplication::activeModalWidget(), nullptr) << "a message, not a dialog";
+  const QString before = message.text();
+  EXPECT_TRUE(wait_until([&] { return message.text() != before; })) << "the time left runs";
+  EXPECT_TRUE(window.part<QPushButton>("abandonRun").isVisible());
+  window.click("otherCamera");
+  EXPECT_EQ(window->view(), View::look);
+  ASSERT_TRUE(wait_until([&] { return window->bench().activity() == Activity::idle; }));
+  const auto session = read_session(window->measure().folder());
+  ASSERT_TRUE(session) << session.error().message;
+  EXPECT_EQ(session->provenance.state, SessionState::interrupted);
+  EXPECT_FALSE(message.isVisible());
+}
+
 TEST(LaboratoryWindow, KeepsTheStreamWholeDuringAPause) {
   ShownWindow window(emulated_laboratory, 1000);
   window->show_view(View::measure);
@@ -135,8 +168,23 @@ TEST(LaboratoryWindow, NeverKeepsItsThreadForFiftyMillisecondsWhileItMeasures) {
   ASSERT_TRUE(wait_until([&] { return window->bench().activity() == Activity::idle; }));
 
   WatchedApplication::reset();
-  window.measure();
+  window->show_view(View::measure);
+  window.click("startMeasuring");
+  // While it measures somebody goes through the views and moves the slider.
+  std::size_t step = 0;
+  ASSERT_TRUE(wait_until([&] {
+    if (step % 10 == 0) window->show_view(all_views[step / 10 % all_views.size()]);
+    if (step % 25 == 0) window.part<QSlider>("toleranceSlider").setValue(static_cast<int>(20 + step % 60));
+    ++step;
+    return window->measure().state() == RunState::idle;
+  }));
+  ASSERT_TRUE(window->measure().outcome()) << window->measure().phase().toStdString();
+  ASSERT_TRUE(wait_until([&] { return window->sessions().current().has_value(); }));
+  window->show_view(View::report);
+  window->sessions().export_reports();
+  ASSERT_TRUE(wait_until([&] { return !window.part<QLabel>("exportedFiles").text().isEmpty(); }));
 
+  EXPECT_GT(step, 70U) << "every view was shown";
   EXPECT_LT(WatchedApplication::longest_ms(), 50) << WatchedApplication::longest_event().toStdString();
   RecordProperty("longest_ms", std::to_string(WatchedApplication::longest_ms()));
 }

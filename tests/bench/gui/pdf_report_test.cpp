@@ -14,8 +14,6 @@ namespace {
 /// Words without white space: lines break elsewhere on a page.
 QString squeezed(QString text) {
   static const QRegularExpression blanks("[\\s\\x{00ad}\\x{2060}]+");
-  // A font may draw "ff" as one glyph, which is read back as one character.
-  text = text.normalized(QString::NormalizationForm_KC);
   return text.replace(QChar(0xa0), ' ').remove(blanks);
 }
 
@@ -74,6 +72,16 @@ TEST_F(PdfReport, HoldsSerialNumberVerdictAndEveryValueOfEveryTable) {
   EXPECT_GT(cells.size(), 100);
   for (const QString& cell : cells)
     EXPECT_TRUE(raw.contains(squeezed(cell)) || text.contains(squeezed(cell))) << cell.toStdString();
+}
+
+TEST_F(PdfReport, ReadsBackWithoutLigatures) {
+  const QString text = output_of("pdftotext", {"-raw", QString::fromStdString(file_.string()), "-"});
+
+  // Alphabetic presentation forms: ff, fi, fl, ffi, ffl as one character; private use; what could not be mapped.
+  static const QRegularExpression garbled("[\\x{FB00}-\\x{FB06}\\x{E000}-\\x{F8FF}\\x{FFFD}]");
+  const auto found = garbled.match(text);
+  EXPECT_FALSE(found.hasMatch()) << text.mid(found.capturedStart() - 20, 40).toStdString();
+  EXPECT_TRUE(text.contains("Effective"));
 }
 
 TEST_F(PdfReport, HasItsFiguresAsLinesAndNoPictures) {

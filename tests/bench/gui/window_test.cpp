@@ -1,18 +1,52 @@
 // The real window, without a screen, with a simulated camera.
+#include <QComboBox>
 #include <QLabel>
 #include <QLineEdit>
 #include <QListWidget>
 #include <QPlainTextEdit>
+#include <QSettings>
 #include <QTableWidget>
+#include <QThread>
+#include <QTimer>
+#include <ctime>
 
 #include "bench/gui/picture_view.h"
 #include "bench/gui/plot_view.h"
+#include "bench/session/text.h"
 #include "tests/bench/gui/gui_test_support.h"
+#include "tests/bench/gui/watched_application.h"
 
 namespace todbench::testing {
 namespace {
 
 using ::testing::HasSubstr;
+
+TEST(WatchedApplication, SeesAnEventThatBlocksOrWorksForLong) {
+  const auto longest_of = [](const std::function<void()>& work) {
+    WatchedApplication::reset();
+    bool done = false;
+    QTimer::singleShot(0, qApp, [&] {
+      work();
+      done = true;
+    });
+    EXPECT_TRUE(wait_until([&] { return done; }));
+    return WatchedApplication::longest_ms();
+  };
+
+  EXPECT_GT(longest_of([] { QThread::msleep(60); }), 50) << "blocked";
+  EXPECT_GT(longest_of([] {
+              timespec now{};
+              const auto used_ms = [&] {
+                clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+                return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
+              };
+              for (const double begin = used_ms(); used_ms() < begin + 60;) {
+              }
+            }),
+            50)
+      << "busy";
+  EXPECT_LT(longest_of([] {}), 50);
+}
 
 TEST(Window, ListsTheEmulatedLaboratoryFromTheStart) {
   ShownWindow window("sim:sc2000");
@@ -149,6 +183,66 @@ TEST(Window, MeasuresThePlanOfASessionAgainBitForBit) {
   ASSERT_TRUE(one && two && one->curve && two->curve);
   EXPECT_NE(first, window->measure().folder());
   EXPECT_EQ(one->curve->points.front().fit.threshold, two->curve->points.front().fit.threshold);
+}
+
+TEST(Window, ReplaysASessionFromItsFramesByteForByte) {
+  ShownWindow window("sim:sc2000", 2);
+  Plan plan = window->bench().plan();
+  plan.measurement.record_frames = true;
+  window->bench().set_plan(plan);
+  window.measure();
+  const auto first = window->measure().folder();
+  ASSERT_TRUE(wait_until([&] { return window->sessions().current().has_value(); }));
+  window->show_view(View::report);
+
+  window.click("replaySession");
+  EXPECT_EQ(window->bench().activity(), Activity::replaying);
+  ASSERT_TRUE(wait_until([&] { return window->measure().state() == RunState::idle; }));
+
+  ASSERT_TRUE(window->measure().outcome()) << window->measure().phase().toStdString();
+  EXPECT_EQ(window->measure().same_as_recorded(), std::optional(true));
+  EXPECT_THAT(window.part<QLabel>("measurePhase").text().toStdString(), HasSubstr("byte for byte"));
+  EXPECT_NE(window->measure().folder(), first);
+  const auto one = read_text_file(first / "trials.csv");
+  const auto two = read_text_file(window->measure().folder() / "trials.csv");
+  ASSERT_TRUE(one && two);
+  EXPECT_EQ(*one, *two);
+}
+
+TEST(Window, SaysThatASessionWithoutFramesCannotBeReplayed) {
+  ShownWindow window("sim:sc2000", 1);
+
+  window.measure();
+  ASSERT_TRUE(wait_until([&] { return window->sessions().current().has_value(); }));
+  window->show_view(View::report);
+
+  EXPECT_FALSE(window.part<QPushButton>("replaySession").isEnabled());
+  EXPECT_TRUE(window.part<QPushButton>("measureAgain").isEnabled());
+  EXPECT_THAT(window.part<QLabel>("sessionFrames").text().toStdString(), HasSubstr("No frames were recorded"));
+}
+
+TEST(Window, RemembersDevicePlanColoursAndTheme) {
+  TemporaryFolder folder;
+  QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope, QString::fromStdString(folder.path().string()));
+  {
+    MainWindow window(folder.path(), Memory::remember);
+    ASSERT_TRUE(window.bench().select_device("sim:sc2000"));
+    Plan plan = window.bench().plan();
+    plan.operator_name = "P. Example";
+    window.bench().set_plan(plan);
+    window.findChild<QComboBox*>("colourMap")->setCurrentIndex(2);
+    window.set_theme(Theme::dark);
+    window.show();
+    window.close();
+  }
+
+  MainWindow again(folder.path(), Memory::remember);
+
+  EXPECT_EQ(again.bench().device(), QString("sim:sc2000"));
+  EXPECT_EQ(again.bench().plan().operator_name, "P. Example");
+  EXPECT_EQ(again.look().colour_map(), all_colour_maps[2]);
+  EXPECT_LT(again.palette().color(QPalette::Window).lightness(), 100);
+  again.set_theme(Theme::light);
 }
 
 TEST(Window, ShowsItselfInLightAndDark) {
