@@ -287,6 +287,14 @@ TwinResults run_twin(const Plan& plan, const ExperimentInputs& inputs, const Tod
   return results;
 }
 
+/// A tolerance beyond the hard caps is refused before anything is simulated. Where a contrast has no threshold, which
+/// takes seconds to find out, the direct estimate says so for each contrast instead.
+Result<void> check_tolerance(const Plan& plan, const ExperimentInputs& inputs) {
+  if (!(inputs.accuracy.standard_error_percent > 0) || !inputs.warnings.empty()) return {};
+  if (const auto prediction = predict_plan(plan); !prediction) return tl::unexpected(prediction.error());
+  return {};
+}
+
 /// The measurement with the camera of the plan, into the session.
 Result<MeasurementResult> run_measured(const Plan& plan, const ExperimentInputs& inputs, OpenedBench& bench,
                                        SessionFolder& folder, const ExperimentListener& listener,
@@ -315,6 +323,7 @@ Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOption
   provenance.effects = inputs->effects;
   provenance.target = "simulated scene";
   if (auto fits = check_simulated_geometry(plan, *inputs); !fits) return tl::unexpected(fits.error());
+  if (auto possible = check_tolerance(plan, *inputs); !possible) return tl::unexpected(possible.error());
   auto folder = begin_session(plan, options, provenance);
   if (!folder) return tl::unexpected(folder.error());
   if (listener.on_session) listener.on_session(folder->path());

@@ -112,9 +112,12 @@ TEST(ToleranceOutOfReach, IsRefusedWithTheBestThatIsReachableAndItsPrice) {
   for (const std::vector<std::string>& command : {std::vector<std::string>{"plan", "./plan.toml"},
                                                   {"plan", "./plan.toml", "--json"},
                                                   {"cost", "./plan.toml"},
-                                                  {"cost", "./plan.toml", "--json"}}) {
+                                                  {"cost", "./plan.toml", "--json"},
+                                                  {"simulate", "./plan.toml", "--out", "s"},
+                                                  {"simulate", "./plan.toml", "--out", "s", "--json"}}) {
     const Ended ended = todbench(command, {.folder = folder.path()});
 
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "s"));
     expect_refused(ended, 2, "a tolerance of 0.05 % cannot be met at 16.9 K");
     EXPECT_THAT(ended.err, ::testing::ContainsRegex("reach about 0\\.[0-9]+ %, for about [0-9.]+ s per contrast"));
   }
