@@ -17,8 +17,8 @@ TEST(PsiPlacementStudy, ReachesEfficiencyAndCoverage) {
       std::printf("| %d | %.1f | %+.2f %% | %.2f %% | %.2f %% | %.2f | %.3f | %.3f | %.1f %% |\n", trials, slope,
                   100 * study.bias, 100 * study.sd, 100 * least_se_ln_threshold(trials, slope), study.efficiency,
                   study.profile, study.posterior, 100 * study.half_width);
-      // 2000 runs: the standard error of 0.95 is 0.005, within the limits on both sides. At 40 trials of a slope of 5 the
-      // prior of the slope, centred on 3.5, makes the posterior too wide.
+      // 2000 runs: the standard error of 0.95 is 0.005, within the limits on both sides. At 40 trials of a slope of 5
+      // the prior of the slope, centred on 3.5, makes the posterior too wide.
       if (trials > 40 || slope < 5) {
         EXPECT_GE(study.posterior, 0.93) << trials << " " << slope;
         EXPECT_LE(study.posterior, 0.975) << trials << " " << slope;
