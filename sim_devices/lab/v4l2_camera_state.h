@@ -82,8 +82,8 @@ struct EmulatedV4l2Camera::State {
   int set_control(const v4l2_control& in);
 
   [[nodiscard]] int serve(UMockdevIoctlClient* client, std::unique_lock<std::mutex>& lock);
-  static int on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer state);
-  static void on_vanished(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer state);
+  static int on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, void* state);
+  static void on_vanished(UMockdevIoctlBase*, UMockdevIoctlClient* client, void* state);
 };
 
 }  // namespace todbench
