@@ -120,8 +120,7 @@ QWidget* MeasureView::log_panel() {
   auto* panel = new QWidget;
   auto* layout = new QHBoxLayout(panel);
   layout->setContentsMargins(0, 0, 0, 0);
-  log_ = plain_table({"ΔT (K)", "S (mrad)", "Truth", "Answer", "up", "right", "down", "left", "Of", "Triangle"},
-                     "trialLog");
+  log_ = plain_table({"ΔT (K)", "S (mrad)", "Truth", "Answer", "up", "right", "down", "left", "Of"}, "trialLog");
   log_->setToolTip("Scores of the four alternatives: the observer answers with the highest");
   const std::vector<int> widths{48, 56, 42, 58, 38, 38, 40, 38, 58};
   for (std::size_t i = 0; i < widths.size(); ++i) log_->setColumnWidth(static_cast<int>(i), widths[i]);
@@ -197,8 +196,7 @@ void MeasureView::show_log() {
     QStringList row{QString::number(t.delta_t_k, 'f', 3), QString::number(t.size_mrad, 'f', 2),
                     text_of(to_string(t.truth)), text_of(to_string(t.answer)) + (t.correct() ? " ✓" : " ✗")};
     for (const double score : t.scores) row << QString::number(score, 'f', 2);
-    row << (recent[i].curve == SessionCurve::main ? "camera" : "twin")
-        << QString::fromStdString(t.plate + ", " + t.triangle);
+    row << (recent[i].curve == SessionCurve::main ? "camera" : "twin");
     rows << row;
   }
   fill_table(*log_, rows);
@@ -215,7 +213,10 @@ void MeasureView::show_judged() {
   const std::size_t row = selected.isEmpty() ? 0 : static_cast<std::size_t>(selected.front().row());
   const JudgedTrial& judged = recent[std::min(row, recent.size() - 1)];
   judged_->set_image(picture_for_a_person(judged, 1));
-  judged_text_->setText(QString("%1 px, %2 mrad at %3 K")
+  judged_text_->setText(QString("%1, %2, of the %3: %4 px, %5 mrad at %6 K")
+                            .arg(QString::fromStdString(judged.trial.plate),
+                                 QString::fromStdString(judged.trial.triangle),
+                                 judged.curve == SessionCurve::main ? "camera" : "twin")
                             .arg(judged.trial.size_px, 0, 'f', 1)
                             .arg(judged.trial.size_mrad, 0, 'f', 2)
                             .arg(judged.trial.delta_t_k, 0, 'f', 2));

@@ -216,13 +216,10 @@ Plot accuracy_plot(const std::vector<AccuracyPrice>& prices, const PlanOutlook& 
   plot.title = "Accuracy against time";
   plot.x = {.label = "Time (s)", .scale = AxisScale::logarithmic, .low = 1, .high = 10, .ticks = {}};
   plot.y = {.label = "Uncertainty (± %)", .scale = AxisScale::logarithmic, .low = 0.4, .high = 25, .ticks = {}};
-  PlotSeries bench{.label = "on the bench", .tone = PlotTone::first, .line = PlotLine::solid, .points = {}};
-  PlotSeries twin{.label = "simulated twin, one core",
-                  .tone = PlotTone::second,
-                  .marker = PlotMarker::square,
-                  .line = PlotLine::dashed,
-                  .points = {}};
-  PlotSeries plan{.label = "this plan", .tone = PlotTone::third, .marker = PlotMarker::bar, .points = {}};
+  PlotSeries bench{.label = "bench", .tone = PlotTone::first, .line = PlotLine::solid, .points = {}};
+  PlotSeries twin{
+      .label = "twin", .tone = PlotTone::second, .marker = PlotMarker::square, .line = PlotLine::dashed, .points = {}};
+  PlotSeries plan{.label = "plan", .tone = PlotTone::third, .marker = PlotMarker::bar, .points = {}};
   std::vector<double> times;
   const auto add = [&](PlotSeries& series, std::optional<double> seconds, std::optional<double> percent) {
     if (!seconds || !percent || !(*seconds > 0) || !(*percent > 0)) return;

@@ -53,6 +53,13 @@ QString text_of(std::string_view text) {
   return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
 }
 
+/// Two significant digits, never as a power of ten.
+QString change_text(double percent) {
+  const double size = std::abs(percent);
+  const int decimals = size >= 9.95 || size == 0 ? 0 : std::min(4, 1 - static_cast<int>(std::floor(std::log10(size))));
+  return QString::number(percent, 'f', decimals) + " %";
+}
+
 QString not_a_number(const QString& text) {
   return "'" + text + "' is not a number";
 }
@@ -318,9 +325,10 @@ QWidget* PlanView::outlook_panel() {
   seen->addWidget(prices_, 1);
   contrasts_ = plain_table({"ΔT (K)", "S75 (mrad)", "± camera (%)", "± twin (%)"}, "planOutlook");
   contrasts_->setToolTip("What the first tier lets expect, and half of the 95 % interval of S75");
-  const std::vector<int> widths{52, 72, 85};
+  const std::vector<int> widths{46, 74, 90};
   for (std::size_t i = 0; i < widths.size(); ++i) contrasts_->setColumnWidth(static_cast<int>(i), widths[i]);
-  contrasts_->setFixedWidth(295);
+  contrasts_->setFixedWidth(300);
+  contrasts_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   contrasts_->setMaximumHeight(230);
   seen->addWidget(contrasts_);
   layout->addLayout(seen);
@@ -419,7 +427,7 @@ void PlanView::show_effects() {
     for (const auto& d : presenter_.forecast()->effects.decisions) {
       rows[static_cast<qsizetype>(d.effect)]
           << QString() << (d.decision == Decision::simulate ? "simulated" : "skipped")
-          << (d.predicted_change_percent ? QString::number(*d.predicted_change_percent, 'g', 2) + " %" : "–")
+          << (d.predicted_change_percent ? change_text(*d.predicted_change_percent) : "–")
           << QString::fromStdString(d.reason);
     }
   }

@@ -65,7 +65,7 @@ int take_screenshots(MainWindow& window, const std::filesystem::path& folder) {
   good &= save(window, folder, "align");
   window.bench().stop();
   window.show_view(View::plan);
-  good &= wait_until([&] { return window.plan().expected_known(); });
+  good &= wait_until([&] { return window.plan().expected_known() && !window.plan().prices().empty(); });
   good &= save(window, folder, "plan");
   window.show_view(View::measure);
   window.measure().start();
