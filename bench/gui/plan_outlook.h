@@ -72,8 +72,8 @@ struct AccuracyPrice {
   std::optional<double> twin_s;  ///< nothing: the simulation cannot be as good
 };
 
-/// predict_plan() and predict_times() for tolerances from 0.5 to 20 %; those that 256 phases do not reach are left out. Ends early, with
-/// what there is, when stop is requested. Does not depend on tolerance and phases of the plan.
+/// predict_plan() and predict_times() for tolerances from 0.5 to 20 %; those that 256 phases do not reach are left out.
+/// Ends early, with what there is, when stop is requested. Does not depend on tolerance and phases of the plan.
 [[nodiscard]] std::vector<AccuracyPrice> accuracy_prices(const Plan& plan, const PlanForecast& seen,
                                                          const std::vector<TargetPlate>& plates, double frame_rate_hz,
                                                          const std::stop_token& stop);
