@@ -122,7 +122,7 @@ QWidget* MeasureView::log_panel() {
   layout->setContentsMargins(0, 0, 0, 0);
   log_ = plain_table({"ΔT (K)", "S (mrad)", "Truth", "Answer", "up", "right", "down", "left", "Of"}, "trialLog");
   log_->setToolTip("Scores of the four alternatives: the observer answers with the highest");
-  const std::vector<int> widths{48, 56, 42, 58, 38, 38, 40, 38, 58};
+  const std::vector<int> widths{56, 56, 42, 58, 38, 38, 40, 38, 56};
   for (std::size_t i = 0; i < widths.size(); ++i) log_->setColumnWidth(static_cast<int>(i), widths[i]);
   layout->addWidget(log_, 1);
   auto* side = new QVBoxLayout;

@@ -73,7 +73,7 @@ QWidget* ReportView::browser() {
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(title_label("Sessions"));
   sessions_ = plain_table({"Started (UTC)", "Session", "State", "Unit under test"}, "sessionTable");
-  sessions_->setColumnWidth(0, 132);
+  sessions_->setColumnWidth(0, 146);
   sessions_->setColumnWidth(1, 92);
   sessions_->setColumnWidth(2, 74);
   layout->addWidget(sessions_, 1);
