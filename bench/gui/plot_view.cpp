@@ -75,6 +75,8 @@ PlotView::PlotView(QWidget* parent) : QCustomPlot(parent) {
   legend->setBorderPen(Qt::NoPen);
   legend->setBrush(Qt::NoBrush);
   legend->setMargins({8, 4, 8, 0});
+  // A legend without entries would be the narrowest of its column, the axes included.
+  legend->setMaximumSize(QWIDGETSIZE_MAX - 1, QWIDGETSIZE_MAX);
 }
 
 void PlotView::show_plot(const Plot& plot) {
