@@ -22,10 +22,6 @@ constexpr int paired_draws = 200;            // differences of paired estimates 
 constexpr double trials_share = 2;           // a run of trials fits where as much time is left for the knobs
 constexpr double worth_repeating_s = 1;      // shorter runs are measured twice
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 std::string text_of(const char* format, auto... values) {
   char text[200];
   std::snprintf(text, sizeof text, format, values...);
@@ -35,10 +31,10 @@ std::string text_of(const char* format, auto... values) {
 /// Requests a stop when the time is over or the caller requests one.
 class Deadline {
  public:
-  Deadline(Clock::time_point end, const std::stop_token& caller)
-      : forward_(caller, [this] { source_.request_stop(); }), timer_([this, end](const std::stop_token& left) {
+  Deadline(double time_s, const std::stop_token& caller)
+      : forward_(caller, [this] { source_.request_stop(); }), timer_([this, time_s](const std::stop_token& left) {
           std::unique_lock lock(mutex_);
-          wake_.wait_until(lock, left, end, [] { return false; });
+          wake_.wait_for(lock, left, std::chrono::duration<double>(time_s), [] { return false; });
           if (!left.stop_requested()) source_.request_stop();
         }) {}
   [[nodiscard]] std::stop_token token() const { return source_.get_token(); }
@@ -108,6 +104,9 @@ class Frontier {
   /// By the formula of direct estimates and the speed that the scouting run had.
   [[nodiscard]] double expected_s(const Accuracy& accuracy) const;
   [[nodiscard]] double formula_s(int draws, int phases_per_axis) const;
+  [[nodiscard]] double seconds_since(Clock::time_point start) const {
+    return std::chrono::duration<double>(task_.now() - start).count();
+  }
   [[nodiscard]] double left_s() const { return task_.budget_s - seconds_since(begin_); }
   [[nodiscard]] Result<Timed> timed(const Estimate& estimate) const;
   [[nodiscard]] Result<void> scout();
@@ -124,7 +123,7 @@ class Frontier {
   const CostTask& task_;
   const CostListener& listener_;
   std::stop_token stop_;
-  Clock::time_point begin_ = Clock::now();
+  Clock::time_point begin_ = task_.now();
   std::vector<double> delta_t_k_;  ///< those with a threshold
   std::vector<double> scouted_pitch_;
   double speed_ = 1;  ///< measured over formula
@@ -161,9 +160,8 @@ double Frontier::expected_s(const Accuracy& accuracy) const {
 }
 
 Result<Timed> Frontier::timed(const Estimate& estimate) const {
-  const Deadline deadline(
-      begin_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(task_.budget_s)), stop_);
-  const auto start = Clock::now();
+  const Deadline deadline(left_s(), stop_);
+  const auto start = task_.now();
   auto found = estimate(deadline.token());
   if (!found) return tl::unexpected(found.error());
   return Timed{.found = std::move(*found), .wall_s = seconds_since(start)};

@@ -1,6 +1,7 @@
 // What accuracy costs in time, measured on the machine on which it runs.
 #pragma once
 
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -80,6 +81,8 @@ struct CostTask {
   std::vector<CostTrials> trials;   ///< knob "trials", cheap ones first
   std::uint64_t seed = 1;
   double budget_s = 60;  ///< wall time for all of it
+  /// The time base of prices and budget; what runs when the budget ends is stopped by the host's clock.
+  std::function<std::chrono::steady_clock::time_point()> now = [] { return std::chrono::steady_clock::now(); };
 };
 
 /// Called with what is done, and how many points of how many are through.
