@@ -2,6 +2,9 @@
 #pragma once
 
 #include <array>
+#include <span>
+
+#include "hvs/gauss_legendre.h"
 
 namespace todbench {
 
@@ -16,5 +19,7 @@ struct KnownPositionTask {
 /// a tensor Gauss-Legendre rule of nodes x nodes points. Error about 1e-4 at 16 nodes, 1e-7 at 192. Equal responses
 /// without noise share the probability.
 [[nodiscard]] double probability_correct(const KnownPositionTask& task, int nodes);
+/// The same with a rule of gauss_legendre(), for many tasks.
+[[nodiscard]] double probability_correct(const KnownPositionTask& task, std::span<const QuadratureNode> rule);
 
 }  // namespace todbench

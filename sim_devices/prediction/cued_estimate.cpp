@@ -12,12 +12,26 @@ namespace todbench {
 namespace {
 
 constexpr double size_step = 1.08;
-constexpr int smallest_index = -20, largest_index = 48;
+constexpr int smallest_index = -20, first_index = 9, largest_index = 48;
 constexpr int quadrature_nodes = 16;  // 1e-3 of probability at worst: 0.1 % of size
 
 double logit(double p) {
   const double inside = std::clamp(p, 0.25 + 1e-6, 1 - 1e-6);
   return std::log((inside - 0.25) / (1 - inside));
+}
+
+/// The noise at which a size is judged 75 % correct, to 2 %; from `q` on downwards.
+double bearable_noise(const SizeTrial& trial, double q) {
+  double high = q, low = q;
+  do {
+    high = low;
+    low /= 4;
+  } while (low > 1e-4 * q && logit(trial.known_position_proportion(low, quadrature_nodes)) < std::numbers::ln2);
+  while (high / low > 1.02) {
+    const double middle = std::sqrt(low * high);
+    (logit(trial.known_position_proportion(middle, quadrature_nodes)) < std::numbers::ln2 ? high : low) = middle;
+  }
+  return high;
 }
 
 Accuracy planning_accuracy() {
@@ -55,6 +69,18 @@ Result<const SizeTrial*> CuedEstimate::trial(double size_pitch) {
                              largest_index));
 }
 
+bool CuedEstimate::hopeless(double q, int index) {
+  // The response to the differences of the shapes, and with it the bearable noise, grows with a power of the size: a
+  // high one while blur and footprint take most of them, falling to 1. So the power between two sizes bounds what
+  // larger ones bear; a tenth is for the phases, of which there are few.
+  constexpr double margin = 1.1;
+  const auto here = trial_at(index), before = trial_at(index - 4);
+  if (!here || !before) return false;
+  const double bearable = bearable_noise(**here, q);
+  const double power = std::max(1.0, std::log(bearable / bearable_noise(**before, q)) / (4 * std::log(size_step)));
+  return q > margin * bearable * std::pow(size_step, power * (largest_index - index));
+}
+
 Result<double> CuedEstimate::s75_pitch(double q) {
   std::map<int, double> known;
   std::optional<Error> error;
@@ -65,9 +91,12 @@ Result<double> CuedEstimate::s75_pitch(double q) {
     return known[index] = t ? logit((*t)->known_position_proportion(q, quadrature_nodes)) : 0;
   };
   const double target = std::numbers::ln2;  // logit(0.75)
-  int above = 9;
+  int above = first_index;
   while (!error && at(above) < target) {
     if (above >= largest_index)
+      return fail(ErrorCode::invalid_input, "no size up to 40 pitches is judged 75 % correct");
+    // Large sizes take long: nothing is looked for where all is near chance and must stay below 75 %.
+    if (above > first_index && at(above) < logit(0.4) && hopeless(q, above))
       return fail(ErrorCode::invalid_input, "no size up to 40 pitches is judged 75 % correct");
     above = std::min(above + 4, largest_index);
   }

@@ -34,6 +34,8 @@ class CuedEstimate {
 
  private:
   [[nodiscard]] Result<const SizeTrial*> trial_at(int index);
+  /// Whether no size of the ladder can be judged 75 % correct at `q`, from the sizes at `index` and four below.
+  [[nodiscard]] bool hopeless(double q, int index);
 
   TemplateObserver& observer_;
   ImageChain chain_;

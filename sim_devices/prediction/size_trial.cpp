@@ -87,6 +87,7 @@ std::vector<float> SizeTrial::projected(const cv::Mat1f& samples) const {
 
 double SizeTrial::known_position_proportion(double noise, int nodes) const {
   CV_Assert(bank_->alternatives() == 4);
+  const std::vector<QuadratureNode> rule = gauss_legendre(nodes);
   std::map<int, std::array<std::array<double, 4>, 4>> grams;  // by place
   double sum = 0;
   for (const auto& response : responses_) {
@@ -109,7 +110,7 @@ double SizeTrial::known_position_proportion(double noise, int nodes) const {
       task.mean[i] = static_cast<double>(response.scores[template_index]);
       for (std::size_t j = 0; j < 4; ++j) task.gram[i][j] = slot->second[order[i]][order[j]];
     }
-    sum += probability_correct(task, nodes);
+    sum += probability_correct(task, rule);
   }
   return sum / static_cast<double>(responses_.size());
 }
