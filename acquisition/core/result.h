@@ -9,15 +9,16 @@ namespace todbench {
 
 /// The few kinds of failure that a caller treats differently; the command line maps them to its exit codes.
 enum class ErrorCode {
-  invalid_input,  ///< usage, configuration or input file is wrong
-  not_found,      ///< device absent or cannot be opened (busy, access denied, wrong format)
-  disconnected,   ///< device lost while in use
-  integrity,      ///< too many frames unusable
-  timeout,        ///< nothing came in time; the device may still be there
-  calibration,    ///< calibration missing, invalid or contradicted by the measurement
-  io,             ///< file or disk
-  interrupted,    ///< stopped on request
-  internal,       ///< a defect of the program
+  invalid_input,     ///< usage, configuration or input file is wrong
+  not_found,         ///< device absent or cannot be opened (busy, access denied, wrong format)
+  disconnected,      ///< device lost while in use
+  integrity,         ///< too many frames unusable
+  timeout,           ///< nothing came in time; the device may still be there
+  calibration,       ///< calibration missing, invalid or contradicted by the measurement
+  not_identifiable,  ///< what was asked for cannot be told from such data
+  io,                ///< file or disk
+  interrupted,       ///< stopped on request
+  internal,          ///< a defect of the program
 };
 
 /// A failure in one sentence. The message grows outwards: "opening gige:X: setting PixelFormat=Mono16: access denied".

@@ -35,9 +35,10 @@ int run_plan(Console& console, SimulationOverrides overrides, const Program& pro
   if (program.common.seed_given) overrides.seed = program.common.seed;
   const auto plan = simulation_plan(overrides, program.stop->token());
   if (!plan) return report_error(console, plan.error());
-  auto prediction = predict_plan(*plan);
+  EffectPlanner planner;
+  auto prediction = predict_plan(*plan, planner);
   if (!prediction) return report_error(console, prediction.error());
-  if (auto timed = predict_times(*plan, *prediction, program.stop->token()); !timed) {
+  if (auto timed = predict_times(*plan, *prediction, planner, program.stop->token()); !timed) {
     if (timed.error().code == ErrorCode::interrupted) return report_error(console, timed.error());
     prediction->warnings.push_back("no predicted time: " + timed.error().message);
   }
@@ -72,7 +73,7 @@ void add_plan_command(CLI::App& app, Program& program) {
       ->allow_extra_args(false)
       ->check(number_in(-500, 500));
   command->add_option("--tolerance-percent", o->tolerance_percent, "what may be wrong in the 75 % acuity")
-      ->check(number_in(0.01, 50));
+      ->check(number_above(0, 50));
   command->add_option("--accuracy", o->accuracy, "draft, normal, reference or auto");
   command->add_option("--skip", o->skip, "effects not to simulate, separated by commas")
       ->delimiter(',')

@@ -270,7 +270,7 @@ void add_simulate_command(CLI::App& app, Program& program) {
       ->allow_extra_args(false)
       ->check(number_in(-500, 500));
   command->add_option("--tolerance-percent", o.tolerance_percent, "what may be wrong in the 75 % acuity")
-      ->check(number_in(0.01, 50));
+      ->check(number_above(0, 50));
   command->add_option("--accuracy", o.accuracy, "draft, normal or reference");
   command->add_option("--skip", o.skip, "effects not to simulate, separated by commas")
       ->delimiter(',')

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstdio>
 #include <exception>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -35,15 +36,28 @@ int report_error(Console& console, const Error& error) {
   return exit_code(error.code);
 }
 
-CLI::Validator number_in(double low, double high) {
-  const std::string expected = "a number from " + number_text(low) + " to " + number_text(high);
+namespace {
+
+CLI::Validator number_that(std::function<bool(double)> fits, std::string expected) {
   return CLI::Validator(
-      [=](const std::string& text) {
+      [fits = std::move(fits), expected = std::move(expected)](const std::string& text) {
         const auto value = parse_number(text);
-        return value && *value >= low && *value <= high ? std::string()
-                                                        : "expected " + expected + ", found '" + one_line(text) + "'";
+        return value && fits(*value) ? std::string()
+                                     : "expected a number " + expected + ", found '" + one_line(text) + "'";
       },
       "");
+}
+
+}  // namespace
+
+CLI::Validator number_in(double low, double high) {
+  return number_that([=](double value) { return value >= low && value <= high; },
+                     "from " + number_text(low) + " to " + number_text(high));
+}
+
+CLI::Validator number_above(double low, double high) {
+  return number_that([=](double value) { return value > low && value <= high; },
+                     "above " + number_text(low) + " up to " + number_text(high));
 }
 
 CLI::Validator whole_number(std::int64_t low, std::int64_t high) {

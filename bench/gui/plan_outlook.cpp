@@ -89,12 +89,13 @@ TodCurve as_curve(const std::vector<ExpectedThreshold>& expected) {
   return curve;
 }
 
-Result<PlanForecast> forecast(const Plan& plan, std::stop_token stop) {
+Result<PlanForecast> forecast(const Plan& plan, EffectPlanner& planner, std::stop_token stop) {
   PlanForecast out;
   out.plan = plan;
-  auto prediction = predict_plan(plan);
+  auto prediction = predict_plan(plan, planner);
   if (prediction) {
-    if (auto timed = predict_times(plan, *prediction, stop); !timed && timed.error().code == ErrorCode::interrupted)
+    if (auto timed = predict_times(plan, *prediction, planner, stop);
+        !timed && timed.error().code == ErrorCode::interrupted)
       return tl::unexpected(timed.error());
     out.effects = std::move(prediction->effects.plan);
     out.warnings = std::move(prediction->warnings);
@@ -102,7 +103,7 @@ Result<PlanForecast> forecast(const Plan& plan, std::stop_token stop) {
     out.twin_s = prediction->figures.predicted_s;
   } else {
     // A tolerance that the simulation cannot meet does not keep the effects from being planned.
-    auto inputs = read_inputs(plan);
+    auto inputs = read_inputs(plan, planner);
     if (!inputs) return tl::unexpected(inputs.error());
     out.effects = std::move(inputs->effects);
     out.warnings = std::move(inputs->warnings);
@@ -116,7 +117,7 @@ Result<PlanForecast> forecast(const Plan& plan, std::stop_token stop) {
   camera.simulation.phases = plan.target.phases;
   // What limits the simulation does not limit the camera.
   camera.simulation.accuracy = "draft";
-  if (auto seen = predict_plan(camera)) out.camera = std::move(seen->contrasts);
+  if (auto seen = predict_plan(camera, planner)) out.camera = std::move(seen->contrasts);
   return out;
 }
 
@@ -188,13 +189,13 @@ Plan with_tolerance(Plan plan, const PlanForecast* seen, double tolerance_percen
 
 std::vector<AccuracyPrice> accuracy_prices(const Plan& plan, const PlanForecast& seen,
                                            const std::vector<TargetPlate>& plates, double frame_rate_hz,
-                                           const std::stop_token& stop) {
+                                           EffectPlanner& planner, const std::stop_token& stop) {
   std::vector<AccuracyPrice> prices;
   for (const double tolerance : {0.5, 1.0, 2.0, 3.0, 5.0, 7.5, 10.0, 20.0}) {
     if (stop.stop_requested()) break;
     const Plan priced = with_tolerance(plan, &seen, tolerance);
-    auto found = predict_plan(priced);
-    if (found && !predict_times(priced, *found, stop) && stop.stop_requested()) break;
+    auto found = predict_plan(priced, planner);
+    if (found && !predict_times(priced, *found, planner, stop) && stop.stop_requested()) break;
     PlanForecast at_tolerance = seen;
     at_tolerance.twin_s.reset();
     if (found) {

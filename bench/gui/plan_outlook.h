@@ -36,8 +36,9 @@ struct PlanForecast {
   std::string problem;                     ///< why the tolerance cannot be met; empty: it can
 };
 
-/// Errors: as the loaders of what the plan names; `interrupted`.
-[[nodiscard]] Result<PlanForecast> forecast(const Plan& plan, std::stop_token stop = {});
+/// Errors: as the loaders of what the plan names; `interrupted`. `planner` remembers what only tolerance and trials
+/// leave as it is.
+[[nodiscard]] Result<PlanForecast> forecast(const Plan& plan, EffectPlanner& planner, std::stop_token stop = {});
 
 struct PlannedContrast {
   double delta_t_k = 0;
@@ -76,7 +77,7 @@ struct AccuracyPrice {
 /// Ends early, with what there is, when stop is requested. Does not depend on tolerance and phases of the plan.
 [[nodiscard]] std::vector<AccuracyPrice> accuracy_prices(const Plan& plan, const PlanForecast& seen,
                                                          const std::vector<TargetPlate>& plates, double frame_rate_hz,
-                                                         const std::stop_token& stop);
+                                                         EffectPlanner& planner, const std::stop_token& stop);
 
 /// Uncertainty against time on the bench and time of the simulation; the plan itself is the square.
 [[nodiscard]] Plot accuracy_plot(const std::vector<AccuracyPrice>& prices, const PlanOutlook& now);

@@ -39,9 +39,9 @@ struct LookAhead {
 
 /// `expected` where the thresholds of the plan are known already.
 Result<LookAhead> looked_ahead(const Plan& plan, std::optional<std::vector<ExpectedThreshold>> expected,
-                               const std::stop_token& stop) {
+                               EffectPlanner& planner, const std::stop_token& stop) {
   LookAhead out{.expected = std::move(expected), .misfit = {}};
-  if (auto inputs = read_inputs(plan)) {
+  if (auto inputs = read_inputs(plan, planner)) {
     if (auto fits = check_simulated_geometry(plan, *inputs); !fits) out.misfit = sentence(fits.error());
   } else {
     out.misfit = sentence(inputs.error());
@@ -156,7 +156,7 @@ void PlanPresenter::foresee() {
   const bool measuring = bench_.activity() == Activity::measuring || bench_.activity() == Activity::replaying;
   forecasts_.start([this, plan = bench_.plan(), plates = plates_, rate_hz = frame_rate_hz_, priced,
                     measuring](const std::stop_token& stop) {
-    auto seen = todbench::forecast(plan);
+    auto seen = todbench::forecast(plan, planner_);
     // Also when a newer plan waits: while a slider moves the table follows plan by plan.
     bench_.post([this, plan, seen] {
       if (without_tolerance(plan) != without_tolerance(bench_.plan())) return;
@@ -165,7 +165,7 @@ void PlanPresenter::foresee() {
       refresh();
     });
     if (!seen || priced || measuring) return;
-    auto prices = accuracy_prices(plan, *seen, plates, rate_hz, stop);
+    auto prices = accuracy_prices(plan, *seen, plates, rate_hz, planner_, stop);
     if (stop.stop_requested()) return;
     bench_.post([this, plan, prices = std::move(prices)] {
       if (without_tolerance(plan) != without_tolerance(bench_.plan())) return;
@@ -182,7 +182,7 @@ void PlanPresenter::look_ahead() {
   if (bench_.activity() == Activity::measuring || bench_.activity() == Activity::replaying) return;
   const auto known = expected_.empty() ? std::nullopt : std::optional(expected_);
   jobs_.start([this, plan, known](const std::stop_token& stop) {
-    auto seen = looked_ahead(plan, known, stop);
+    auto seen = looked_ahead(plan, known, planner_, stop);
     if (!seen && seen.error().code == ErrorCode::interrupted) return;
     bench_.post([this, plan, seen = std::move(seen)] {
       if (plan != bench_.plan()) return;

@@ -73,6 +73,7 @@ class PlanPresenter final : public QObject {
   QString misfit_, trouble_;
   double frame_rate_hz_ = 50;
   std::optional<Plan> expected_of_, prices_of_;
+  EffectPlanner planner_;  // of both jobs
   JobRunner forecasts_, jobs_;
 };
 

@@ -85,7 +85,8 @@ std::vector<CostTrials> trials_of(const Plan& plan, const ExperimentInputs& inpu
   return runs;
 }
 
-Result<std::vector<CostChoice>> choices_of(const Plan& plan, const SensorSpec& sensor, const ExperimentInputs& inputs) {
+std::vector<CostChoice> choices_of(const Plan& plan, const SensorSpec& sensor, const ExperimentInputs& inputs,
+                                   EffectPlanner& planner) {
   std::vector<CostChoice> choices;
   choices.push_back({.setting = "as planned: " + plan.simulation.accuracy + ", " +
                                 number_text(plan.simulation.tolerance_percent) + " %",
@@ -95,11 +96,10 @@ Result<std::vector<CostChoice>> choices_of(const Plan& plan, const SensorSpec& s
   for (const auto& [name, accuracy] : {std::pair("draft", Accuracy::draft()), std::pair("normal", Accuracy::normal()),
                                        std::pair("reference", Accuracy::reference())})
     choices.push_back({.setting = name, .effects = inputs.effects, .accuracy = accuracy});
-  TemplateObserver observer(inputs.observer, triangle_alternatives());
   for (const double tolerance : {5.0, 2.0, 1.0, 0.5}) {
     Plan varied = plan;
     varied.simulation.tolerance_percent = tolerance;
-    const auto effects = planned_effects(varied, sensor, observer);
+    const auto effects = planned_effects(varied, sensor, inputs.observer, planner);
     choices.push_back({.setting = number_text(tolerance) + " %",
                        .effects = effects ? effects->plan : inputs.effects,
                        .accuracy = Accuracy::for_tolerance(tolerance)});
@@ -112,7 +112,8 @@ Result<std::vector<CostChoice>> choices_of(const Plan& plan, const SensorSpec& s
 Result<CostFrontier> cost_of_plan(const Plan& plan, double budget_s, const CostListener& listener,
                                   std::stop_token stop) {
   // Says in a sentence what a plan cannot reach, before anything is measured.
-  const auto prediction = predict_plan(plan);
+  EffectPlanner planner;
+  const auto prediction = predict_plan(plan, planner);
   if (!prediction) return tl::unexpected(prediction.error());
   if (prediction->effects.outlooks.empty()) {
     CostFrontier nothing;
@@ -120,19 +121,18 @@ Result<CostFrontier> cost_of_plan(const Plan& plan, double budget_s, const CostL
     nothing.notes = prediction->effects.warnings;
     return nothing;
   }
-  const auto inputs = read_inputs(plan);
+  const auto inputs = read_inputs(plan, planner);
   if (!inputs) return tl::unexpected(inputs.error());
   if (auto fits = check_simulated_geometry(plan, *inputs); !fits) return tl::unexpected(fits.error());
   auto sensor = sensor_of(plan);
   if (!sensor) return tl::unexpected(sensor.error());
-  auto choices = choices_of(plan, *sensor, *inputs);
-  if (!choices) return tl::unexpected(choices.error());
+  auto choices = choices_of(plan, *sensor, *inputs, planner);
   const CostTask task{.sensor = *sensor,
                       .full = full_plan(*sensor, {}, {}, plan.simulation.motion),
                       .observer = inputs->observer,
                       .motion = inputs->motion,
                       .delta_t_k = plan.target.delta_t_k,
-                      .choices = std::move(*choices),
+                      .choices = std::move(choices),
                       .trials = trials_of(plan, *inputs),
                       .seed = plan.seed,
                       .budget_s = budget_s};

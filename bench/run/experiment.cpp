@@ -287,11 +287,9 @@ TwinResults run_twin(const Plan& plan, const ExperimentInputs& inputs, const Tod
   return results;
 }
 
-/// A tolerance beyond the hard caps is refused before anything is simulated. Where a contrast has no threshold, which
-/// takes seconds to find out, the direct estimate says so for each contrast instead.
-Result<void> check_tolerance(const Plan& plan, const ExperimentInputs& inputs) {
-  if (!(inputs.accuracy.standard_error_percent > 0) || !inputs.warnings.empty()) return {};
-  if (const auto prediction = predict_plan(plan); !prediction) return tl::unexpected(prediction.error());
+/// A tolerance beyond the hard caps is refused before anything is simulated or moved.
+Result<void> check_tolerance(const Plan& plan, EffectPlanner& planner) {
+  if (const auto prediction = predict_plan(plan, planner); !prediction) return tl::unexpected(prediction.error());
   return {};
 }
 
@@ -317,13 +315,14 @@ Result<MeasurementResult> run_measured(const Plan& plan, const ExperimentInputs&
 
 Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOptions& options,
                                         const ExperimentListener& listener, std::stop_token stop) {
-  auto inputs = read_inputs(plan);
+  EffectPlanner planner;
+  auto inputs = read_inputs(plan, planner);
   if (!inputs) return tl::unexpected(inputs.error());
   Provenance provenance = begin_provenance(plan, Side::simulated);
   provenance.effects = inputs->effects;
   provenance.target = "simulated scene";
   if (auto fits = check_simulated_geometry(plan, *inputs); !fits) return tl::unexpected(fits.error());
-  if (auto possible = check_tolerance(plan, *inputs); !possible) return tl::unexpected(possible.error());
+  if (auto possible = check_tolerance(plan, planner); !possible) return tl::unexpected(possible.error());
   auto folder = begin_session(plan, options, provenance);
   if (!folder) return tl::unexpected(folder.error());
   if (listener.on_session) listener.on_session(folder->path());
@@ -331,7 +330,13 @@ Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOption
   for (const auto& warning : inputs->warnings) note(*folder, listener, warning);
   phase(*folder, listener, "simulating " + inputs->sensor.name);
   auto run = run_simulated(plan, *inputs, *folder, SessionCurve::main, {}, listener, stop);
-  if (!run) return abandon(*folder, provenance, run.error());
+  if (!run) {
+    // Below what can be seen, the plate may not be found either: that is the reason, not its symptom.
+    if (!inputs->identifiable && run.error().code == ErrorCode::calibration)
+      return abandon(*folder, provenance,
+                     {ErrorCode::not_identifiable, inputs->warnings.front() + "; " + run.error().message});
+    return abandon(*folder, provenance, run.error());
+  }
   run->result.notes.insert(run->result.notes.end(), inputs->warnings.begin(), inputs->warnings.end());
   provenance.run = run_record(run->result, run->wall_s);
   return concluded({.folder = folder->path(),
@@ -349,8 +354,10 @@ Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions
                                        const ExperimentListener& listener, std::stop_token stop) {
   if (plan.camera.id.empty()) return fail(ErrorCode::invalid_input, "the plan names no camera: [camera] id is missing");
   if (auto valid = check_calibration(plan, today()); !valid) return tl::unexpected(valid.error());
-  auto inputs = read_inputs(plan);
+  EffectPlanner planner;
+  auto inputs = read_inputs(plan, planner);
   if (!inputs) return tl::unexpected(inputs.error());
+  if (auto possible = check_tolerance(plan, planner); !possible) return tl::unexpected(possible.error());
   if (listener.on_phase) listener.on_phase("opening " + plan.camera.id);
   auto bench = open_bench(plan, inputs->plates, stop, listener.ask_operator);
   if (!bench) return tl::unexpected(bench.error());

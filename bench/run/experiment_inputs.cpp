@@ -30,14 +30,20 @@ Result<void> check_geometry(const MeasurementOptions& options, const ExperimentI
 
 }  // namespace
 
-Result<EffectPlan> planned_effects(const Plan& plan, const SensorSpec& sensor, TemplateObserver& observer) {
-  return plan_effects(sensor, observer, {.delta_t_k = plan.target.delta_t_k, .motion = plan.simulation.motion},
+Result<EffectPlan> planned_effects(const Plan& plan, const SensorSpec& sensor, const TemplateObserverSpec& observer,
+                                   EffectPlanner& planner) {
+  return planner.plan(sensor, observer, {.delta_t_k = plan.target.delta_t_k, .motion = plan.simulation.motion},
                       {.tolerance_percent = plan.simulation.tolerance_percent,
                        .skip = plan.simulation.skip,
                        .force = plan.simulation.force});
 }
 
 Result<ExperimentInputs> read_inputs(const Plan& plan) {
+  EffectPlanner planner;
+  return read_inputs(plan, planner);
+}
+
+Result<ExperimentInputs> read_inputs(const Plan& plan, EffectPlanner& planner) {
   ExperimentInputs inputs;
   auto plates = plates_of(plan);
   if (!plates) return tl::unexpected(plates.error());
@@ -48,12 +54,12 @@ Result<ExperimentInputs> read_inputs(const Plan& plan) {
   auto sensor = sensor_of(plan);
   if (!sensor) return tl::unexpected(sensor.error());
   inputs.motion = plan.simulation.motion;
-  TemplateObserver planner(inputs.observer, triangle_alternatives());
-  auto effects = planned_effects(plan, *sensor, planner);
+  auto effects = planned_effects(plan, *sensor, inputs.observer, planner);
   if (effects) {
     inputs.effects = std::move(effects->plan);
     inputs.warnings = std::move(effects->warnings);
   } else {
+    inputs.identifiable = false;
     // Without a threshold there is nothing that skipping could change by little.
     inputs.effects = full_plan(*sensor, plan.simulation.skip, plan.simulation.force, inputs.motion);
     inputs.warnings.push_back(effects.error().message);

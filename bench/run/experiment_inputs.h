@@ -21,14 +21,16 @@ struct ExperimentInputs {
   SensorPlan effects;  ///< what the scene calls for within the tolerance, and why
   SceneMotion motion{};
   std::vector<std::string> warnings;  ///< of the planner, a sentence each
+  bool identifiable = true;           ///< a contrast has a threshold
   Accuracy accuracy;
 };
 
 /// The planner's decisions for what a plan shows. Errors as plan_effects().
 [[nodiscard]] Result<EffectPlan> planned_effects(const Plan& plan, const SensorSpec& sensor,
-                                                 TemplateObserver& observer);
+                                                 const TemplateObserverSpec& observer, EffectPlanner& planner);
 
-/// Errors as the loaders of the parts.
+/// Errors as the loaders of the parts. Without a planner, one of its own.
+[[nodiscard]] Result<ExperimentInputs> read_inputs(const Plan& plan, EffectPlanner& planner);
 [[nodiscard]] Result<ExperimentInputs> read_inputs(const Plan& plan);
 
 /// How the simulated sensor is measured: as the camera, but nothing has to settle and nothing is corrected.

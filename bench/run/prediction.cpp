@@ -63,29 +63,39 @@ void adapt(ContrastPrediction& point, const Plan& plan, const std::vector<Target
   point.trials = std::round(std::min(needed, cap));
 }
 
-/// A tolerance that the caps do not allow is refused with the best that they do, and its price on this machine.
+/// A tolerance that the caps do not allow is refused with the best that they do at every contrast, and its price on
+/// this machine.
 Result<void> reachable(const Plan& plan, const Accuracy& accuracy, const EffectPlan& effects,
                        const TemplateObserverSpec& observer, const SensorSpec& sensor) {
+  const auto draws_at = [&](const ContrastOutlook& outlook) { return needed_draws(accuracy, outlook.q_eff); };
+  const auto worst = std::ranges::max_element(effects.outlooks, {}, draws_at);
+  if (worst == effects.outlooks.end() || draws_at(*worst) <= Accuracy::max_noise_draws) return {};
+  // Half the tolerance is the demanded standard error, which falls with the root of the draws.
+  const double best = plan.simulation.tolerance_percent * std::sqrt(draws_at(*worst) / Accuracy::max_noise_draws);
+  double price_s = 0;
   for (const auto& outlook : effects.outlooks) {
-    const double draws = needed_draws(accuracy, outlook.q_eff);
-    if (draws <= Accuracy::max_noise_draws) continue;
-    const double best = plan.simulation.tolerance_percent * std::sqrt(draws / Accuracy::max_noise_draws);
+    const double draws = std::min<double>(draws_at(outlook), Accuracy::max_noise_draws);
     const auto price = measured_direct_seconds(sensor, effects.plan, observer, outlook.delta_t_k, outlook.s75_pitch,
-                                               Accuracy::max_noise_draws, accuracy, plan.simulation.motion);
+                                               draws, accuracy, plan.simulation.motion);
     if (!price) return tl::unexpected(price.error());
-    return fail(ErrorCode::invalid_input, "a tolerance of " + number_text(plan.simulation.tolerance_percent) +
-                                              " % cannot be met at " + number_text(outlook.delta_t_k) +
-                                              " K: the most noise draws per size, " +
-                                              std::to_string(Accuracy::max_noise_draws) + ", reach about " +
-                                              number_text(std::ceil(best * 100) / 100) + " %, for about " +
-                                              number_text(std::ceil(*price * 10) / 10) + " s per contrast");
+    price_s += *price;
   }
-  return {};
+  return fail(ErrorCode::invalid_input, "a tolerance of " + number_text(plan.simulation.tolerance_percent) +
+                                            " % cannot be met at " + number_text(worst->delta_t_k) +
+                                            " K: the most noise draws per size, " +
+                                            std::to_string(Accuracy::max_noise_draws) + ", reach about " +
+                                            number_text(std::ceil(best * 100) / 100) + " %, for about " +
+                                            number_text(std::ceil(price_s * 10) / 10) + " s over all contrasts");
 }
 
 }  // namespace
 
 Result<PlanPrediction> predict_plan(const Plan& plan) {
+  EffectPlanner planner;
+  return predict_plan(plan, planner);
+}
+
+Result<PlanPrediction> predict_plan(const Plan& plan, EffectPlanner& planner) {
   auto plates = plates_of(plan);
   if (!plates) return tl::unexpected(plates.error());
   auto observer_spec = load_observer(plan.observer);
@@ -94,8 +104,7 @@ Result<PlanPrediction> predict_plan(const Plan& plan) {
   if (!sensor) return tl::unexpected(sensor.error());
   const auto accuracy = accuracy_of(plan);
   if (!accuracy) return tl::unexpected(accuracy.error());
-  TemplateObserver observer(*observer_spec, triangle_alternatives());
-  auto effects = planned_effects(plan, *sensor, observer);
+  auto effects = planned_effects(plan, *sensor, *observer_spec, planner);
   if (!effects) {
     // No contrast has a threshold: nothing can be left out, nothing will be found.
     EffectPlan none{.plan = full_plan(*sensor, plan.simulation.skip, plan.simulation.force, plan.simulation.motion),
@@ -142,7 +151,12 @@ Result<PlanPrediction> predict_plan(const Plan& plan) {
 }
 
 Result<void> predict_times(const Plan& plan, PlanPrediction& prediction, std::stop_token stop) {
-  const auto inputs = read_inputs(plan);
+  EffectPlanner planner;
+  return predict_times(plan, prediction, planner, std::move(stop));
+}
+
+Result<void> predict_times(const Plan& plan, PlanPrediction& prediction, EffectPlanner& planner, std::stop_token stop) {
+  const auto inputs = read_inputs(plan, planner);
   if (!inputs) return tl::unexpected(inputs.error());
   const auto time = predict_time(plan, *inputs, prediction.effects.outlooks, std::move(stop));
   if (!time) return tl::unexpected(time.error());

@@ -28,13 +28,18 @@ struct PlanPrediction {
   std::vector<std::string> warnings;  ///< a sentence each
 };
 
-/// Nothing is simulated; costs some tens of milliseconds. Errors: as read_inputs() for what a plan names,
-/// `invalid_input` where the tolerance cannot be met within the hard caps (the message says what can and for what
-/// time). Contrasts without threshold have no uncertainty, and then the plan has none; a warning names them.
+/// Nothing is simulated; a tenth of a second, and less than a millisecond where `planner` knows the scene: plans that
+/// differ in tolerance, trials, schedule and the like. Without a planner, one of its own. Errors: as read_inputs() for
+/// what a plan names, `invalid_input` where the tolerance cannot be met within the hard caps (the message says what can
+/// and for what time). Contrasts without threshold have no uncertainty, and then the plan has none; a warning names
+/// them.
+[[nodiscard]] Result<PlanPrediction> predict_plan(const Plan& plan, EffectPlanner& planner);
 [[nodiscard]] Result<PlanPrediction> predict_plan(const Plan& plan);
 
 /// Adds the times to a prediction of the same plan, as predict_time() (bench/run/time_prediction.h); a plan whose times
 /// cannot be predicted keeps none.
+[[nodiscard]] Result<void> predict_times(const Plan& plan, PlanPrediction& prediction, EffectPlanner& planner,
+                                         std::stop_token stop);
 [[nodiscard]] Result<void> predict_times(const Plan& plan, PlanPrediction& prediction, std::stop_token stop);
 
 }  // namespace todbench

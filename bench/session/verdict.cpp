@@ -224,6 +224,8 @@ int exit_code(ErrorCode code) {
     case ErrorCode::integrity:
     case ErrorCode::timeout:
       return 5;
+    case ErrorCode::not_identifiable:
+      return 3;
     case ErrorCode::calibration:
       return 6;
     case ErrorCode::interrupted:

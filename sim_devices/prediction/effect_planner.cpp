@@ -8,6 +8,7 @@
 
 #include "sim_devices/prediction/cued_estimate.h"
 #include "sim_devices/sensor/transfer_functions.h"
+#include "tod/test_pattern.h"
 
 namespace todbench {
 namespace {
@@ -230,15 +231,13 @@ void obey(const EffectPlannerOptions& options, EffectPlan& out) {
 
 }  // namespace
 
-Result<EffectPlan> plan_effects(const SensorSpec& sensor, TemplateObserver& observer, const EffectScene& scene,
-                                const EffectPlannerOptions& options) {
-  const SensorPlan everything = full_plan(sensor, {}, {}, scene.motion);
-  EffectPlan out{
-      .plan = everything, .skipped_change_percent = 0, .requested_change_percent = 0, .outlooks = {}, .warnings = {}};
-  CuedEstimate cued(sensor, everything, observer, scene.motion);
+SceneSurvey survey_scene(const SensorSpec& sensor, TemplateObserver& observer, const EffectScene& scene) {
+  SceneSurvey out{
+      .everything = full_plan(sensor, {}, {}, scene.motion), .change_percent = {}, .outlooks = {}, .warnings = {}};
+  CuedEstimate cued(sensor, out.everything, observer, scene.motion);
   std::vector<Contrast> contrasts;
   for (const double delta_t_k : scene.delta_t_k) {
-    auto contrast = contrast_of(cued, sensor, everything, observer.spec(), delta_t_k);
+    auto contrast = contrast_of(cued, sensor, out.everything, observer.spec(), delta_t_k);
     if (contrast) {
       out.outlooks.push_back(contrast->outlook);
       contrasts.push_back(*contrast);
@@ -246,12 +245,33 @@ Result<EffectPlan> plan_effects(const SensorSpec& sensor, TemplateObserver& obse
       out.warnings.push_back(formatted("at %g K: ", delta_t_k) + contrast.error().message);
     }
   }
-  if (contrasts.empty()) {
+  for (const auto& decision : out.everything.decisions) {
+    std::optional<double> largest;
+    if (decision.decision != Decision::skip && out.warnings.empty()) {
+      largest = 0.0;
+      for (const auto& c : contrasts) {
+        const auto change = bound(decision.effect, c, sensor, out.everything, scene.motion);
+        largest = change && largest ? std::optional(std::max(*largest, *change)) : std::nullopt;
+      }
+    }
+    // Acuity is 1 / S75: the change of the logarithm as a percentage, in the direction in which it is larger.
+    out.change_percent.push_back(largest ? std::optional(100 * std::expm1(std::min(*largest, 5.0))) : std::nullopt);
+  }
+  return out;
+}
+
+Result<EffectPlan> plan_effects(const SceneSurvey& survey, const EffectPlannerOptions& options) {
+  if (survey.outlooks.empty()) {
     return fail(ErrorCode::invalid_input,
                 "the plan has no identifiable threshold: " +
-                    (out.warnings.empty() ? std::string("no contrast") : out.warnings.front()));
+                    (survey.warnings.empty() ? std::string("no contrast") : survey.warnings.front()));
   }
-  const bool one_without_threshold = contrasts.size() < scene.delta_t_k.size();
+  EffectPlan out{.plan = survey.everything,
+                 .skipped_change_percent = 0,
+                 .requested_change_percent = 0,
+                 .outlooks = survey.outlooks,
+                 .warnings = survey.warnings};
+  const bool one_without_threshold = !survey.warnings.empty();
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < out.plan.decisions.size(); ++i) {
     auto& decision = out.plan.decisions[i];
@@ -261,17 +281,11 @@ Result<EffectPlan> plan_effects(const SensorSpec& sensor, TemplateObserver& obse
       decision.reason = "simulated: a contrast of the scene has no threshold, so no criterion holds for it";
       continue;
     }
-    std::optional<double> largest = 0.0;
-    for (const auto& c : contrasts) {
-      const auto change = bound(decision.effect, c, sensor, everything, scene.motion);
-      largest = change && largest ? std::optional(std::max(*largest, *change)) : std::nullopt;
-    }
-    if (!largest) {
+    decision.predicted_change_percent = survey.change_percent[i];
+    if (!decision.predicted_change_percent) {
       decision.reason = why_never(decision.effect);
       continue;
     }
-    // Acuity is 1 / S75: the change of the logarithm as a percentage, in the direction in which it is larger.
-    decision.predicted_change_percent = 100 * std::expm1(std::min(*largest, 5.0));
     if (decision.effect == Effect::diffraction) {
       decision.reason = "simulated: it ends the band, so leaving it out would cost more than it saves";
       continue;
@@ -282,6 +296,27 @@ Result<EffectPlan> plan_effects(const SensorSpec& sensor, TemplateObserver& obse
   out.skipped_change_percent = share_budget(std::move(candidates), options.tolerance_percent, out.plan);
   obey(options, out);
   return out;
+}
+
+Result<EffectPlan> plan_effects(const SensorSpec& sensor, TemplateObserver& observer, const EffectScene& scene,
+                                const EffectPlannerOptions& options) {
+  return plan_effects(survey_scene(sensor, observer, scene), options);
+}
+
+Result<EffectPlan> EffectPlanner::plan(const SensorSpec& sensor, const TemplateObserverSpec& observer,
+                                       const EffectScene& scene, const EffectPlannerOptions& options) {
+  constexpr std::size_t most = 8;
+  const std::lock_guard lock(mutex_);
+  auto at = std::ranges::find_if(known_, [&](const Known& known) {
+    return known.sensor == sensor && known.observer == observer && known.scene == scene;
+  });
+  if (at == known_.end()) {
+    TemplateObserver fresh(observer, triangle_alternatives());
+    known_.push_front({sensor, observer, scene, survey_scene(sensor, fresh, scene)});
+    if (known_.size() > most) known_.pop_back();
+    at = known_.begin();
+  }
+  return plan_effects(at->survey, options);
 }
 
 }  // namespace todbench

@@ -60,6 +60,7 @@ struct SensorSpec {
     return frames_averaged * (super_resolution_frames > 0 ? super_resolution_frames / 4 : 1);
   }
   [[nodiscard]] double detector_pitch_ratio() const { return detector_um / pitch_um; }
+  bool operator==(const SensorSpec&) const = default;
 };
 
 /// `invalid_input` with one sentence for a sensor that cannot exist (negative aperture, detector larger than pitch,

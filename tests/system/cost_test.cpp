@@ -119,7 +119,43 @@ TEST(ToleranceOutOfReach, IsRefusedWithTheBestThatIsReachableAndItsPrice) {
 
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "s"));
     expect_refused(ended, 2, "a tolerance of 0.05 % cannot be met at 16.9 K");
-    EXPECT_THAT(ended.err, ::testing::ContainsRegex("reach about 0\\.[0-9]+ %, for about [0-9.]+ s per contrast"));
+    EXPECT_THAT(ended.err,
+                ::testing::ContainsRegex("reach about 0\\.[0-9]+ %, for about [0-9.]+ s over all contrasts"));
+  }
+}
+
+TEST(ToleranceOutOfReach, IsRefusedBeforeAMeasurementOpensItsCamera) {
+  const TemporaryFolder folder;
+  folder.write("plan.toml", unreachable_plan() + "[camera]\nid = \"gige:127.0.0.1\"\nifov_mrad = 1.3085\n");
+
+  const Ended ended = todbench({"measure", "./plan.toml", "--out", "s"}, {.folder = folder.path()});
+
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "s"));
+  expect_refused(ended, 2, "a tolerance of 0.05 % cannot be met at 16.9 K");
+}
+
+TEST(ToleranceOutOfReach, IsNamedForTheWorstContrastHoweverSmallItIs) {
+  for (const std::string tolerance : {"1e-9", "0.05"}) {
+    const Ended ended = todbench({"plan", "demo", "--accuracy", "auto", "--tolerance-percent", tolerance}, {});
+
+    expect_refused(ended, 2, "% cannot be met at 0.23 K: the most noise draws per size, 8000, reach about ");
+  }
+}
+
+TEST(PlanWithoutThreshold, IsInconclusiveAndSaysWhyInEveryCommand) {
+  // 2 mK before 70 mK of noise: no size has a threshold, nor is the plate found.
+  const TemporaryFolder folder;
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"plan", "--sensor", "sc2000", "--delta-t-k", "0.002", "./plan.toml"},
+        {"cost", "./plan.toml"},
+        {"simulate", "./plan.toml", "--out", "s"}}) {
+    std::string plan = small_plan(1, "phases = 1\n");
+    folder.write("plan.toml", plan.replace(plan.find("16.9"), 4, "0.002"));
+
+    const Ended ended = todbench(command, {.folder = folder.path()});
+
+    EXPECT_EQ(ended.code, 3) << command.front() << ": " << ended.err;
+    EXPECT_THAT(ended.err, ::testing::HasSubstr("the plan has no identifiable threshold")) << command.front();
   }
 }
 

@@ -60,7 +60,7 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{
             "microscan", {"simulate", "--microscan", "5"}, "--microscan: expected a whole number from 1 to 4, found"},
         Misuse{
-            "tolerance", {"simulate", "--tolerance-percent", "nan"}, "expected a number from 0.01 to 50, found 'nan'"},
+            "tolerance", {"simulate", "--tolerance-percent", "nan"}, "expected a number above 0 up to 50, found 'nan'"},
         Misuse{"accuracy", {"simulate", "--accuracy", "nromal"}, "--accuracy: expected one of 'draft', 'normal'"},
         Misuse{"sensor", {"simulate", "--sensor", "sc200"}, "--sensor: unknown sensor 'sc200', did you mean 'sc2000'?"},
         Misuse{"observer", {"simulate", "--observer", "hvs1"}, "--observer: unknown observer 'hvs1', did you mean"},
