@@ -23,7 +23,9 @@ struct PsiOptions {
 /// the threshold (Kontsevich and Tyler 1999; the slope is a nuisance, Prins 2013). The posterior lives on a grid of
 /// ln threshold and ln slope in logarithms; when its spread falls below two grid steps the grid is centred anew and
 /// halved, when it leans on an edge the grid moves, and the posterior is computed afresh from all answers. For placing
-/// trials only: thresholds and intervals come from fit_psychometric(). One thread at a time.
+/// trials only: thresholds come from fit_psychometric(), and the interval of answers placed one by one is its
+/// posterior's; the profile interval is up to 2.6 points short of 95 % for them (docs/uncertainty.md). One thread at a
+/// time.
 class PsiPlacement {
  public:
   /// `stream` decides on probes and on ties.
