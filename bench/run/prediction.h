@@ -28,7 +28,7 @@ struct PlanPrediction {
   std::vector<std::string> warnings;  ///< a sentence each
 };
 
-/// Nothing is simulated; a tenth of a second, and less than a millisecond where `planner` knows the scene: plans that
+/// Nothing is simulated; a tenth of a second, and two milliseconds where `planner` knows the scene: plans that
 /// differ in tolerance, trials, schedule and the like. Without a planner, one of its own. Errors: as read_inputs() for
 /// what a plan names, `invalid_input` where the tolerance cannot be met within the hard caps (the message says what can
 /// and for what time). Contrasts without threshold have no uncertainty, and then the plan has none; a warning names

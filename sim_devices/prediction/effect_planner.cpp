@@ -36,8 +36,13 @@ struct Contrast {
   NoiseBudget noise;
 };
 
+/// Contrasts whose squares would vanish count as 1e-100 K: as hopeless, and their noise is a number.
+double squared(double contrast_k) {
+  return std::pow(std::max(std::abs(contrast_k), 1e-100), 2);
+}
+
 NoiseBudget noise_of(const SensorSpec& sensor, const TemplateObserverSpec& observer, double contrast_k) {
-  const double c2 = contrast_k * contrast_k;
+  const double c2 = squared(contrast_k);
   const double netd = sensor.netd_k * observer.sensor_noise_factor;
   const double step = sensor.kelvin_per_count;
   return {.temporal = netd * netd / sensor.exposures_per_sample() / c2,
@@ -51,7 +56,7 @@ NoiseBudget noise_of(const SensorSpec& sensor, const TemplateObserverSpec& obser
 /// find places where they move them more: half as much again; at least the bound n^2 for a pattern shared by n x n
 /// samples.
 void add_coloured(NoiseBudget& noise, const SensorSpec& sensor, const SizeTrial& trial, double contrast_k) {
-  const double c2 = contrast_k * contrast_k;
+  const double c2 = squared(contrast_k);
   const double n2 = sensor.samples_per_pitch() * sensor.samples_per_pitch();
   if (sensor.fixed_pattern_k > 0) noise.pattern = n2 * sensor.fixed_pattern_k * sensor.fixed_pattern_k / c2;
   const double exposures = sensor.exposures_per_sample();

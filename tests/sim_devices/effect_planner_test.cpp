@@ -119,6 +119,43 @@ TEST(EffectPlanner, RefusesAPlanWithoutAnyThresholdAndNamesTheContrast) {
   EXPECT_THAT(one->warnings, testing::ElementsAre(testing::HasSubstr("at 0.0001 K")));
 }
 
+TEST(EffectPlanner, DecidesForAKnownSceneAsForANewOne) {
+  EffectPlanner planner;
+  const SensorSpec sensor = test::sensor_with_everything(1, 1);
+  const EffectScene scene{.delta_t_k = {16.9, 0.5}, .motion = {}};
+  for (const double tolerance : {1.0, 5.0, 1.0}) {
+    for (const SensorSpec& seen : {sensor, test::sc2000()}) {
+      const EffectPlannerOptions options{.tolerance_percent = tolerance, .skip = {}, .force = {}};
+      TemplateObserver observer({}, triangle_alternatives());
+
+      const auto remembered = planner.plan(seen, {}, scene, options);
+      const auto fresh = plan_effects(seen, observer, scene, options);
+
+      ASSERT_TRUE(remembered && fresh);
+      for (std::size_t i = 0; i < fresh->plan.decisions.size(); ++i) {
+        EXPECT_EQ(remembered->plan.decisions[i].decision, fresh->plan.decisions[i].decision) << tolerance;
+        EXPECT_EQ(remembered->plan.decisions[i].reason, fresh->plan.decisions[i].reason) << tolerance;
+      }
+      EXPECT_EQ(remembered->skipped_change_percent, fresh->skipped_change_percent);
+    }
+  }
+}
+
+TEST(TwoTiers, TheSearchForAThresholdEndsEarlyOnlyWhereThereIsNone) {
+  // The threshold grows by 3.2 pitches per unit of q and reaches 40 pitches near q = 12.
+  const SensorSpec sensor = test::sc2000();
+  const SensorPlan plan = full_plan(sensor, {}, {});
+  TemplateObserver observer({}, triangle_alternatives());
+  CuedEstimate cued(sensor, plan, observer);
+
+  const auto last = cued.s75_pitch(12);
+  const auto none = cued.s75_pitch(13);
+
+  ASSERT_TRUE(last);
+  EXPECT_NEAR(*last, 40, 0.5);
+  EXPECT_FALSE(none);
+}
+
 TEST(TwoTiers, TheAnalyticThresholdOfKnownPositionsIsThatOfTheSearchWithinItsValidity) {
   for (const int microscan : {1, 2}) {
     SensorSpec sensor = test::sc2000();

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "sim_devices/prediction/direct_estimate.h"
+#include "sim_devices/prediction/effect_planner.h"
 #include "sim_devices/sensor/far_field.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "sim_devices/sensor/sensor_model.h"
@@ -166,6 +167,31 @@ TEST(SensorExtremes, DirectEstimatesWithoutNoiseAndDrownedInItAreNumbersOrRefusa
   ASSERT_FALSE(drowned);
   EXPECT_EQ(drowned.error().code, ErrorCode::invalid_input);
   EXPECT_NE(drowned.error().message.find("no size"), std::string::npos) << drowned.error().message;
+}
+
+// Hard: contrasts from far below the noise to far above it; powers of ratios of noise, logarithms of nothing.
+TEST(SensorExtremes, PlansOfEveryContrastAreNumbersOrRefusals) {
+  const SensorSpec sensor;
+  int planned = 0;
+  for (const double delta_t_k : {1e-300, 1e-9, 1e-3, 0.03, 1.0, 400.0}) {
+    TemplateObserver observer({}, triangle_alternatives());
+
+    const auto plan = plan_effects(sensor, observer, {.delta_t_k = {delta_t_k}, .motion = {}}, {});
+
+    if (!plan) {
+      EXPECT_NE(plan.error().message.find("no identifiable threshold"), std::string::npos) << delta_t_k;
+      continue;
+    }
+    ++planned;
+    for (const ContrastOutlook& outlook : plan->outlooks) {
+      EXPECT_TRUE(std::isfinite(outlook.s75_pitch) && std::isfinite(outlook.weibull_slope) &&
+                  std::isfinite(outlook.noise_exponent) && std::isfinite(outlook.blur_exponent))
+          << delta_t_k;
+    }
+    for (const auto& decision : plan->plan.decisions)
+      EXPECT_TRUE(std::isfinite(decision.predicted_change_percent.value_or(0))) << delta_t_k;
+  }
+  EXPECT_GE(planned, 2);
 }
 
 // Sums in a fixed order and random numbers by place: two threads that share model and observer find the bits of one.
