@@ -4,6 +4,7 @@
 #include <QLineEdit>
 #include <QListWidget>
 #include <QPlainTextEdit>
+#include <QProcess>
 #include <QSettings>
 #include <QTableWidget>
 #include <QThread>
@@ -193,6 +194,11 @@ TEST(Window, ComparesTwoSessionsAndWritesBothReports) {
   const auto changed = verify_manifest(folder);
   ASSERT_TRUE(changed) << changed.error().message;
   EXPECT_THAT(*changed, ::testing::IsEmpty());
+
+  std::filesystem::remove(folder / "report.pdf");
+  EXPECT_EQ(QProcess::execute(TODBENCH_GUI_PROGRAM, {"--report", QString::fromStdString(folder.string())}), 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "report.pdf"));
+  EXPECT_EQ(QProcess::execute(TODBENCH_GUI_PROGRAM, {"--report", "no-such-session"}), 2);
 }
 
 TEST(Window, MeasuresThePlanOfASessionAgainBitForBit) {
