@@ -35,8 +35,9 @@ struct ComparisonPoint {
   /// Likelihood-ratio test of a common threshold, its statistic divided by the variance inflation and, with clusters,
   /// referred to Student's t with the degrees of freedom of Welch and Satterthwaite.
   std::optional<double> p_difference;
-  std::optional<double>
-      p_equivalence;  ///< two one-sided tests on the log ratio; missing where a fit has no standard error
+  /// Two one-sided tests on the log ratio by its standard error (Wald); missing where a fit has none. The verdict is
+  /// that of the 90 % interval, from the profile likelihood, so close to the margin 0.05 and the verdict may disagree.
+  std::optional<double> p_equivalence;
   double margin_percent = 0;
   ComparisonVerdict verdict = ComparisonVerdict::inconclusive;
 };

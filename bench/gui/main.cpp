@@ -2,13 +2,38 @@
 #include <QApplication>
 #include <QCommandLineParser>
 #include <QDir>
+#include <algorithm>
 #include <cstdio>
+#include <string_view>
 
 #include "bench/gui/main_window.h"
 #include "bench/gui/screenshots.h"
+#include "bench/gui/session_presenter.h"
 #include "bench/session/build_info.h"
+#include "bench/session/verdict.h"
+
+namespace {
+
+/// Report of a session as page and PDF, without a window. 0, or the error's exit code with its sentence on standard
+/// error.
+int write_reports(const QString& session) {
+  const auto opened = todbench::read_opened_session(session.toStdString());
+  const auto written = opened ? todbench::export_reports(*opened) : tl::unexpected(opened.error());
+  if (!written) {
+    std::fprintf(stderr, "%s\n", written.error().message.c_str());
+    return todbench::exit_code(written.error().code);
+  }
+  std::printf("%s\n%s\n", qPrintable(written->html), qPrintable(written->pdf));
+  return 0;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
+  // Writing a report needs fonts and no screen.
+  const auto asks_for_report = [](const char* argument) { return std::string_view(argument).starts_with("--report"); };
+  if (std::any_of(argv + 1, argv + argc, asks_for_report) && !qEnvironmentVariableIsSet("QT_QPA_PLATFORM"))
+    qputenv("QT_QPA_PLATFORM", "offscreen");
   const QApplication application(argc, argv);
   QApplication::setApplicationName("todbench-gui");
   const auto version = todbench::build_info().version;
@@ -23,7 +48,9 @@ int main(int argc, char** argv) {
   options.addOption({"theme", "light or dark; default: as last time.", "NAME"});
   options.addOption({"size", "Size of the window in pixels.", "WIDTHxHEIGHT"});
   options.addOption({"screenshots", "Writes a picture of every view and ends.", "FOLDER"});
+  options.addOption({"report", "Writes report.html and report.pdf of a session and ends; needs no screen.", "SESSION"});
   options.process(application);
+  if (options.isSet("report")) return write_reports(options.value("report"));
 
   const QString sessions = options.value("sessions");
   if (!QDir().mkpath(sessions)) {

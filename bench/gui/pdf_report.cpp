@@ -9,7 +9,9 @@
 #include <QTextBlock>
 #include <QTextCursor>
 #include <QTextDocument>
+#include <QTextTable>
 #include <algorithm>
+#include <optional>
 
 #include "bench/gui/plot_text_object.h"
 #include "bench/session/files.h"
@@ -38,28 +40,60 @@ const char* const style = R"(
   .badge { font-weight: bold; }
 )";
 
-std::vector<Plot> figures_of(const ReportData& data) {
-  std::vector<Plot> plots{tod_plot(data)};
-  for (auto& plot : psychometric_plots(data)) plots.push_back(std::move(plot));
-  for (auto& plot : human_plots(data)) plots.push_back(std::move(plot));
-  return plots;
-}
-
 int page_of(const QTextDocument& document, const QTextBlock& block) {
   const QRectF place = document.documentLayout()->blockBoundingRect(block);
   return static_cast<int>(place.bottom() / document.pageSize().height());
 }
 
-/// A heading at the foot of a page moves to the next one, with what it is about.
+QTextTable* table_at(const QTextBlock& block) {
+  return QTextCursor(block).currentTable();
+}
+
+/// The first block from here on that shows something: tables and figures stand behind empty ones.
+QTextBlock content_after(QTextBlock block) {
+  do block = block.next();
+  while (block.isValid() && block.text().trimmed().isEmpty());
+  return block;
+}
+
+/// The block that has to be on the page of a heading or of a caption: the first line of what is below, the end of a
+/// table of a few rows.
+QTextBlock belongs_to(const QTextBlock& block) {
+  constexpr int few_rows = 6;
+  QTextBlock content = content_after(block);
+  if (!content.isValid()) return content;
+  const QTextBlock below = content_after(content);
+  const bool caption = table_at(content) == nullptr && below.isValid() && table_at(below) != nullptr;
+  if (caption) content = below;
+  if (const QTextTable* table = table_at(content); table != nullptr && table->rows() <= few_rows)
+    return table->lastCursorPosition().block();
+  return content;
+}
+
+/// A heading or caption at the foot of a page moves to the next one, with what it is about. Every move shifts what
+/// follows, so the whole document is laid out again each time: Qt leaves blocks without lines where only the changed
+/// one is.
 void keep_headings_with_text(QTextDocument& document) {
   for (QTextBlock block = document.begin(); block.isValid(); block = block.next()) {
-    if (block.blockFormat().headingLevel() == 0 || !block.next().isValid()) continue;
-    // A table is laid out in a frame: what counts is the first block in it that has text.
-    if (page_of(document, block.next()) == page_of(document, block)) continue;
+    if (table_at(block) != nullptr || block.text().trimmed().isEmpty()) continue;
+    const QTextBlock next = content_after(block);
+    const bool stands_over_a_table = next.isValid() && table_at(next) != nullptr;
+    if (block.blockFormat().headingLevel() == 0 && !stands_over_a_table) continue;
+    const QTextBlock content = belongs_to(block);
+    if (!content.isValid() || page_of(document, content) == page_of(document, block)) continue;
     QTextBlockFormat format = block.blockFormat();
     format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
     QTextCursor(block).setBlockFormat(format);
+    document.markContentsDirty(0, document.characterCount());
   }
+}
+
+/// The text of the first block that the layout has left without a line: it would be missing on the page.
+std::optional<QString> lost_text(const QTextDocument& document) {
+  (void)document.documentLayout()->documentSize();  // finishes the layout
+  for (QTextBlock block = document.begin(); block.isValid(); block = block.next())
+    if (!block.text().isEmpty() && block.layout()->lineCount() == 0) return block.text();
+  return std::nullopt;
 }
 
 /// Puts the plots where rich_text() left their numbers.
@@ -126,6 +160,25 @@ bool put_figures_in_pairs(QString& html) {
   return true;
 }
 
+/// Places to sign side by side, one column a person, with room to write.
+void put_signatures_in_columns(QString& html) {
+  const QString opening = "<div class=\"signatures\">";
+  const auto begin = html.indexOf(opening);
+  const auto end = html.indexOf("</section>", begin);
+  if (begin < 0 || end < 0) return;
+  static const QRegularExpression line("<div class=\"(?:role|line|line tall)\">(.*?)</div>");
+  constexpr int lines_each = 4;  // role, name, date, signature
+  QStringList rows(lines_each);
+  auto lines = line.globalMatch(html.mid(begin, end - begin));
+  for (int i = 0; lines.hasNext(); ++i) {
+    const QString text = lines.next().captured(1);
+    const int row = i % lines_each;
+    const QString room = row == lines_each - 1 ? "<br/><br/><br/>" : "";
+    rows[row] += row == 0 ? "<th width=\"33%\">" + text + "</th>" : "<td>" + text + room + "</td>";
+  }
+  html.replace(begin, end - begin, "<table><tr>" + rows.join("</tr><tr>") + "</tr></table>");
+}
+
 }  // namespace
 
 QString rich_text(const std::string& report_html) {
@@ -140,6 +193,7 @@ QString rich_text(const std::string& report_html) {
   }
   while (put_figures_in_pairs(html)) {
   }
+  put_signatures_in_columns(html);
   html.replace("<figcaption>", "<p class=\"note\">").replace("</figcaption>", "</p>");
   html.replace("<table", "<table width=\"100%\" cellspacing=\"0\"");
   return html;
@@ -148,7 +202,7 @@ QString rich_text(const std::string& report_html) {
 Result<void> write_pdf_report(const ReportData& data, const std::filesystem::path& file) {
   const double text_width = page_width - 2 * margin;
   const double text_height = page_height - 2 * margin - foot;
-  std::vector<Plot> plots = figures_of(data);
+  std::vector<Plot> plots = report_plots(data);
   const int count = static_cast<int>(plots.size());
   PlotTextObject drawing(std::move(plots), text_width);
   QTextDocument document;
@@ -166,6 +220,8 @@ Result<void> write_pdf_report(const ReportData& data, const std::filesystem::pat
   insert_plots(document, count);
   document.setPageSize({text_width, text_height});
   keep_headings_with_text(document);
+  if (const auto lost = lost_text(document))
+    return fail(ErrorCode::internal, "the PDF would leave out \"" + lost->toStdString() + "\"");
 
   QByteArray bytes;
   QBuffer buffer(&bytes);

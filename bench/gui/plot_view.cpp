@@ -1,7 +1,10 @@
 #include "bench/gui/plot_view.h"
 
+#include <QPainter>
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 
 #include "bench/gui/theme.h"
 
@@ -59,6 +62,7 @@ QCPScatterStyle scatter_of(PlotMarker marker, const QColor& colour) {
 
 PlotView::PlotView(QWidget* parent) : QCustomPlot(parent) {
   setInteractions(QCP::iRangeDrag | QCP::iRangeZoom);
+  setFocusPolicy(Qt::StrongFocus);
   connect(this, &QCustomPlot::mouseWheel, this, [this] { zoomed_ = true; });
   connect(this, &QCustomPlot::mouseMove, this, [this](QMouseEvent* event) {
     if ((event->buttons() & Qt::LeftButton) != 0) zoomed_ = true;
@@ -91,9 +95,70 @@ void PlotView::changeEvent(QEvent* event) {
 }
 
 void PlotView::mouseDoubleClickEvent(QMouseEvent* event) {
+  show_all();
+  QCustomPlot::mouseDoubleClickEvent(event);
+}
+
+void PlotView::keyPressEvent(QKeyEvent* event) {
+  constexpr double step = 0.1;  // of the axis
+  switch (event->key()) {
+    case Qt::Key_Plus:
+    case Qt::Key_Equal:
+      return zoom(0.8);
+    case Qt::Key_Minus:
+      return zoom(1.25);
+    case Qt::Key_0:
+      return show_all();
+    case Qt::Key_Left:
+      return shift(-step, 0);
+    case Qt::Key_Right:
+      return shift(step, 0);
+    case Qt::Key_Up:
+      return shift(0, step);
+    case Qt::Key_Down:
+      return shift(0, -step);
+    default:
+      QCustomPlot::keyPressEvent(event);
+  }
+}
+
+void PlotView::zoom(double factor) {
+  zoomed_ = true;
+  for (QCPAxis* axis : {xAxis, yAxis}) axis->scaleRange(factor);
+  replot(QCustomPlot::rpQueuedReplot);
+}
+
+void PlotView::shift(double right, double up) {
+  zoomed_ = true;
+  for (const auto& [axis, fraction] : {std::pair{xAxis, right}, std::pair{yAxis, up}}) {
+    const QCPRange range = axis->range();
+    axis->moveRange(axis->scaleType() == QCPAxis::stLogarithmic ? std::pow(range.upper / range.lower, fraction)
+                                                                : range.size() * fraction);
+  }
+  replot(QCustomPlot::rpQueuedReplot);
+}
+
+void PlotView::show_all() {
   zoomed_ = false;
   draw();
-  QCustomPlot::mouseDoubleClickEvent(event);
+}
+
+void PlotView::focusInEvent(QFocusEvent* event) {
+  QCustomPlot::focusInEvent(event);
+  update();
+}
+
+void PlotView::focusOutEvent(QFocusEvent* event) {
+  QCustomPlot::focusOutEvent(event);
+  update();
+}
+
+void PlotView::paintEvent(QPaintEvent* event) {
+  QCustomPlot::paintEvent(event);
+  if (!hasFocus()) return;
+  QPainter painter(this);
+  painter.setPen(QPen(palette().color(QPalette::Highlight), 2));
+  painter.drawRect(rect().adjusted(1, 1, -1, -1));
 }
 
 void PlotView::set_axis(QCPAxis& axis, const PlotAxis& description, bool keep_range) {

@@ -8,7 +8,7 @@
 
 namespace todbench {
 
-/// Drag and wheel move and zoom, a double click shows everything again.
+/// Drag and wheel, or arrow keys, plus and minus, move and zoom; a double click or 0 shows everything again.
 class PlotView final : public QCustomPlot {
   Q_OBJECT
 
@@ -26,8 +26,15 @@ class PlotView final : public QCustomPlot {
  protected:
   void changeEvent(QEvent* event) override;
   void mouseDoubleClickEvent(QMouseEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
+  void focusInEvent(QFocusEvent* event) override;
+  void focusOutEvent(QFocusEvent* event) override;
+  void paintEvent(QPaintEvent* event) override;
 
  private:
+  void zoom(double factor);
+  void shift(double right, double up);
+  void show_all();
   void draw();
   void set_axis(QCPAxis& axis, const PlotAxis& description, bool keep_range);
   void add_series(const PlotSeries& series);

@@ -40,12 +40,18 @@ Plan short_plan(Plan plan) {
   return plan;
 }
 
-bool answer_as_a_person(MainWindow& window) {
+/// A person who answers as the model did, patch by patch, with a picture after the fortieth.
+bool answer_as_a_person(MainWindow& window, const std::filesystem::path& folder) {
   HumanPresenter& human = window.human();
+  const auto patches = patches_for_a_person(window.measure().trials(), {});
   if (!human.begin(window.measure().trials(), window.bench().plan(), window.measure().folder(), {}).isEmpty())
     return false;
-  for (int i = 0; i < 40; ++i) human.answer(all_apexes[static_cast<std::size_t>(i) % 4]);
-  return true;
+  bool good = true;
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    if (i == 40) good &= save(window, folder, "human");
+    human.answer(patches[i].trial.answer);
+  }
+  return good;
 }
 
 }  // namespace
@@ -74,9 +80,7 @@ int take_screenshots(MainWindow& window, const std::filesystem::path& folder) {
   good &= wait_until([&] { return window.measure().state() == RunState::idle; });
   good &= wait_until([&] { return window.sessions().current().has_value(); });
   window.show_view(View::human);
-  good &= answer_as_a_person(window);
-  good &= save(window, folder, "human");
-  window.human().abort();
+  good &= answer_as_a_person(window, folder);
   window.show_view(View::chain);
   good &= wait_until([&] { return !window.chain().pictures().empty(); });
   good &= save(window, folder, "chain");

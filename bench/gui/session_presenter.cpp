@@ -40,11 +40,9 @@ Result<SessionEntry> entry_of(const std::filesystem::path& folder) {
   return entry;
 }
 
-struct Exported {
-  QString html, pdf;
-};
+}  // namespace
 
-Result<Exported> export_to(const OpenedSession& opened) {
+Result<Exported> export_reports(const OpenedSession& opened) {
   const auto html = opened.folder / "report.html";
   const auto pdf = opened.folder / "report.pdf";
   if (auto written = write_file_atomically(html, render_report(opened.report)); !written)
@@ -57,8 +55,6 @@ Result<Exported> export_to(const OpenedSession& opened) {
   }
   return Exported{QString::fromStdString(html.string()), QString::fromStdString(pdf.string())};
 }
-
-}  // namespace
 
 Result<OpenedSession> read_opened_session(const std::filesystem::path& folder) {
   auto session = read_session(folder);
@@ -147,7 +143,7 @@ void SessionPresenter::compare_with(const std::filesystem::path& other) {
 
 void SessionPresenter::export_reports() {
   if (!current_) return;
-  in_background<Exported>([opened = *current_] { return export_to(opened); },
+  in_background<Exported>([opened = *current_] { return todbench::export_reports(opened); },
                           [this](const Exported& files) { emit exported(files.html, files.pdf); });
 }
 

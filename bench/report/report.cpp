@@ -36,6 +36,18 @@ ReportVerdict report_verdict(const ReportData& data) {
   return any(LimitVerdict::inconclusive) ? ReportVerdict::inconclusive : ReportVerdict::pass;
 }
 
+std::vector<Plot> report_plots(const ReportData& data) {
+  std::vector<Plot> plots;
+  if (data.measured || data.simulated) plots.push_back(tod_plot(data));
+  for (auto& plot : psychometric_plots(data)) plots.push_back(std::move(plot));
+  for (auto& plot : human_plots(data)) plots.push_back(std::move(plot));
+  if (data.cost) {
+    plots.push_back(cost_result_plot(*data.cost));
+    plots.push_back(cost_knob_plot(*data.cost));
+  }
+  return plots;
+}
+
 std::string render_report(const ReportData& data) {
   const Markup head =
       literal(

@@ -99,6 +99,9 @@ struct ReportData {
 /// Those of the person beside the model, which follow; none without a person.
 [[nodiscard]] std::vector<Plot> human_plots(const ReportData& data);
 
+/// Every figure of the page, in its order.
+[[nodiscard]] std::vector<Plot> report_plots(const ReportData& data);
+
 /// The page: HTML 5 that is also well-formed XML, style and figures inside, no script, nothing from outside. A pure
 /// function.
 [[nodiscard]] std::string render_report(const ReportData& data);

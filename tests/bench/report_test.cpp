@@ -195,6 +195,27 @@ TEST(Report, DrawsTheTodCurveAndOneFunctionPerContrast) {
   EXPECT_FALSE(contains(page, "psychometric-4"));
 }
 
+TEST(Report, TellsEveryFigureOfThePageInItsOrder) {
+  ReportData full = sample_report();
+  full.human = full.measured;
+  full.cost.emplace();
+  ReportData without_curves = sample_report();
+  without_curves.measured.reset();
+  without_curves.simulated.reset();
+  for (const ReportData& data : {full, sample_report(), without_curves, ReportData{}}) {
+    const std::string page = render_report(data);
+    std::size_t at = 0;
+    for (const Plot& plot : report_plots(data)) {
+      at = page.find("aria-labelledby=\"" + plot.id + "-title ", at);
+      ASSERT_NE(at, std::string::npos) << plot.id;
+      ++at;
+    }
+    std::size_t drawn = 0;
+    for (at = page.find("<svg"); at != std::string::npos; at = page.find("<svg", at + 1)) ++drawn;
+    EXPECT_EQ(report_plots(data).size(), drawn);
+  }
+}
+
 TEST(Report, HasNoIdTwice) {
   const std::string page = render_report(sample_report());
 

@@ -4,10 +4,12 @@
 #include <QLineEdit>
 #include <QListWidget>
 #include <QPlainTextEdit>
+#include <QProcess>
 #include <QSettings>
 #include <QTableWidget>
 #include <QThread>
 #include <QTimer>
+#include <cmath>
 #include <ctime>
 
 #include "bench/gui/picture_view.h"
@@ -129,6 +131,32 @@ TEST(Window, PlotsExactlyWhatTheSessionHolds) {
   EXPECT_NEAR(sum / 5, correct / trials, 1e-12);  // as many triangles of every size
 }
 
+TEST(Window, ZoomsAndMovesAPlotByKeyboard) {
+  Plot plot;
+  plot.x.scale = AxisScale::logarithmic;
+  plot.x.low = 1;
+  plot.x.high = 10;
+  plot.y.low = 0;
+  plot.y.high = 1;
+  PlotView view;
+  view.show_plot(plot);
+
+  QTest::keyClick(&view, Qt::Key_Right);
+  EXPECT_NEAR(view.xAxis->range().lower, std::pow(10, 0.1), 1e-12);  // a tenth of the decade
+  EXPECT_NEAR(view.xAxis->range().upper, std::pow(10, 1.1), 1e-12);
+  QTest::keyClick(&view, Qt::Key_Down);
+  EXPECT_NEAR(view.yAxis->range().lower, -0.1, 1e-12);
+  QTest::keyClick(&view, Qt::Key_Plus);
+  EXPECT_NEAR(view.yAxis->range().size(), 0.8, 1e-12);
+  QTest::keyClick(&view, Qt::Key_Minus);
+  EXPECT_NEAR(view.yAxis->range().size(), 1, 1e-12);
+  view.show_plot(plot);
+  EXPECT_NEAR(view.yAxis->range().lower, -0.1, 1e-12) << "new data leave the view where it is";
+  QTest::keyClick(&view, Qt::Key_0);
+  EXPECT_EQ(view.xAxis->range().lower, 1);
+  EXPECT_EQ(view.yAxis->range().upper, 1);
+}
+
 TEST(Window, SaysWhatIsWrongWithAPlanAndKeepsIt) {
   ShownWindow window("sim:sc2000");
   window->show_view(View::plan);
@@ -166,6 +194,11 @@ TEST(Window, ComparesTwoSessionsAndWritesBothReports) {
   const auto changed = verify_manifest(folder);
   ASSERT_TRUE(changed) << changed.error().message;
   EXPECT_THAT(*changed, ::testing::IsEmpty());
+
+  std::filesystem::remove(folder / "report.pdf");
+  EXPECT_EQ(QProcess::execute(TODBENCH_GUI_PROGRAM, {"--report", QString::fromStdString(folder.string())}), 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "report.pdf"));
+  EXPECT_EQ(QProcess::execute(TODBENCH_GUI_PROGRAM, {"--report", "no-such-session"}), 2);
 }
 
 TEST(Window, MeasuresThePlanOfASessionAgainBitForBit) {
