@@ -3,7 +3,9 @@
 
 #include <atomic>
 #include <cmath>
+#include <condition_variable>
 #include <limits>
+#include <mutex>
 
 #include "tests/sim_devices/measurement_bench.h"
 #include "tod/tod_curve.h"
@@ -452,6 +454,74 @@ TEST(MeasurementFaults, ACameraThatIsLostWhileTheTargetSettlesIsALostCamera) {
   EXPECT_EQ(losses, 1);
   EXPECT_THAT(result->interruptions, testing::SizeIs(1));
   EXPECT_EQ(result->trials.size(), 2u * 3u * 20u);
+}
+
+/// Does not settle in one of its presentations until it is told to stop.
+class EndlessTarget final : public Target {
+ public:
+  EndlessTarget(std::unique_ptr<Target> target, int presentation)
+      : target_(std::move(target)), presentation_(presentation) {}
+  [[nodiscard]] const TargetCapabilities& capabilities() const override { return target_->capabilities(); }
+  [[nodiscard]] Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) override {
+    if (presentation_-- != 0) return target_->present(state, stop);
+    settling = true;
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any never;
+    never.wait(lock, stop, [] { return false; });
+    settling = false;
+    return fail(ErrorCode::interrupted, "stopped while the black body was settling");
+  }
+  std::atomic<bool> settling = false;
+
+ private:
+  std::unique_ptr<Target> target_;
+  int presentation_;
+};
+
+TEST(MeasurementFaults, ACameraThatIsLostWhileTheTargetSettlesEndsTheWaitForTheTarget) {
+  SmallBench bench;
+  EndlessTarget target(scene_target(bench.holder, bench.plates), 2);
+  FaultySource source(bench.camera(), [&](std::uint64_t, Frame frame) -> Result<Frame> {
+    if (target.settling) return fail(ErrorCode::disconnected, "unplugged");
+    return frame;
+  });
+  MeasurementOptions options = test::options_of(bench);
+  options.frames_while_presenting = FramesMeanwhile::take;
+  MeasurementListener listener;
+  std::vector<std::string> losses;
+  listener.on_lost = [&](const Error& why, std::stop_token) -> Result<void> {
+    losses.push_back(why.message);
+    return {};
+  };
+
+  const auto result = bench.run(source, target, options, listener);
+
+  ASSERT_TRUE(result.has_value()) << result.error().message;
+  EXPECT_FALSE(result->ended_by.has_value());
+  EXPECT_THAT(losses, testing::ElementsAre("unplugged"));
+  ASSERT_THAT(result->interruptions, testing::SizeIs(1));
+  EXPECT_EQ(result->interruptions.front().presentation, 2);
+  EXPECT_EQ(result->trials.size(), 2u * 3u * 20u);
+}
+
+TEST(MeasurementFaults, AStopRequestWhileTheTargetSettlesIsNoLossOfTheCamera) {
+  SmallBench bench;
+  EndlessTarget target(scene_target(bench.holder, bench.plates), 2);
+  std::stop_source stop;
+  FaultySource source(bench.camera(), [&](std::uint64_t, Frame frame) -> Result<Frame> {
+    if (target.settling) stop.request_stop();
+    return frame;
+  });
+  MeasurementOptions options = test::options_of(bench);
+  options.frames_while_presenting = FramesMeanwhile::take;
+
+  const auto result = bench.run(source, target, options, {}, stop.get_token());
+
+  ASSERT_TRUE(result.has_value()) << result.error().message;
+  ASSERT_TRUE(result->ended_by.has_value());
+  EXPECT_EQ(result->ended_by->code, ErrorCode::interrupted);
+  EXPECT_EQ(result->trials.size(), 2u * 20u);
 }
 
 }  // namespace
