@@ -69,7 +69,7 @@ class FaultDraw {
 
   FaultDraw(std::vector<DriverFault> faults, double rate) : faults_(std::move(faults)), rate_(rate) {}
   [[nodiscard]] std::optional<DriverFault> at(std::uint64_t index) const {
-    if (!drawn(index) || drawn(index - 1) || drawn(index - 2)) return std::nullopt;
+    if (faults_.empty() || !drawn(index) || drawn(index - 1) || drawn(index - 2)) return std::nullopt;
     return faults_[random_.sub(1).below(faults_.size(), index)];
   }
 
@@ -169,8 +169,8 @@ struct DriverBench : SimulatedBench {
     holder = std::make_shared<SceneHolder>(scene);
     model = std::make_shared<const SensorModel>(spec, full_plan(spec, {}, {}), Accuracy::draft(), seed);
   }
-  [[nodiscard]] Result<MeasurementResult> measure_with(FrameSource& source,
-                                                       std::function<std::int64_t()> now_ns) const {
+  [[nodiscard]] Result<MeasurementResult> measure_with(FrameSource& source, std::function<std::int64_t()> now_ns,
+                                                       const MeasurementListener& listener = {}) const {
     MeasurementOptions options = options_of(*this);
     options.registration_frames = 16;
     options.frames_after_change = 4;
@@ -180,7 +180,7 @@ struct DriverBench : SimulatedBench {
     options.now_ns = std::move(now_ns);
     TemplateObserver observer({}, triangle_alternatives());
     ListedSchedule schedule = schedule_of(*this);
-    return measure(source, *scene_target(holder, plates), observer, schedule, options, {}, {});
+    return measure(source, *scene_target(holder, plates), observer, schedule, options, listener, {});
   }
   std::shared_ptr<SceneHolder> holder;
   std::shared_ptr<const SensorModel> model;
