@@ -32,16 +32,6 @@ int position_of(double tolerance) {
                                       std::log(largest_tolerance / least_tolerance)));
 }
 
-QString number_text(double value) {
-  return QString::number(value, 'g', 8);
-}
-
-QString numbers_text(const std::vector<double>& values) {
-  QStringList texts;
-  for (const double value : values) texts << number_text(value);
-  return texts.join(", ");
-}
-
 QString duration_text(double seconds) {
   const int whole = static_cast<int>(std::lround(seconds));
   if (whole < 120) return QString("%1 s").arg(whole);
@@ -58,52 +48,6 @@ QString change_text(double percent) {
   const double size = std::abs(percent);
   const int decimals = size >= 9.95 || size == 0 ? 0 : std::min(4, 1 - static_cast<int>(std::floor(std::log10(size))));
   return QString::number(percent, 'f', decimals) + " %";
-}
-
-QString not_a_number(const QString& text) {
-  return "'" + text + "' is not a number";
-}
-
-/// Numbers separated by commas.
-QString read_numbers(const QString& text, std::vector<double>& into) {
-  std::vector<double> values;
-  for (const QString& part : text.split(',', Qt::SkipEmptyParts)) {
-    bool good = false;
-    values.push_back(part.trimmed().toDouble(&good));
-    if (!good) return not_a_number(part.trimmed());
-  }
-  into = values;
-  return {};
-}
-
-std::vector<std::string> words_of(const QString& text) {
-  std::vector<std::string> words;
-  for (const QString& part : text.split(',', Qt::SkipEmptyParts)) words.push_back(part.trimmed().toStdString());
-  return words;
-}
-
-QString acuity_limits_text(const LimitsPlan& limits) {
-  QStringList texts;
-  for (const auto& limit : limits.acuity)
-    texts << number_text(limit.delta_t_k) + ": " + number_text(limit.least_acuity_per_mrad);
-  return texts.join(", ");
-}
-
-QString read_acuity_limits(const QString& text, LimitsPlan& limits) {
-  std::vector<AcuityLimit> out;
-  for (const QString& part : text.split(',', Qt::SkipEmptyParts)) {
-    const QStringList sides = part.split(':');
-    bool first = false, second = false;
-    AcuityLimit limit;
-    if (sides.size() == 2) {
-      limit.delta_t_k = sides[0].toDouble(&first);
-      limit.least_acuity_per_mrad = sides[1].toDouble(&second);
-    }
-    if (!first || !second) return "'" + part.trimmed() + "' is not 'contrast: least acuity'";
-    out.push_back(limit);
-  }
-  limits.acuity = out;
-  return {};
 }
 
 }  // namespace
@@ -150,130 +94,19 @@ QWidget* PlanView::form_page() {
   auto* content = new QWidget;
   auto* form = new QFormLayout(content);
   form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
-  add_fields(*form);
+  std::vector<PlanField> fields = plan_fields();
+  for (PlanField& field : fields) {
+    auto* edit = new QLineEdit;
+    edit->setObjectName(field.object_name);
+    form->addRow(field.label, edit);
+    connect(edit, &QLineEdit::editingFinished, this, [this, index = lines_.size()] { enter(lines_[index]); });
+    lines_.push_back({edit, std::move(field)});
+  }
   auto* scroll = new QScrollArea;
   scroll->setWidgetResizable(true);
   scroll->setFrameShape(QFrame::NoFrame);
   scroll->setWidget(content);
   return scroll;
-}
-
-void PlanView::add_field(QFormLayout& form, const QString& label, const QString& object_name, Field field) {
-  field.edit = new QLineEdit;
-  field.edit->setObjectName(object_name);
-  form.addRow(label, field.edit);
-  const std::size_t index = fields_.size();
-  connect(field.edit, &QLineEdit::editingFinished, this, [this, index] { enter(fields_[index]); });
-  fields_.push_back(std::move(field));
-}
-
-void PlanView::add_number(QFormLayout& form, const QString& label, const QString& object_name,
-                          std::function<double&(Plan&)> place) {
-  add_field(form, label, object_name,
-            {nullptr,
-             [place](const Plan& plan) {
-               Plan copy = plan;
-               return number_text(place(copy));
-             },
-             [place](Plan& plan, const QString& text) {
-               bool good = false;
-               const double value = text.toDouble(&good);
-               if (good) place(plan) = value;
-               return good ? QString() : not_a_number(text);
-             }});
-}
-
-void PlanView::add_text(QFormLayout& form, const QString& label, const QString& object_name,
-                        std::function<std::string&(Plan&)> place) {
-  add_field(form, label, object_name,
-            {nullptr,
-             [place](const Plan& plan) {
-               Plan copy = plan;
-               return QString::fromStdString(place(copy));
-             },
-             [place](Plan& plan, const QString& text) {
-               place(plan) = text.toStdString();
-               return QString();
-             }});
-}
-
-void PlanView::add_fields(QFormLayout& form) {
-  add_text(form, "Name", "planName", [](Plan& p) -> std::string& { return p.name; });
-  add_text(form, "Operator", "planOperator", [](Plan& p) -> std::string& { return p.operator_name; });
-  add_text(form, "Place", "planPlace", [](Plan& p) -> std::string& { return p.place; });
-  add_text(form, "Unit under test", "planUnit", [](Plan& p) -> std::string& { return p.unit; });
-  add_text(form, "Camera", "planCamera", [](Plan& p) -> std::string& { return p.camera.id; });
-  add_number(form, "IFOV of a pixel (mrad)", "planIfov", [](Plan& p) -> double& { return p.camera.ifov_mrad; });
-  add_number(form, "Correct camera every (s), 0: never", "planNuc",
-             [](Plan& p) -> double& { return p.camera.nuc_interval_s; });
-  add_number(form, "Distance to plate (m)", "planDistance", [](Plan& p) -> double& { return p.target.distance_m; });
-  add_field(form, "Plates", "planPlates",
-            {nullptr,
-             [](const Plan& p) {
-               QStringList names;
-               for (const auto& plate : p.target.plates) names << QString::fromStdString(plate);
-               return names.join(", ");
-             },
-             [](Plan& p, const QString& text) {
-               p.target.plates = words_of(text);
-               return QString();
-             }});
-  add_field(form, "Contrasts ΔT (K)", "planContrasts",
-            {nullptr, [](const Plan& p) { return numbers_text(p.target.delta_t_k); },
-             [](Plan& p, const QString& text) { return read_numbers(text, p.target.delta_t_k); }});
-  add_field(form, "Mountings", "planMountings",
-            {nullptr,
-             [](const Plan& p) {
-               QStringList names;
-               for (const auto mounting : p.target.mountings) names << text_of(to_string(mounting));
-               return names.join(", ");
-             },
-             [](Plan& p, const QString& text) {
-               std::vector<Mounting> mountings;
-               for (const auto& word : words_of(text)) {
-                 const auto mounting = mounting_from(word);
-                 if (!mounting) return "'" + QString::fromStdString(word) + "' is no mounting";
-                 mountings.push_back(*mounting);
-               }
-               p.target.mountings = mountings;
-               return QString();
-             }});
-  add_field(form, "Phases (sub-pixel shifts)", "planPhases",
-            {nullptr, [](const Plan& p) { return QString::number(p.target.phases); },
-             [](Plan& p, const QString& text) {
-               bool good = false;
-               const int value = text.toInt(&good);
-               if (good) p.target.phases = value;
-               return good ? QString() : not_a_number(text);
-             }});
-  add_text(form, "Observer", "planObserver", [](Plan& p) -> std::string& { return p.observer; });
-  add_text(form, "Simulated sensor", "planSensor", [](Plan& p) -> std::string& { return p.simulation.sensor; });
-  add_text(form, "Accuracy: draft, normal, reference", "planAccuracy",
-           [](Plan& p) -> std::string& { return p.simulation.accuracy; });
-  add_field(form, "Limits, ΔT (K): least acuity (1/mrad)", "planLimits",
-            {nullptr, [](const Plan& p) { return acuity_limits_text(p.limits); },
-             [](Plan& p, const QString& text) { return read_acuity_limits(text, p.limits); }});
-  add_field(form, "Equivalence margin (%), empty: none", "planMargin",
-            {nullptr,
-             [](const Plan& p) {
-               return p.limits.equivalence_margin_percent ? number_text(*p.limits.equivalence_margin_percent)
-                                                          : QString();
-             },
-             [](Plan& p, const QString& text) {
-               bool good = false;
-               const double value = text.toDouble(&good);
-               if (text.isEmpty()) p.limits.equivalence_margin_percent.reset();
-               if (good) p.limits.equivalence_margin_percent = value;
-               return good || text.isEmpty() ? QString() : not_a_number(text);
-             }});
-  add_field(form, "Keep frames, for a replay: yes, no", "planRecord",
-            {nullptr, [](const Plan& p) { return QString(p.measurement.record_frames ? "yes" : "no"); },
-             [](Plan& p, const QString& text) {
-               if (text != "yes" && text != "no") return "'" + text + "' is neither yes nor no";
-               p.measurement.record_frames = text == "yes";
-               return QString();
-             }});
-  add_text(form, "Notes", "planNotes", [](Plan& p) -> std::string& { return p.notes; });
 }
 
 QWidget* PlanView::toml_page() {
@@ -364,10 +197,10 @@ QWidget* PlanView::effects_table() {
   return effects_;
 }
 
-void PlanView::enter(const Field& field) {
+void PlanView::enter(const Line& line) {
   Plan plan = presenter_.plan();
-  if (field.edit->text() == field.shown(plan)) return;
-  const QString wrong = field.entered(plan, field.edit->text().trimmed());
+  if (line.edit->text() == line.field.shown(plan)) return;
+  const QString wrong = line.field.entered(plan, line.edit->text().trimmed());
   complain(wrong.isEmpty() ? presenter_.apply(plan) : wrong);
 }
 
@@ -377,8 +210,8 @@ void PlanView::complain(const QString& sentence) {
 
 void PlanView::show_plan() {
   const Plan& plan = presenter_.plan();
-  for (const auto& field : fields_) {
-    if (!field.edit->hasFocus() || !field.edit->isModified()) field.edit->setText(field.shown(plan));
+  for (const auto& line : lines_) {
+    if (!line.edit->hasFocus() || !line.edit->isModified()) line.edit->setText(line.field.shown(plan));
   }
   if (const QString text = presenter_.toml(); text != toml_->toPlainText()) toml_->setPlainText(text);
   const QSignalBlocker quiet(tolerance_);
@@ -412,7 +245,7 @@ void PlanView::show_outlook() {
     return value ? QString::number(*value, 'f', 1) : QString("–");
   };
   for (const auto& c : seen.contrasts) {
-    rows << QStringList{number_text(c.delta_t_k), c.s75_mrad ? QString::number(*c.s75_mrad, 'f', 3) : "–",
+    rows << QStringList{QString::number(c.delta_t_k, 'g', 8), c.s75_mrad ? QString::number(*c.s75_mrad, 'f', 3) : "–",
                         percent(c.camera_uncertainty_percent), percent(c.twin_uncertainty_percent)};
   }
   fill_table(*contrasts_, rows);

@@ -2,14 +2,11 @@
 #pragma once
 
 #include <QWidget>
-#include <functional>
-#include <utility>
 #include <vector>
 
-#include "bench/session/plan.h"
+#include "bench/gui/plan_fields.h"
 
 class QComboBox;
-class QFormLayout;
 class QLabel;
 class QLineEdit;
 class QPlainTextEdit;
@@ -30,24 +27,16 @@ class PlanView final : public QWidget {
   explicit PlanView(PlanPresenter& presenter, QWidget* parent = nullptr);
 
  private:
-  /// A line of the form: how it reads the plan, and how it changes one; the text that it returns is what is wrong.
-  struct Field {
+  struct Line {
     QLineEdit* edit;
-    std::function<QString(const Plan&)> shown;
-    std::function<QString(Plan&, const QString&)> entered;
+    PlanField field;
   };
 
   [[nodiscard]] QWidget* form_page();
   [[nodiscard]] QWidget* toml_page();
   [[nodiscard]] QWidget* outlook_panel();
   [[nodiscard]] QWidget* effects_table();
-  void add_field(QFormLayout& form, const QString& label, const QString& object_name, Field field);
-  void add_fields(QFormLayout& form);
-  void add_number(QFormLayout& form, const QString& label, const QString& object_name,
-                  std::function<double&(Plan&)> place);
-  void add_text(QFormLayout& form, const QString& label, const QString& object_name,
-                std::function<std::string&(Plan&)> place);
-  void enter(const Field& field);
+  void enter(const Line& line);
   void show_plan();
   void show_outlook();
   void show_effects();
@@ -55,7 +44,7 @@ class PlanView final : public QWidget {
   void complain(const QString& sentence);
 
   PlanPresenter& presenter_;
-  std::vector<Field> fields_;
+  std::vector<Line> lines_;
   QTabWidget* tabs_;
   QPlainTextEdit* toml_;
   QLabel *problem_, *tolerance_text_, *cost_, *misfit_, *reason_;

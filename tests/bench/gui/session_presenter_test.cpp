@@ -1,0 +1,73 @@
+#include "bench/gui/session_presenter.h"
+
+#include <gmock/gmock.h>
+
+#include "bench/gui/measure_presenter.h"
+#include "tests/bench/gui/gui_test_support.h"
+
+namespace todbench {
+namespace {
+
+using testing::wait_until;
+
+struct SessionBench {
+  SessionBench() {
+    EXPECT_TRUE(bench.select_device("sim:sc2000"));
+    QObject::connect(&presenter, &SessionPresenter::problem, [this](const QString& said) { problem = said; });
+  }
+  ~SessionBench() { bench.shut_down(); }
+
+  std::filesystem::path measure(std::uint64_t seed) {
+    Plan plan = testing::small_plan(bench.plan(), 6);
+    plan.seed = seed;
+    bench.set_plan(plan);
+    MeasurePresenter measuring(bench);
+    measuring.start();
+    EXPECT_TRUE(wait_until([&] { return measuring.state() == RunState::idle && bench.activity() == Activity::idle; }));
+    return measuring.folder();
+  }
+
+  testing::TemporaryFolder folder;
+  Workbench bench{folder.path()};
+  SessionPresenter presenter{bench};
+  QString problem;
+};
+
+TEST(SessionPresenter, ListsOpensAndComparesWhatIsOnDisk) {
+  SessionBench b;
+  const auto first = b.measure(1), second = b.measure(2);
+
+  b.presenter.refresh();
+  ASSERT_TRUE(wait_until([&] { return b.presenter.sessions().size() == 2; }));
+  b.presenter.open(first);
+  ASSERT_TRUE(wait_until([&] { return b.presenter.current().has_value(); }));
+  const auto session = read_session(first);
+  ASSERT_TRUE(session && session->curve);
+  EXPECT_EQ(b.presenter.current()->session.curve->points.front().fit.threshold,
+            session->curve->points.front().fit.threshold);
+  EXPECT_FALSE(b.presenter.current()->recorded);
+
+  b.presenter.compare_with(second);
+  ASSERT_TRUE(wait_until([&] { return b.presenter.compared_sessions().has_value(); }));
+  const auto& compared = *b.presenter.compared_sessions();
+  ASSERT_FALSE(compared.comparison.points.empty());
+  EXPECT_NEAR(compared.comparison.points.front().ratio.value(),
+              *compared.curve_b.points.front().fit.threshold / *compared.curve_a.points.front().fit.threshold, 1e-12);
+  EXPECT_EQ(b.problem, "");
+}
+
+TEST(SessionPresenter, SaysWhatIsWrongWithAFolderAndKeepsWhatIsOpen) {
+  SessionBench b;
+  const auto folder = b.measure(1);
+  b.presenter.open(folder);
+  ASSERT_TRUE(wait_until([&] { return b.presenter.current().has_value(); }));
+
+  b.presenter.open(b.folder.path() / "nothing");
+
+  ASSERT_TRUE(wait_until([&] { return !b.problem.isEmpty(); }));
+  EXPECT_THAT(b.problem.toStdString(), ::testing::HasSubstr("nothing"));
+  EXPECT_EQ(b.presenter.current()->folder, folder);
+}
+
+}  // namespace
+}  // namespace todbench
