@@ -11,17 +11,23 @@ using test::SmallBench;
 
 TEST(MeasurementNuc, CorrectsBeforeTheRunAndKeepsFramesOutUntilItHasPassed) {
   const SmallBench bench;
+  std::int64_t now_ns = 0;  // a frame every 20 ms, however long it takes to form it
   MeasurementOptions options = test::options_of(bench);
   options.nuc_interval_s = 3600;
-  options.nuc_wait_s = 0.5;
-  DisturbedSource source(bench.camera(), [](std::uint64_t, Frame frame) -> Result<Frame> { return frame; });
+  options.nuc_wait_s = 0.51;
+  options.now_ns = [&] { return now_ns; };
+  DisturbedSource source(bench.camera(), [&](std::uint64_t, Frame frame) -> Result<Frame> {
+    frame.host_time_ns = now_ns += 20'000'000;
+    return frame;
+  });
 
   const auto result = bench.run(source, options);
 
   ASSERT_TRUE(result.has_value()) << result.error().message;
   EXPECT_EQ(source.corrections, 1);
-  EXPECT_GT(result->frames_rejected.at("nonuniformity_correction"), 0u);
-  for (const auto& trial : result->trials) EXPECT_GE(trial.since_nuc_s, 0.5);
+  ASSERT_TRUE(result->frames_rejected.contains("nonuniformity_correction"));
+  EXPECT_EQ(result->frames_rejected.at("nonuniformity_correction"), 25u);  // 20 ... 500 ms after the command
+  for (const auto& trial : result->trials) EXPECT_GE(trial.since_nuc_s, 0.51);
 }
 
 TEST(MeasurementNuc, IsLeftToACameraThatTakesNoCommandAndTellsOfItsCorrections) {
