@@ -11,6 +11,7 @@
 #include "acquisition/core/rng.h"
 #include "acquisition/recording/flir_seq.h"
 #include "acquisition/recording/raw_recording.h"
+#include "tests/source_file.h"
 
 namespace todbench {
 namespace {
@@ -71,7 +72,7 @@ Tally recorded(Result<Recording> recording) {
   return tally;
 }
 
-const std::string golden = TODBENCH_SOURCE_DIR "/tests/golden/real/";
+const std::string golden = source_file("tests/golden/real/");
 
 // No error in n pictures bounds the error rate by 3 / n with 95 % confidence.
 TEST(ByteOrder, IsRightOnEveryPictureOfASimulatedCameraOfUsualNoise) {

@@ -7,6 +7,7 @@
 
 #include "acquisition/core/rng.h"
 #include "acquisition/recording/raw_recording.h"
+#include "tests/source_file.h"
 
 namespace todbench {
 namespace {
@@ -127,7 +128,7 @@ TEST(CorrectionWatch, TakesAPlateThatTremblesForNoCorrection) {
 // with something moving in it.
 TEST(CorrectionWatch, SeesNothingInRecordingsOfRealCamerasWithoutCorrection) {
   for (const char* name : {"lepton_a_160x120_u16le.raw", "lepton_b_160x120_u16le.raw"}) {
-    const auto recording = open_raw_recording(std::string(TODBENCH_SOURCE_DIR "/tests/golden/real/") + name,
+    const auto recording = open_raw_recording(source_file("tests/golden/real/") + name,
                                               {.width = 160, .height = 120, .significant_bits = 14});
     ASSERT_TRUE(recording.has_value());
     CorrectionWatch watch({});

@@ -8,6 +8,7 @@
 #include "acquisition/recording/raw_recording.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "tests/acquisition/gige_test_support.h"
+#include "tests/source_file.h"
 
 namespace todbench {
 namespace {
@@ -184,7 +185,7 @@ TEST(GigePixels, ShowTheNoiseReductionOnlyWhenItIsSwitchedOnOnPurpose) {
 class GigeRealRecording : public testing::TestWithParam<const char*> {};
 
 TEST_P(GigeRealRecording, ArrivesByteForByte) {
-  const auto path = std::filesystem::path(TODBENCH_SOURCE_DIR) / "tests/golden/real" / GetParam();
+  const auto path = std::filesystem::path(source_file("tests/golden/real")) / GetParam();
   const auto recording =
       path.extension() == ".seq" ? open_flir_seq(path) : open_raw_recording(path, {.width = 160, .height = 120});
   ASSERT_TRUE(recording) << recording.error().message;

@@ -8,6 +8,7 @@
 #include "acquisition/recording/flir_seq.h"
 #include "acquisition/recording/raw_recording.h"
 #include "acquisition/recording/recording_backend.h"
+#include "tests/source_file.h"
 
 namespace todbench {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
-const std::filesystem::path golden = std::filesystem::path(TODBENCH_SOURCE_DIR) / "tests/golden/real";
+const std::filesystem::path golden = source_file("tests/golden/real");
 
 /// A file that goes with the test.
 class ScratchFile {

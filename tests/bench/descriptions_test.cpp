@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/bench/temporary_folder.h"
+#include "tests/source_file.h"
 
 namespace todbench {
 namespace {
@@ -38,7 +39,7 @@ TEST(Resources, ACompiledInFileIsTheFileByteForByte) {
   const Result<Resource> resource = find_resource(ResourceKind::sensor, "sc2000");
 
   ASSERT_TRUE(resource) << resource.error().message;
-  EXPECT_EQ(resource->text, testing::content_of(TODBENCH_SOURCE_DIR "/sim_devices/sensors/sc2000.toml"));
+  EXPECT_EQ(resource->text, testing::content_of(source_file("sim_devices/sensors/sc2000.toml")));
 }
 
 TEST(Resources, AnUnknownNameIsAnsweredWithTheNearestAndTheKnownOnes) {

@@ -4,6 +4,7 @@
 
 #include "bench/session/plan_options.h"
 #include "tests/bench/temporary_folder.h"
+#include "tests/source_file.h"
 
 namespace todbench {
 namespace {
@@ -175,7 +176,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Plan, FilesNamedInAPlanAreRelativeToThePlan) {
   const testing::TemporaryFolder folder;
-  folder.write("parts/mine.toml", testing::content_of(TODBENCH_SOURCE_DIR "/sim_devices/sensors/sc2000.toml"));
+  folder.write("parts/mine.toml", testing::content_of(source_file("sim_devices/sensors/sc2000.toml")));
   const std::filesystem::path file = folder.write("plan.toml", "[simulation]\nsensor = \"parts/mine.toml\"\n");
 
   const Result<Plan> plan = load_plan(file.string());
@@ -187,7 +188,7 @@ TEST(Plan, FilesNamedInAPlanAreRelativeToThePlan) {
 
 TEST(Plan, TheMicroscanOfTheSensorHoldsUnlessThePlanSaysOtherwise) {
   const testing::TemporaryFolder folder;
-  std::string sensor = testing::content_of(TODBENCH_SOURCE_DIR "/sim_devices/sensors/sc2000.toml");
+  std::string sensor = testing::content_of(source_file("sim_devices/sensors/sc2000.toml"));
   sensor.replace(sensor.find("microscan = 1"), 13, "microscan = 2");
   folder.write("scan.toml", sensor);
   const std::string plan = "[simulation]\nsensor = \"./scan.toml\"\n";
@@ -243,8 +244,8 @@ TEST(PlanOptions, ReachThePartsThatUseThem) {
 TEST(PlanOptions, TwoPlatesOfOneNameAreRefused) {
   const testing::TemporaryFolder folder;
   Plan plan;
-  plan.target.plates = {
-      "tcat-a", folder.write("copy.toml", testing::content_of(TODBENCH_SOURCE_DIR "/tod/plates/tcat-a.toml")).string()};
+  plan.target.plates = {"tcat-a",
+                        folder.write("copy.toml", testing::content_of(source_file("tod/plates/tcat-a.toml"))).string()};
 
   const auto plates = plates_of(plan);
 

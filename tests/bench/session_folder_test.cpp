@@ -9,6 +9,7 @@
 #include "bench/session/fit_record.h"
 #include "tests/bench/temporary_folder.h"
 #include "tests/bench/trial_values.h"
+#include "tests/source_file.h"
 
 namespace todbench {
 namespace {
@@ -164,7 +165,7 @@ TEST(SessionFolder, ProvenanceSaysWhichProgramWroteIt) {
 
 TEST(SessionFolder, TheStoredPlanStandsOnItsOwnWhenItsFilesAreGone) {
   const testing::TemporaryFolder parent;
-  std::string sensor = testing::content_of(TODBENCH_SOURCE_DIR "/sim_devices/sensors/sc2000.toml");
+  std::string sensor = testing::content_of(source_file("sim_devices/sensors/sc2000.toml"));
   sensor.replace(sensor.find("netd_k = 0.07"), 13, "netd_k = 0.05");
   parent.write("parts/sc2000.toml", sensor);
   const auto plan = load_plan(parent.write("plan.toml", "[simulation]\nsensor = \"parts/sc2000.toml\"\n").string());

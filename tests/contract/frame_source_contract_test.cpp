@@ -13,6 +13,7 @@
 #include "acquisition/recording/flir_seq.h"
 #include "acquisition/recording/raw_recording.h"
 #include "sim_devices/sensor/simulated_camera.h"
+#include "tests/source_file.h"
 #ifdef TODBENCH_CONTRACT_WITH_ARAVIS
 #include "tests/acquisition/gvsp_test_support.h"
 #endif
@@ -74,7 +75,7 @@ Bench recorded(Result<Recording> recording) {
 }
 
 std::filesystem::path golden(const std::string& name) {
-  return std::filesystem::path(TODBENCH_SOURCE_DIR) / "tests/golden/real" / name;
+  return std::filesystem::path(source_file("tests/golden/real")) / name;
 }
 
 Bench lepton() {

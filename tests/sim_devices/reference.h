@@ -6,11 +6,12 @@
 
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"
+#include "tests/source_file.h"
 
 namespace todbench::test {
 
 inline nlohmann::json reference() {
-  std::ifstream file(TODBENCH_SOURCE_DIR "/tests/golden/sensor_reference.json");
+  std::ifstream file(source_file("tests/golden/sensor_reference.json"));
   return nlohmann::json::parse(file);
 }
 

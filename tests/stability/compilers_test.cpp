@@ -12,6 +12,7 @@
 #include "sim_devices/prediction/direct_estimate.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "sim_devices/sensor/transfer_functions.h"
+#include "tests/source_file.h"
 #include "tod/planning.h"
 #include "tod/psi_placement.h"
 #include "tod/range_prediction.h"
@@ -87,7 +88,7 @@ TEST(Compilers, FindTheSameNumbers) {
     std::ofstream(path) << nlohmann::json(found).dump(1) << "\n";
     GTEST_SKIP() << "wrote " << path;
   }
-  std::ifstream file(TODBENCH_SOURCE_DIR "/tests/golden/compilers.json");
+  std::ifstream file(source_file("tests/golden/compilers.json"));
   const auto golden = nlohmann::json::parse(file);
 
   ASSERT_EQ(golden.size(), found.size());

@@ -1,6 +1,7 @@
 // What accuracy costs, what a plan cannot reach, and sensors that cannot exist: as a user meets them.
 #include <cmath>
 
+#include "tests/source_file.h"
 #include "tests/system/system_test_support.h"
 
 namespace todbench::testing {
@@ -167,7 +168,7 @@ class SensorThatCannotBe : public ::testing::TestWithParam<ImpossibleSensor> {};
 /// Every command that takes a sensor says the same and begins nothing.
 TEST_P(SensorThatCannotBe, IsRefusedInASentence) {
   const TemporaryFolder folder;
-  std::string text = content_of(std::filesystem::path(TODBENCH_SOURCE_DIR) / "sim_devices/sensors/sc2000.toml");
+  std::string text = content_of(source_file("sim_devices/sensors/sc2000.toml"));
   const std::string line = GetParam().key_and_value;
   const std::string key = line.substr(0, line.find(' '));
   const std::size_t from = text.find("\n" + key + " ") + 1;
@@ -206,7 +207,7 @@ INSTANTIATE_TEST_SUITE_P(
 /// Super-resolution displays two samples per pitch and averages a quarter of its exposures in each.
 TEST(RenderOfSuperResolution, HasTheSamplesThatAreDisplayed) {
   const TemporaryFolder folder;
-  const auto file = std::filesystem::path(TODBENCH_SOURCE_DIR) / "sim_devices/sensors/sc2000.toml";
+  const auto file = source_file("sim_devices/sensors/sc2000.toml");
   folder.write("sr.toml", content_of(file) + "\nsuper_resolution_frames = 16\n");
   const auto plain = [&](const std::string& noise) {
     return one_object(todbench({"render", "--sensor", "./sr.toml", "--size-pitch", "3", "--window", "32", "--noise",

@@ -1,6 +1,7 @@
 // The noise of recordings, as a user asks for it.
 #include <cmath>
 
+#include "tests/source_file.h"
 #include "tests/system/system_test_support.h"
 
 namespace todbench::testing {
@@ -9,7 +10,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
 
-const std::string recordings = TODBENCH_SOURCE_DIR "/tests/golden/real/";
+const std::string recordings = source_file("tests/golden/real/");
 
 TEST(NoiseCommand, TellsTheAcuityUnderARealCamerasNoiseFromThatUnderWhiteNoise) {
   const std::string lepton = recordings + "lepton_a_160x120_u16le.raw?width=160&height=120";

@@ -1,5 +1,6 @@
 // Sessions of simulated cameras: what is in them, that they repeat, what they pass and fail.
 #include "bench/session/session_folder.h"
+#include "tests/source_file.h"
 #include "tests/system/system_test_support.h"
 
 namespace todbench::testing {
@@ -82,7 +83,7 @@ TEST_F(Sessions, TheStoredPlanRepeatsTheRunAlsoOnOneProcessor) {
 }
 
 TEST_F(Sessions, AMovedSessionRepeatsWithoutTheFilesItWasMadeFrom) {
-  write("plates/mine.toml", content_of(TODBENCH_SOURCE_DIR "/tod/plates/tcat-a.toml"));
+  write("plates/mine.toml", content_of(source_file("tod/plates/tcat-a.toml")));
   write("plan.toml",
         "[target]\ndistance_m = 2\nplates = [\"plates/mine.toml\"]\nmountings = [\"identity\"]\n"
         "delta_t_k = [16.9]\nphases = 2\n[simulation]\naccuracy = \"draft\"\n");
@@ -223,7 +224,7 @@ TEST_F(Sessions, AThresholdThatTheDataDoNotShowIsInconclusive) {
 }
 
 TEST_F(Sessions, CompareTellsEquivalentDifferentAndUndecidedApart) {
-  const std::string sensor = content_of(TODBENCH_SOURCE_DIR "/sim_devices/sensors/sc2000.toml");
+  const std::string sensor = content_of(source_file("sim_devices/sensors/sc2000.toml"));
   std::string blurred = sensor;
   blurred.replace(blurred.find("aberration_sigma_pitch = 0"), 26, "aberration_sigma_pitch = 1");
   write("blurred.toml", blurred);
@@ -272,10 +273,10 @@ TEST_F(Sessions, OverdueCalibrationStopsAMeasurementBeforeItBeginsAndNotASimulat
 }
 
 TEST_F(Sessions, ACameraWithoutATemperatureScaleIsACalibrationError) {
-  write("plan.toml", "[camera]\nid = \"file:" TODBENCH_SOURCE_DIR
-                     "/tests/golden/real/lepton_a_160x120_u16le.raw?width=160&height=120\"\nifov_mrad = 6.2\n"
-                     "[target]\nkind = \"prompt\"\ndistance_m = 1\nplates = [\"tcat-a\"]\ndelta_t_k = [16.9]\n"
-                     "phases = 1\n");
+  write("plan.toml", "[camera]\nid = \"file:" + source_file("tests/golden/real/lepton_a_160x120_u16le.raw") +
+                         "?width=160&height=120\"\nifov_mrad = 6.2\n"
+                         "[target]\nkind = \"prompt\"\ndistance_m = 1\nplates = [\"tcat-a\"]\ndelta_t_k = [16.9]\n"
+                         "phases = 1\n");
 
   const Ended ended = run({"measure", "./plan.toml", "--out", "m"});
 

@@ -161,10 +161,10 @@ TEST(ClosedPipe, OnStandardErrorDoesNotEndARun) {
   const TemporaryFolder folder;
   folder.write("plan.toml", small_plan(2));
 
-  const Ended ended =
-      ChildProcess({"/bin/sh", "-c", "exec \"$0\" simulate ./plan.toml --out s 2>&1 1>result | true", TODBENCH_PROGRAM},
-                   {.folder = folder.path()})
-          .wait();
+  const Ended ended = ChildProcess({"/bin/sh", "-c", "exec \"$0\" simulate ./plan.toml --out s 2>&1 1>result | true",
+                                    todbench_command({}).front()},
+                                   {.folder = folder.path()})
+                          .wait();
   (void)ended;
 
   expect_whole_session(folder.path() / "s", "complete");

@@ -12,12 +12,13 @@
 #include <vector>
 
 #include "acquisition/core/rng.h"
+#include "tests/source_file.h"
 #include "tod/target_plate.h"
 
 namespace todbench::testing {
 
 inline TargetPlate shipped_plate(const std::string& name) {
-  const toml::table file = toml::parse_file(std::string(TODBENCH_SOURCE_DIR) + "/tod/plates/" + name + ".toml");
+  const toml::table file = toml::parse_file(source_file("tod/plates/") + name + ".toml");
   TargetPlate plate;
   plate.name = file["name"].value<std::string>().value();
   plate.description = file["description"].value<std::string>().value();

@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "acquisition/core/rng.h"
+#include "tests/source_file.h"
 #include "tod/psychometric_fit.h"
 
 namespace todbench::testing {
 
 inline nlohmann::json reference_cases() {
-  std::ifstream file(std::string(TODBENCH_SOURCE_DIR) + "/tests/golden/psychometric_cases.json");
+  std::ifstream file(source_file("tests/golden/psychometric_cases.json"));
   return nlohmann::json::parse(file);
 }
 
