@@ -180,32 +180,44 @@ class Run {
 
   /// Changes the target; the camera goes on meanwhile.
   Result<void> present(const TargetState& state) {
+    if (options_.frames_while_presenting == FramesMeanwhile::take) return present_and_take(state);
     Result<void> taken;
-    Result<PresentedTarget> presented;
     if (options_.frames_while_presenting == FramesMeanwhile::repeat) {
       const std::int64_t calls = listener_.asked_while_presenting ? listener_.asked_while_presenting(0) : 0;
       taken = taker_.take_while_presenting([calls](std::int64_t asked) { return asked >= calls; });
     }
-    if (options_.frames_while_presenting == FramesMeanwhile::take) {
-      std::atomic<bool> there = false;
-      std::int64_t calls = 0;
-      {
-        const std::jthread frames([&] {
-          taken = taker_.take_while_presenting([&](std::int64_t asked) {
-            calls = asked;
-            return there.load();
-          });
-        });
-        presented = target_.present(state, stop_);
-        there = true;
-      }
-      // The call that failed counts too.
-      if (listener_.asked_while_presenting) (void)listener_.asked_while_presenting(taken ? calls : calls + 1);
-    } else {
-      presented = target_.present(state, stop_);
-    }
+    const auto presented = target_.present(state, stop_);
     target_failed_ = !presented;
     if (!presented) return fail("presenting the target", presented.error());
+    return taken;
+  }
+
+  /// Changes the target while a second thread takes the frames. A camera that fails ends the wait for the target: a
+  /// black body may need minutes, and what it would settle for has to be presented again anyway.
+  Result<void> present_and_take(const TargetState& state) {
+    Result<void> taken;
+    Result<PresentedTarget> presented;
+    std::atomic<bool> there = false;
+    std::int64_t calls = 0;
+    {
+      std::stop_source give_up;
+      const std::stop_callback stopped(stop_, [&give_up] { give_up.request_stop(); });
+      const std::jthread frames([&] {
+        taken = taker_.take_while_presenting([&](std::int64_t asked) {
+          calls = asked;
+          return there.load();
+        });
+        if (!taken) give_up.request_stop();
+      });
+      presented = target_.present(state, give_up.get_token());
+      there = true;
+    }
+    // The call that failed counts too.
+    if (listener_.asked_while_presenting) (void)listener_.asked_while_presenting(taken ? calls : calls + 1);
+    const bool given_up =
+        !taken && !presented && presented.error().code == ErrorCode::interrupted && !stop_.stop_requested();
+    target_failed_ = !presented && !given_up;
+    if (target_failed_) return fail("presenting the target", presented.error());
     return taken;
   }
 

@@ -127,8 +127,11 @@ Result<void> add_pages(const TiffFile& file, std::size_t number, std::vector<Pag
                                                 std::to_string(size.height));
     }
     pages.push_back({number, TIFFCurrentDirOffset(file.get())});
+    if (TIFFLastDirectory(file.get()) != 0) return {};
   } while (TIFFReadDirectory(file.get()) != 0);
-  return {};
+  // The last page that can be read points to another one.
+  return fail(ErrorCode::invalid_input,
+              "page " + std::to_string(pages.size() + 1) + " is missing: " + file.why("the file is cut off"));
 }
 
 /// Reads pages in any order; the file of the last one stays open.

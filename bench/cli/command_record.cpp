@@ -1,6 +1,8 @@
 // todbench record
 #include <cctype>
+#include <filesystem>
 #include <memory>
+#include <string_view>
 
 #include "acquisition/core/integrity_gate.h"
 #include "acquisition/recording/frame_stream.h"
@@ -129,12 +131,27 @@ bool as_wanted(const Recorded& recorded, const RecordArguments& a) {
          recorded.frames > 0;
 }
 
+/// Whether the file that is about to be written is the one that the frames come out of, or one of that folder.
+bool overwrites_its_camera(const std::filesystem::path& file, const std::string& camera) {
+  constexpr std::string_view scheme = "file:";
+  if (!camera.starts_with(scheme)) return false;
+  const std::filesystem::path source = camera.substr(scheme.size(), camera.find('?') - scheme.size());
+  std::error_code problem;
+  if (!std::filesystem::exists(file, problem)) return false;
+  if (std::filesystem::equivalent(file, source, problem)) return true;
+  return std::filesystem::is_directory(source, problem) &&
+         std::filesystem::equivalent(std::filesystem::absolute(file).parent_path(), source, problem);
+}
+
 int run_record(Console& console, const RecordArguments& a, StopSignals& stop) {
   const std::filesystem::path file = a.out.empty() ? default_file(a) : a.out;
   std::error_code problem;
   if (std::filesystem::exists(file, problem) && !a.overwrite) {
     return report_error(console, {ErrorCode::invalid_input,
                                   file.string() + ": exists already; choose another or allow overwriting (--force)"});
+  }
+  if (overwrites_its_camera(file, a.camera)) {
+    return report_error(console, {ErrorCode::invalid_input, file.string() + ": is where the frames come from"});
   }
   auto camera = camera_registry().open(a.camera);
   if (!camera) return report_error(console, camera.error());

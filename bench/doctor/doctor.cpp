@@ -110,7 +110,7 @@ DoctorCheck check_interfaces(const fs::path& root) {
     const bool poor = one.wireless || (one.speed_mbit > 0 && one.speed_mbit < 1000);
     if (poor && slow.empty()) slow = one.name;
   }
-  if (interfaces.empty()) check.found = "only the loopback is up";
+  if (interfaces.empty()) check.found = "only the loopback is up: no GigE Vision camera but an emulated one can answer";
   if (interfaces.size() > 1 || !slow.empty()) check.finding = Finding::warning;
   if (interfaces.size() > 1 && !slow.empty()) check.command = "sudo ip link set " + slow + " down";
   return check;
@@ -146,6 +146,8 @@ DoctorCheck check_disk(const SystemFacts& facts, const DoctorDemand& demand) {
   if (!facts.disk_free_bytes) {
     check.found = "the folder cannot be written";
     check.finding = Finding::problem;
+    check.explanation += " A session has to be written where you may create folders: look at its owner and its mode.";
+    check.command = "todbench measure PLAN.toml --out FOLDER_OF_YOUR_OWN";
     return check;
   }
   check.found = mib(static_cast<double>(*facts.disk_free_bytes)) + " free";

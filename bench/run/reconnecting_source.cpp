@@ -12,9 +12,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Read-only and different at every look, or a matter of the connection.
+/// Read-only and different at every look, a matter of the connection, or told by the camera only when it streams: the
+/// dead pixels of a Seek are in its first frame.
 constexpr std::array volatile_settings{"DeviceTemperature", "SensorTemperature", "HousingTemperature",
-                                       "SocketBufferBytes"};
+                                       "SocketBufferBytes", "DeadPixels"};
 
 /// What a connection attempt came to, shared between it and who waits for it.
 template <typename Value>

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "sim_devices/lab/v4l2_camera_state.h"
 
@@ -98,6 +99,7 @@ void EmulatedV4l2Camera::State::deliver(const cv::Mat1w& counts, std::uint64_t i
   buffer.flags = V4L2_BUF_FLAG_DONE;
   buffer.timestamp = {.tv_sec = time_us / 1'000'000, .tv_usec = time_us % 1'000'000};
   if (arrives_short(config, index)) buffer.bytesused /= 2;
+  if (shortened) buffer.bytesused = std::min(buffer.bytesused, *std::exchange(shortened, std::nullopt));
   if (truncated) {
     buffer.bytesused = std::min(buffer.bytesused, *truncated);
     buffer.flags |= V4L2_BUF_FLAG_ERROR;
@@ -217,6 +219,11 @@ void EmulatedV4l2Camera::lose_exposures(unsigned count) {
 void EmulatedV4l2Camera::truncate_next_frame(std::uint32_t bytes) {
   const std::lock_guard lock(state_->mutex);
   state_->truncated = bytes;
+}
+
+void EmulatedV4l2Camera::shorten_next_frame(std::uint32_t bytes) {
+  const std::lock_guard lock(state_->mutex);
+  state_->shortened = bytes;
 }
 
 }  // namespace todbench

@@ -52,6 +52,9 @@ class EmulatedV4l2Camera {
   void lose_exposures(unsigned count);
   /// The next frame is sent with the driver's mark for missing data and only this many bytes.
   void truncate_next_frame(std::uint32_t bytes);
+  /// The next frame is sent with only this many bytes, as if that were all of it: drivers do so when a transfer ended
+  /// early and nothing was missing on the bus.
+  void shorten_next_frame(std::uint32_t bytes);
 
  private:
   struct State;

@@ -49,7 +49,7 @@ struct EmulatedV4l2Camera::State {
   std::uint64_t exposures = 0, failed = 0, corrections = 0, last_correction = 0;
   int frozen_frames = 0;
   unsigned to_lose = 0;
-  std::optional<std::uint32_t> truncated;
+  std::optional<std::uint32_t> truncated, shortened;
   cv::Mat1w last;
   std::jthread camera;
 

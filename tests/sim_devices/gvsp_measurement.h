@@ -151,6 +151,9 @@ struct WireBench : SimulatedBench {
     MeasurementOptions out = options_of(*this);
     out.frames_after_change = 2;
     out.max_rejected_share = 0.9;
+    // Two frozen pictures in succession look like a shutter. At 5 % every 400th frame ends such a pair, and a second of
+    // waiting after each would be most of the time of a run that needs about 100 frames. Five frames are waited for.
+    out.nuc_wait_s = 0.05;
     return out;
   }
 

@@ -121,5 +121,21 @@ TEST_F(Replays, RecordRefusesAnExistingFileAndACameraThatIsNotThere) {
   expect_refused(run({"record", "file:absent.todrec"}), 4, "no such file");
 }
 
+TEST_F(Replays, RecordNeverOverwritesTheFramesThatItReads) {
+  ASSERT_EQ(run({"record", "sim:sc2000", "--frames", "3", "--out", "a.todrec"}).code, 0);
+  const auto size = std::filesystem::file_size(at("a.todrec"));
+
+  expect_refused(run({"record", "file:a.todrec", "--out", "./a.todrec", "--force"}), 2, "where the frames come from");
+
+  EXPECT_EQ(std::filesystem::file_size(at("a.todrec")), size);
+}
+
+TEST_F(Replays, RecordRefusesATiffStackThatIsCutOff) {
+  ASSERT_EQ(run({"record", "sim:sc2000", "--frames", "5", "--format", "tiff", "--out", "a.tif"}).code, 0);
+  std::filesystem::resize_file(at("a.tif"), std::filesystem::file_size(at("a.tif")) / 2);
+
+  expect_refused(run({"record", "file:a.tif?bits=14", "--out", "b.todrec"}), 2, "is missing");
+}
+
 }  // namespace
 }  // namespace todbench::testing
