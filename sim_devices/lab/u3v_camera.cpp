@@ -12,6 +12,8 @@
 #include <string_view>
 #include <utility>
 
+#include "sim_devices/lab/u3v_protocol.h"
+
 namespace todbench {
 
 /// Generated from u3v_camera.xml.
@@ -19,132 +21,11 @@ std::string_view u3v_camera_xml();
 
 namespace {
 
+using namespace u3v;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint8_t control_in = 0x81, control_out = 0x01, stream_in = 0x82;
-
-// GenCP 1.1, sections 4.3 and 4.4: bootstrap registers of every device, and where this one keeps its tables.
-constexpr std::uint64_t abrm_vendor = 0x4, abrm_model = 0x44, abrm_family = 0x84, abrm_version = 0xC4,
-                        abrm_serial = 0x144, abrm_capability = 0x1C4, abrm_response_time = 0x1CC, abrm_manifest = 0x1D0,
-                        abrm_sbrm = 0x1D8, abrm_tick = 0x1FC;
-constexpr std::uint64_t sbrm = 0x1000, sirm = 0x1100, eirm = 0x1200, manifest = 0x2000;
-constexpr std::uint64_t camera_registers = 0x10000, description_address = 0x100000;
-constexpr std::size_t bootstrap_size = 0x3000, camera_size = 0x100;
-// Offsets in the stream interface registers (USB3 Vision 1.0, table 5-8).
-constexpr std::uint64_t si_info = 0x0, si_control = 0x4, si_payload = 0x8, si_leader = 0x10, si_trailer = 0x14;
-constexpr std::size_t leader_size = 52, trailer_size = 32;
-
-// The camera's own registers; u3v_camera.xml names the same addresses.
-constexpr std::uint64_t reg_width = 0x00, reg_height = 0x04, reg_pixel_format = 0x10, reg_largest_count = 0x14,
-                        reg_acquisition = 0x1C, reg_period_us = 0x20, reg_ir_format = 0x24, reg_nuc = 0x2C,
-                        reg_scale = 0x40, reg_offset = 0x48;
-constexpr std::uint32_t mono14 = 0x01100025, mono16 = 0x01100007;
-constexpr std::uint32_t format_100mk = 1, format_10mk = 2;
-
-// GenCP 1.1, section 4.2.
-constexpr std::uint32_t command_magic = 0x43563355, leader_magic = 0x4C563355, trailer_magic = 0x54563355;
-constexpr std::uint16_t read_memory = 0x0800, write_memory = 0x0802;
-constexpr std::uint16_t status_ok = 0, status_not_implemented = 0x8001, status_invalid_parameter = 0x8002,
-                        status_invalid_address = 0x8003, status_write_protected = 0x8004;
-constexpr std::size_t header_size = 12;
-constexpr std::size_t longest_transfer = 1024 + header_size;
 /// Answers that nobody fetched: a client that only asks does not make the camera grow.
 constexpr std::size_t most_answers = 8;
-
-template <typename T>
-void put(UsbBytes& bytes, T value) {
-  for (std::size_t k = 0; k < sizeof(T); ++k) {
-    bytes.push_back(static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> (8 * k) & 0xFFU));
-  }
-}
-
-template <typename T>
-T get(std::span<const std::uint8_t> bytes, std::size_t offset) {
-  std::uint64_t value = 0;
-  for (std::size_t k = 0; k < sizeof(T); ++k) value |= std::uint64_t{bytes[offset + k]} << (8 * k);
-  return static_cast<T>(value);
-}
-
-/// Registers in memory, little-endian.
-class Registers {
- public:
-  Registers(std::uint64_t base, std::size_t size) : base_(base), bytes_(size) {}
-  [[nodiscard]] bool contains(std::uint64_t address, std::size_t size) const {
-    return address >= base_ && address - base_ <= bytes_.size() && size <= bytes_.size() - (address - base_);
-  }
-  [[nodiscard]] std::span<std::uint8_t> at(std::uint64_t address, std::size_t size) {
-    return std::span(bytes_).subspan(address - base_, size);
-  }
-  template <typename T>
-  void set(std::uint64_t address, T value) {
-    UsbBytes bytes;
-    put(bytes, value);
-    std::copy(bytes.begin(), bytes.end(), at(address, bytes.size()).begin());
-  }
-  void set(std::uint64_t address, const std::string& text) {
-    std::copy_n(text.begin(), std::min<std::size_t>(text.size(), 63), at(address, 64).begin());
-  }
-  [[nodiscard]] std::uint32_t u32(std::uint64_t address) { return get<std::uint32_t>(at(address, 4), 0); }
-
- private:
-  std::uint64_t base_;
-  UsbBytes bytes_;
-};
-
-std::uint32_t crc32(std::span<const std::uint8_t> bytes) {
-  std::uint32_t crc = 0xFFFFFFFF;
-  for (const auto byte : bytes) {
-    crc ^= byte;
-    for (int k = 0; k < 8; ++k) crc = crc >> 1U ^ (0xEDB88320U & (0U - (crc & 1U)));
-  }
-  return ~crc;
-}
-
-/// A ZIP archive with one stored file.
-UsbBytes zipped(std::string_view name, std::string_view content) {
-  const std::span data(reinterpret_cast<const std::uint8_t*>(content.data()), content.size());
-  // Fields that local header and directory entry share: version, flags, method 0, time, date, crc, sizes, name.
-  UsbBytes common;
-  for (const unsigned word : {20U, 0U, 0U, 0U, 0x21U}) put(common, static_cast<std::uint16_t>(word));
-  put(common, crc32(data));
-  put(common, static_cast<std::uint32_t>(data.size()));
-  put(common, static_cast<std::uint32_t>(data.size()));
-  put(common, static_cast<std::uint16_t>(name.size()));
-  put(common, std::uint16_t{0});
-  UsbBytes zip{'P', 'K', 3, 4};
-  zip.insert(zip.end(), common.begin(), common.end());
-  zip.insert(zip.end(), name.begin(), name.end());
-  zip.insert(zip.end(), data.begin(), data.end());
-  const auto directory = static_cast<std::uint32_t>(zip.size());
-  zip.insert(zip.end(), {'P', 'K', 1, 2, 20, 0});
-  zip.insert(zip.end(), common.begin(), common.end());
-  zip.insert(zip.end(), 14, 0);  // comment, disk, attributes, offset of the local header
-  zip.insert(zip.end(), name.begin(), name.end());
-  const auto directory_size = static_cast<std::uint32_t>(zip.size() - directory);
-  zip.insert(zip.end(), {'P', 'K', 5, 6, 0, 0, 0, 0, 1, 0, 1, 0});
-  put(zip, directory_size);
-  put(zip, directory);
-  put(zip, std::uint16_t{0});
-  return zip;
-}
-
-UsbDescriptors descriptors_of(const U3vCameraConfig& config) {
-  UsbDescriptors d;
-  d.device = {18, 1, 0x00, 0x02, 0xEF, 2, 1, 64, 0x09, 0x12, 0x02, 0x00, 0x00, 0x01, 1, 2, 3, 1};
-  d.configuration = {9,  2,    0,          0, 2,    1,    0, 0x80, 250,  // configuration
-                     8,  11,   0,          2, 0xEF, 5,    0, 0,          // association
-                     9,  4,    0,          0, 2,    0xEF, 5, 0,    0,    // control
-                     20, 0x24, 1,          1, 0,    1,    0, 0,    0,   1,           0, 4,    1,    2,
-                     0,  5,    0,          3, 0,    0x04,  // device information
-                     7,  5,    control_in, 2, 0x00, 0x02, 0, 7,    5,   control_out, 2, 0x00, 0x02, 0,  // its endpoints
-                     9,  4,    1,          0, 1,    0xEF, 5, 2,    0,                                   // stream
-                     7,  5,    stream_in,  2, 0x00, 0x02, 0};
-  d.configuration[2] = static_cast<std::uint8_t>(d.configuration.size());
-  // The GUID is the vendor's number and the serial number (USB3 Vision 1.0, section 4.3.1).
-  d.strings = {config.vendor, config.model, config.serial, "1209" + config.serial, config.firmware};
-  d.speed = UsbSpeed::high;
-  return d;
-}
 
 class Camera final : public U3vCamera {
  public:
