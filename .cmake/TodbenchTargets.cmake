@@ -37,6 +37,11 @@ function(todbench_test name)
   if(TODBENCH_SANITIZE MATCHES "thread")
     set(environment ENVIRONMENT "TSAN_OPTIONS=suppressions=${CMAKE_SOURCE_DIR}/tests/tsan_suppressions.txt")
   endif()
+  # Long tests begin first, so that none runs alone at the end.
+  set(cost 0)
+  if("slow" IN_LIST ARG_LABELS)
+    set(cost 100)
+  endif()
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60
-    PROPERTIES TIMEOUT ${ARG_TIMEOUT} ${environment} LABELS "${ARG_LABELS}")
+    PROPERTIES TIMEOUT ${ARG_TIMEOUT} COST ${cost} ${environment} LABELS "${ARG_LABELS}")
 endfunction()
