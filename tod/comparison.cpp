@@ -20,10 +20,17 @@ double upper_tail(double x, double degrees_of_freedom) {
   return bm::cdf(bm::complement(bm::students_t(degrees_of_freedom), x));
 }
 
+// Where upper_tail() is `probability`.
+double upper_quantile(double probability, double degrees_of_freedom) {
+  namespace bm = boost::math;
+  if (!std::isfinite(degrees_of_freedom)) return bm::quantile(bm::complement(bm::normal(), probability));
+  return bm::quantile(bm::complement(bm::students_t(degrees_of_freedom), probability));
+}
+
 // Largest of the two one-sided probabilities that a ratio at or beyond the margin gives this estimate (Schuirmann
 // 1987).
-double equivalence_probability(double ln_ratio, double se, double margin_percent, double degrees_of_freedom) {
-  return upper_tail((std::log1p(margin_percent / 100) - std::abs(ln_ratio)) / se, degrees_of_freedom);
+double wald_equivalence_probability(double ln_ratio, double se, double margin_percent) {
+  return upper_tail((std::log1p(margin_percent / 100) - std::abs(ln_ratio)) / se, infinite);
 }
 
 // A threshold that a ratio may be made of. A slope at its lower bound or a ridge has a number but not a meaning.
@@ -48,7 +55,6 @@ Interval ratio_interval(double ta, const Interval& a, double tb, const Interval&
 struct DifferenceSpread {
   double inflation = 1;                  // of the variance of the difference
   double degrees_of_freedom = infinite;  // Welch and Satterthwaite; infinite without clusters
-  std::optional<double> se;              // inflated
 };
 
 DifferenceSpread spread_of(const PsychometricFit& a, const PsychometricFit& b) {
@@ -64,10 +70,22 @@ DifferenceSpread spread_of(const PsychometricFit& a, const PsychometricFit& b) {
   const double plain_a = *a.se_ln_threshold * *a.se_ln_threshold, plain_b = *b.se_ln_threshold * *b.se_ln_threshold;
   const double va = a.variance_inflation * plain_a, vb = b.variance_inflation * plain_b;
   spread.inflation = (va + vb) / (plain_a + plain_b);
-  spread.se = std::sqrt(va + vb);
   const double rest = va * va / freedom(a) + vb * vb / freedom(b);
   if (rest > 0) spread.degrees_of_freedom = (va + vb) * (va + vb) / rest;
   return spread;
+}
+
+// The same from the interval: on each side the log ratio is taken as normal (or t) with the spread that the side of the
+// 90 % interval has, so that 0.05 is where the interval touches the margin.
+std::optional<double> equivalence_probability(double ln_ratio, const Interval& ci90, double margin_percent,
+                                              double degrees_of_freedom) {
+  if (!ci90.low || !ci90.high) return std::nullopt;
+  const double below = ln_ratio - std::log(*ci90.low), above = std::log(*ci90.high) - ln_ratio;
+  if (!(below > 0 && above > 0)) return std::nullopt;
+  const double margin = std::log1p(margin_percent / 100);
+  const double quantile = upper_quantile(0.05, degrees_of_freedom);
+  return std::max(upper_tail(quantile * (margin - ln_ratio) / above, degrees_of_freedom),
+                  upper_tail(quantile * (margin + ln_ratio) / below, degrees_of_freedom));
 }
 
 ComparisonVerdict verdict_of(const ComparisonPoint& point) {
@@ -95,9 +113,8 @@ Result<ComparisonPoint> compare_points(const TodPoint& a, const TodPoint& b, con
   if (!test) return tl::unexpected(test.error());
   const DifferenceSpread spread = spread_of(a.fit, b.fit);
   point.p_difference = std::min(1.0, 2 * upper_tail(std::sqrt(test->lr / spread.inflation), spread.degrees_of_freedom));
-  if (spread.se)
-    point.p_equivalence =
-        equivalence_probability(*tb - *ta, *spread.se, options.margin_percent, spread.degrees_of_freedom);
+  point.p_equivalence =
+      equivalence_probability(*tb - *ta, point.ratio_ci90, options.margin_percent, spread.degrees_of_freedom);
   point.verdict = verdict_of(point);
   return point;
 }
@@ -163,7 +180,7 @@ Result<ThresholdTest> test_thresholds(std::span<const Level> a, std::span<const 
   test.ln_ratio = maxima.ln_ratio;
   test.se_ln_ratio = maxima.se_ln_ratio.value_or(0.0);
   if (maxima.se_ln_ratio)
-    test.p_equivalence = equivalence_probability(test.ln_ratio, *maxima.se_ln_ratio, margin_percent, infinite);
+    test.p_equivalence = wald_equivalence_probability(test.ln_ratio, *maxima.se_ln_ratio, margin_percent);
   return test;
 }
 

@@ -35,8 +35,8 @@ struct ComparisonPoint {
   /// Likelihood-ratio test of a common threshold, its statistic divided by the variance inflation and, with clusters,
   /// referred to Student's t with the degrees of freedom of Welch and Satterthwaite.
   std::optional<double> p_difference;
-  /// Two one-sided tests on the log ratio by its standard error (Wald); missing where a fit has none. The verdict is
-  /// that of the 90 % interval, from the profile likelihood, so close to the margin 0.05 and the verdict may disagree.
+  /// Two one-sided tests on the log ratio (Schuirmann 1987) with the spread of either side of `ratio_ci90`: below 0.05
+  /// exactly where that interval lies inside the margin. Missing where a side of it is.
   std::optional<double> p_equivalence;
   double margin_percent = 0;
   ComparisonVerdict verdict = ComparisonVerdict::inconclusive;

@@ -314,10 +314,8 @@ Markup comparison_section(const ReportData& data) {
   const Markup explanation = paragraph(
       cell(
           "p different: likelihood-ratio test of a common threshold, corrected for groups of trials. p equivalent: two "
-          "one-sided tests that the ratio lies within the margin, chosen before the measurement, on the normal "
-          "approximation; the verdict is that of the 90 % interval, which follows the likelihood and may differ from "
-          "it "
-          "close to the margin. Neither different nor equivalent is inconclusive: more trials are needed, nothing is "
+          "one-sided tests that the ratio lies within the margin, chosen before the measurement; below 0.05 the 90 % "
+          "interval lies within it. Neither test significant is inconclusive: more trials are needed, nothing is "
           "shown."),
       "note");
   return section("Measured against simulated", table(rows) + overall + explanation);

@@ -207,6 +207,36 @@ TEST(Comparison, RatioIntervalsJoinBothIntervalsOnTheLogScale) {
   EXPECT_GT(*p.ratio_ci95.high, *p.ratio_ci90.high);
 }
 
+TEST(Comparison, EquivalenceIsSignificantExactlyWhereTheIntervalLiesWithinTheMargin) {
+  // Trials and true ratios on both sides of what shows equivalence within 10 %.
+  int equivalent = 0, others = 0;
+  for (const int trials : {100, 200, 300, 400, 600}) {
+    for (double ratio = 0.9; ratio <= 1.1; ratio += 0.01) {
+      const auto comparison =
+          compare(curve({point(2, counts(1, 3, trials))}), curve({point(2, counts(ratio, 4, trials))}), {});
+      ASSERT_TRUE(comparison);
+      const ComparisonPoint& p = comparison->points[0];
+      const bool within = *p.ratio_ci90.low >= 1 / 1.1 && *p.ratio_ci90.high <= 1.1;
+      EXPECT_EQ(p.p_equivalence.value() <= 0.05, within) << trials << " trials, ratio " << ratio;
+      ++(within ? equivalent : others);
+    }
+  }
+  EXPECT_GT(equivalent, 20);
+  EXPECT_GT(others, 20);
+}
+
+TEST(Comparison, EquivalenceAgreesWithTheStandardErrorWhereThereAreManyTrials) {
+  const auto a = point(2, counts(1, 3, 2000)), b = point(2, counts(1.08, 3, 2000));
+  const auto comparison = compare(curve({a}), curve({b}), {});
+
+  ASSERT_TRUE(comparison);
+  const double ln_ratio = std::log(*b.fit.threshold / *a.fit.threshold);
+  const double wald = upper_normal_tail((std::log(1.1) - std::abs(ln_ratio)) /
+                                        std::hypot(*a.fit.se_ln_threshold, *b.fit.se_ln_threshold));
+  // Profile and Wald intervals of 16 000 trials differ by less than 2 %.
+  EXPECT_NEAR(comparison->points[0].p_equivalence.value() / wald, 1, 0.1);
+}
+
 TEST(Comparison, FewTrialsOfEqualThresholdsAreInconclusive) {
   const auto comparison = compare(curve({point(2, counts(1, 3, 16))}), curve({point(2, counts(1.02, 3, 16))}), {});
 
