@@ -6,7 +6,7 @@
 #include "bench/run/devices.h"
 #include "bench/run/experiment_inputs.h"
 #include "bench/run/prediction.h"
-#include "bench/run/simulated_responses.h"
+#include "bench/run/simulated_set_up.h"
 #include "bench/session/plan_options.h"
 #include "bench/session/text.h"
 #include "tod/test_pattern.h"
@@ -24,17 +24,11 @@ std::optional<double> standard_error(const PsychometricFit& fit) {
 /// The plan measured on its simulated sensor from nothing, as `simulate` does it.
 Result<std::vector<ThresholdEstimate>> from_trials(const Plan& plan, const ExperimentInputs& inputs,
                                                    std::stop_token stop) {
-  const auto model = std::make_shared<const SensorModel>(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
+  auto set_up = simulated_set_up(plan, inputs, {}, stop);
+  if (!set_up) return tl::unexpected(set_up.error());
   TemplateObserver observer(inputs.observer, triangle_alternatives());
-  MeasurementOptions options = simulated_options(plan, inputs);
-  auto response = simulated_responses(*model, plan, inputs.plates, options, stop);
-  if (!response) return tl::unexpected(response.error());
-  options.contrast_response = std::move(*response);
-  const OpenedBench bench =
-      simulated_bench(model, inputs.plates, plan.target.distance_m, std::map<double, double>(), inputs.motion);
-  const auto schedule = make_schedule(plan, inputs.plates, inputs.sensor.ifov_mrad(), Side::simulated,
-                                      RandomStream(plan.seed, "schedule.simulated"));
-  const auto result = measure(*bench.camera, *bench.target, observer, *schedule, options, MeasurementListener{}, stop);
+  const auto result = measure(*set_up->bench.camera, *set_up->bench.target, observer, *set_up->schedule,
+                              set_up->options, MeasurementListener{}, stop);
   if (!result) return tl::unexpected(result.error());
   if (result->ended_by) return tl::unexpected(*result->ended_by);
   const auto curve = tod_curve(result->trials, fit_options(plan));

@@ -11,6 +11,7 @@
 #include "bench/run/recorded_bench.h"
 #include "bench/run/report_data.h"
 #include "bench/run/simulated_responses.h"
+#include "bench/run/simulated_set_up.h"
 #include "bench/session/text.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "tod/measurement.h"
@@ -153,17 +154,11 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
                               SessionCurve which, std::map<double, double> shown_delta_t_k,
                               const ExperimentListener& listener, std::stop_token stop) {
   const auto begin = Clock::now();
-  const auto model = std::make_shared<const SensorModel>(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
+  auto set_up = simulated_set_up(plan, inputs, std::move(shown_delta_t_k), stop);
+  if (!set_up) return tl::unexpected(set_up.error());
   TemplateObserver observer(inputs.observer, triangle_alternatives());
-  MeasurementOptions options = simulated_options(plan, inputs);
-  auto response = simulated_responses(*model, plan, inputs.plates, options, stop);
-  if (!response) return tl::unexpected(response.error());
-  options.contrast_response = std::move(*response);
-  OpenedBench bench =
-      simulated_bench(model, inputs.plates, plan.target.distance_m, std::move(shown_delta_t_k), inputs.motion);
-  const auto schedule = make_schedule(plan, inputs.plates, inputs.sensor.ifov_mrad(), Side::simulated,
-                                      RandomStream(plan.seed, "schedule.simulated"));
-  auto result = Recorder(folder, listener, stop).run(bench, observer, *schedule, options, which);
+  auto result =
+      Recorder(folder, listener, stop).run(set_up->bench, observer, *set_up->schedule, set_up->options, which);
   if (!result) return fail("simulating", result.error());
   TwinRun run{.result = std::move(*result), .curve = {}, .wall_s = 0};
   auto curve = tod_curve(run.result.trials, fit_options(plan));

@@ -1,0 +1,25 @@
+// A plan on its simulated sensor, ready to be measured.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <stop_token>
+
+#include "bench/run/devices.h"
+#include "bench/run/experiment_inputs.h"
+#include "tod/measurement.h"
+
+namespace todbench {
+
+/// What measure() needs beside an observer, with the random streams of the plan's seed.
+struct SimulatedSetUp {
+  MeasurementOptions options;
+  OpenedBench bench;
+  std::unique_ptr<TrialSchedule> schedule;
+};
+
+/// `shown_delta_t_k` as for simulated_bench(). Errors as contrast_response().
+[[nodiscard]] Result<SimulatedSetUp> simulated_set_up(const Plan& plan, const ExperimentInputs& inputs,
+                                                      std::map<double, double> shown_delta_t_k, std::stop_token stop);
+
+}  // namespace todbench
