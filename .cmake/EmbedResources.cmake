@@ -1,10 +1,10 @@
 # cmake -D SOURCE_DIR=... -D OUTPUT=... -P EmbedResources.cmake
 # Writes the C++ source that holds every shipped plate, sensor, observer and plan.
 
-set(content "#include <array>\n\n#include \"bench/session/resources.h\"\n\nnamespace todbench {\n\nnamespace {\n\n")
+set(content "#include <array>\n\n#include \"bench/plan/resources.h\"\n\nnamespace todbench {\n\nnamespace {\n\n")
 set(rows "")
 set(count 0)
-foreach(entry "plate:tod/plates" "sensor:sim_devices/sensors" "observer:hvs/observers" "plan:bench/plans")
+foreach(entry "plate:tod/plate" "sensor:sim_devices/sensors" "observer:hvs/observers" "plan:bench/plans")
   string(REPLACE ":" ";" entry "${entry}")
   list(GET entry 0 kind)
   list(GET entry 1 folder)

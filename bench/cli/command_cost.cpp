@@ -5,13 +5,13 @@
 #include "bench/cli/commands.h"
 #include "bench/report/cost_figure.h"
 #include "bench/report/report.h"
-#include "bench/run/cost_study.h"
+#include "bench/studies/cost_study.h"
 #include "bench/run/report_data.h"
 #include "bench/session/cost_record.h"
-#include "bench/session/files.h"
+#include "bench/text/files.h"
 #include "bench/session/manifest.h"
 #include "bench/session/session_folder.h"
-#include "bench/session/verdict.h"
+#include "bench/judgement/verdict.h"
 
 namespace todbench {
 namespace {

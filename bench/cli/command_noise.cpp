@@ -5,10 +5,10 @@
 
 #include "acquisition/recording/recording_backend.h"
 #include "bench/cli/commands.h"
-#include "bench/session/descriptions.h"
-#include "bench/session/verdict.h"
-#include "sim_devices/prediction/real_noise_study.h"
-#include "tod/test_pattern.h"
+#include "bench/plan/descriptions.h"
+#include "bench/judgement/verdict.h"
+#include "bench/studies/real_noise_study.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {

@@ -5,11 +5,11 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "bench/cli/commands.h"
-#include "bench/session/descriptions.h"
-#include "bench/session/files.h"
+#include "bench/plan/descriptions.h"
+#include "bench/text/files.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "sim_devices/sensor/transfer_functions.h"
-#include "tod/test_pattern.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {

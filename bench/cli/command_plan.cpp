@@ -5,7 +5,7 @@
 #include "bench/cli/simulation_plan.h"
 #include "bench/run/comparison_forecast.h"
 #include "bench/run/prediction.h"
-#include "bench/session/verdict.h"
+#include "bench/judgement/verdict.h"
 
 namespace todbench {
 namespace {

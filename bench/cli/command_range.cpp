@@ -3,9 +3,9 @@
 
 #include "bench/cli/commands.h"
 #include "bench/session/session_folder.h"
-#include "bench/session/text.h"
-#include "bench/session/verdict.h"
-#include "tod/range_prediction.h"
+#include "bench/text/text.h"
+#include "bench/judgement/verdict.h"
+#include "tod/range/range_prediction.h"
 
 namespace todbench {
 namespace {

@@ -10,7 +10,7 @@
 #include "bench/cli/commands.h"
 #include "bench/run/devices.h"
 #include "bench/session/provenance.h"
-#include "bench/session/verdict.h"
+#include "bench/judgement/verdict.h"
 
 namespace todbench {
 namespace {

@@ -8,7 +8,8 @@
 #include "bench/run/experiment.h"
 #include "bench/run/replay.h"
 #include "bench/session/provenance.h"
-#include "bench/session/resources.h"
+#include "bench/plan/resources.h"
+#include "tod/psychometric/acuity.h"
 
 namespace todbench {
 namespace {

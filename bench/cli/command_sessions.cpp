@@ -5,12 +5,12 @@
 #include "bench/report/report.h"
 #include "bench/run/comparison_forecast.h"
 #include "bench/run/report_data.h"
-#include "bench/session/files.h"
+#include "bench/text/files.h"
 #include "bench/session/human_record.h"
 #include "bench/session/manifest.h"
-#include "bench/session/plan_options.h"
+#include "bench/plan/plan_options.h"
 #include "bench/session/session_folder.h"
-#include "bench/session/verdict.h"
+#include "bench/judgement/verdict.h"
 
 namespace todbench {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "bench/session/text.h"
+#include "bench/text/text.h"
 
 namespace todbench {
 namespace {

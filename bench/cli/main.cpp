@@ -11,8 +11,8 @@
 
 #include "bench/cli/commands.h"
 #include "bench/session/build_info.h"
-#include "bench/session/text.h"
-#include "bench/session/verdict.h"
+#include "bench/text/text.h"
+#include "bench/judgement/verdict.h"
 
 namespace todbench {
 

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "bench/run/default_design.h"
-#include "bench/session/descriptions.h"
-#include "bench/session/text.h"
+#include "bench/plan/descriptions.h"
+#include "bench/text/text.h"
 
 namespace todbench {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/session/plan.h"
+#include "bench/plan/plan.h"
 
 namespace todbench {
 

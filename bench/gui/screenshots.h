@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "bench/gui/main_window.h"
+#include "bench/gui/views/main_window.h"
 
 namespace todbench {
 

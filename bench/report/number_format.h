@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "tod/psychometric_fit.h"
+#include "tod/psychometric/psychometric_fit.h"
 
 namespace todbench {
 

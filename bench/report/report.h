@@ -13,9 +13,9 @@
 #include "sim_devices/prediction/cost_frontier.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"
-#include "tod/comparison.h"
-#include "tod/measurement.h"
-#include "tod/tod_curve.h"
+#include "tod/comparison/comparison.h"
+#include "tod/measurement/measurement.h"
+#include "tod/psychometric/tod_curve.h"
 
 namespace todbench {
 

@@ -7,7 +7,7 @@
 
 #include "acquisition/core/result.h"
 #include "bench/report/markup.h"
-#include "tod/range_prediction.h"
+#include "tod/range/range_prediction.h"
 
 namespace todbench {
 

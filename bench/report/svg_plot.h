@@ -9,7 +9,7 @@
 #include "acquisition/core/result.h"
 #include "bench/report/markup.h"
 #include "bench/report/plot_ticks.h"
-#include "tod/psychometric_fit.h"
+#include "tod/psychometric/psychometric_fit.h"
 
 namespace todbench {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bench/report/svg_plot.h"
-#include "tod/tod_curve.h"
+#include "tod/psychometric/tod_curve.h"
 
 namespace todbench {
 

@@ -7,11 +7,11 @@
 #include "bench/run/devices.h"
 #include "bench/run/experiment_inputs.h"
 #include "bench/run/observed_source.h"
-#include "bench/session/plan_options.h"
+#include "bench/plan/plan_options.h"
 #include "sim_devices/sensor/sensor_model.h"
-#include "tod/frame_taker.h"
-#include "tod/patch_windows.h"
-#include "tod/test_pattern.h"
+#include "tod/measurement/frame_taker.h"
+#include "tod/registration/patch_windows.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {

@@ -11,9 +11,9 @@
 
 #include "acquisition/core/frame_source.h"
 #include "bench/run/operator_target.h"
-#include "bench/session/plan.h"
-#include "hvs/polygon.h"
-#include "tod/registration.h"
+#include "bench/plan/plan.h"
+#include "hvs/shape/polygon.h"
+#include "tod/registration/registration.h"
 
 namespace todbench {
 

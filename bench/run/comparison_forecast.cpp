@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/session/plan_options.h"
-#include "bench/session/text.h"
+#include "bench/plan/plan_options.h"
+#include "bench/text/text.h"
 
 namespace todbench {
 namespace {

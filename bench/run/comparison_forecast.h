@@ -5,9 +5,9 @@
 #include <string>
 
 #include "bench/run/prediction.h"
-#include "bench/session/plan.h"
-#include "tod/comparison.h"
-#include "tod/planning.h"
+#include "bench/plan/plan.h"
+#include "tod/comparison/comparison.h"
+#include "tod/comparison/planning.h"
 
 namespace todbench {
 

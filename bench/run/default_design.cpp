@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/session/descriptions.h"
-#include "bench/session/plan_options.h"
+#include "bench/plan/descriptions.h"
+#include "bench/plan/plan_options.h"
 #include "sim_devices/prediction/direct_estimate.h"
-#include "tod/test_pattern.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 

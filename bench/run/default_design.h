@@ -3,7 +3,7 @@
 
 #include <stop_token>
 
-#include "bench/session/plan.h"
+#include "bench/plan/plan.h"
 
 namespace todbench {
 

@@ -3,9 +3,9 @@
 #include <iostream>
 
 #include "acquisition/recording/recording_backend.h"
-#include "bench/session/descriptions.h"
-#include "bench/session/plan_options.h"
-#include "bench/session/resources.h"
+#include "bench/plan/descriptions.h"
+#include "bench/plan/plan_options.h"
+#include "bench/plan/resources.h"
 #include "tod/instruments/prompt_target.h"
 #include "tod/instruments/scpi_target.h"
 #ifdef TODBENCH_WITH_ARAVIS

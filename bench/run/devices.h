@@ -11,11 +11,11 @@
 #include "acquisition/core/camera_registry.h"
 #include "bench/run/operator_target.h"
 #include "bench/run/reconnecting_source.h"
-#include "bench/session/plan.h"
+#include "bench/plan/plan.h"
 #include "sim_devices/sensor/simulated_camera.h"
-#include "tod/frame_taker.h"
-#include "tod/measurement.h"
-#include "tod/target.h"
+#include "tod/measurement/frame_taker.h"
+#include "tod/measurement/measurement.h"
+#include "tod/presentation/target.h"
 
 namespace todbench {
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string_view>
 
-#include "bench/session/descriptions.h"
+#include "bench/plan/descriptions.h"
 #ifdef TODBENCH_WITH_ARAVIS
 #include "sim_devices/lab/gvsp_laboratory.h"
 #endif

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "acquisition/core/result.h"
-#include "bench/session/plan.h"
+#include "bench/plan/plan.h"
 #ifdef TODBENCH_WITH_ARAVIS
 #include "sim_devices/lab/laboratory.h"
 #endif

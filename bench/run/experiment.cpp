@@ -12,9 +12,9 @@
 #include "bench/run/report_data.h"
 #include "bench/run/simulated_responses.h"
 #include "bench/run/simulated_set_up.h"
-#include "bench/session/text.h"
+#include "bench/text/text.h"
 #include "sim_devices/prediction/direct_estimate.h"
-#include "tod/measurement.h"
+#include "tod/measurement/measurement.h"
 
 namespace todbench {
 namespace {

@@ -14,10 +14,10 @@
 #include "bench/run/experiment_inputs.h"
 #include "bench/run/pause.h"
 #include "bench/session/json_output.h"
-#include "bench/session/plan.h"
-#include "bench/session/plan_options.h"
+#include "bench/plan/plan.h"
+#include "bench/plan/plan_options.h"
 #include "bench/session/session_folder.h"
-#include "bench/session/verdict.h"
+#include "bench/judgement/verdict.h"
 
 namespace todbench {
 

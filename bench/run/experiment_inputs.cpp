@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <string>
 
-#include "bench/session/descriptions.h"
-#include "bench/session/plan_options.h"
-#include "bench/session/text.h"
-#include "tod/test_pattern.h"
+#include "bench/plan/descriptions.h"
+#include "bench/plan/plan_options.h"
+#include "bench/text/text.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {

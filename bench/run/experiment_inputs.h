@@ -4,12 +4,12 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "bench/session/plan.h"
-#include "hvs/template_observer.h"
+#include "bench/plan/plan.h"
+#include "hvs/observer/template_observer.h"
 #include "sim_devices/prediction/effect_planner.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"
-#include "tod/measurement.h"
+#include "tod/measurement/measurement.h"
 
 namespace todbench {
 

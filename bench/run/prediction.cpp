@@ -5,12 +5,12 @@
 #include <map>
 
 #include "bench/run/time_prediction.h"
-#include "bench/session/descriptions.h"
-#include "bench/session/plan_options.h"
-#include "bench/session/text.h"
+#include "bench/plan/descriptions.h"
+#include "bench/plan/plan_options.h"
+#include "bench/text/text.h"
 #include "sim_devices/prediction/direct_timing.h"
-#include "tod/planning.h"
-#include "tod/test_pattern.h"
+#include "tod/comparison/planning.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {

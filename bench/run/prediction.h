@@ -7,7 +7,7 @@
 
 #include "bench/run/experiment_inputs.h"
 #include "bench/session/json_output.h"
-#include "bench/session/plan.h"
+#include "bench/plan/plan.h"
 
 namespace todbench {
 

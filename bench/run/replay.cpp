@@ -1,10 +1,10 @@
 #include "bench/run/replay.h"
 
 #include "bench/run/recorded_bench.h"
-#include "bench/session/files.h"
+#include "bench/text/files.h"
 #include "bench/session/fit_record.h"
 #include "bench/session/manifest.h"
-#include "bench/session/text.h"
+#include "bench/text/text.h"
 
 namespace todbench {
 namespace {

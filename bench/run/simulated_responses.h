@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "bench/session/plan.h"
+#include "bench/plan/plan.h"
 #include "sim_devices/sensor/sensor_model.h"
-#include "tod/measurement.h"
+#include "tod/measurement/measurement.h"
 
 namespace todbench {
 

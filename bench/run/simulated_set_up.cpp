@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "bench/run/simulated_responses.h"
-#include "bench/session/plan_options.h"
+#include "bench/plan/plan_options.h"
 
 namespace todbench {
 

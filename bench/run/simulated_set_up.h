@@ -7,7 +7,7 @@
 
 #include "bench/run/devices.h"
 #include "bench/run/experiment_inputs.h"
-#include "tod/measurement.h"
+#include "tod/measurement/measurement.h"
 
 namespace todbench {
 

@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "bench/run/devices.h"
-#include "bench/session/plan_options.h"
+#include "bench/plan/plan_options.h"
 #include "sim_devices/prediction/direct_timing.h"
-#include "tod/frame_taker.h"
-#include "tod/patch_windows.h"
-#include "tod/registration.h"
-#include "tod/test_pattern.h"
+#include "tod/measurement/frame_taker.h"
+#include "tod/registration/patch_windows.h"
+#include "tod/registration/registration.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {

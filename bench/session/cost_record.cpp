@@ -1,6 +1,6 @@
 #include "bench/session/cost_record.h"
 
-#include "bench/session/json_reader.h"
+#include "bench/text/json_reader.h"
 
 namespace todbench {
 

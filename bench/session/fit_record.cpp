@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "bench/session/json_reader.h"
+#include "bench/text/json_reader.h"
 
 namespace todbench {
 

@@ -6,12 +6,12 @@
 #include <system_error>
 #include <utility>
 
-#include "bench/session/csv_table.h"
-#include "bench/session/files.h"
+#include "bench/text/csv_table.h"
+#include "bench/text/files.h"
 #include "bench/session/fit_record.h"
 #include "bench/session/manifest.h"
-#include "bench/session/plan_options.h"
-#include "bench/session/text.h"
+#include "bench/plan/plan_options.h"
+#include "bench/text/text.h"
 #include "bench/session/trials_csv.h"
 
 namespace todbench {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "acquisition/core/result.h"
-#include "bench/session/plan.h"
-#include "tod/tod_curve.h"
-#include "tod/trial.h"
+#include "bench/plan/plan.h"
+#include "tod/psychometric/tod_curve.h"
+#include "tod/presentation/trial.h"
 
 namespace todbench {
 

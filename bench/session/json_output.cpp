@@ -2,44 +2,9 @@
 
 #include <cmath>
 
+#include "tod/psychometric/acuity.h"
+
 namespace todbench {
-
-Json json_number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-Json json_number(const std::optional<double>& value) {
-  return value ? json_number(*value) : Json(nullptr);
-}
-
-Json json_interval(const Interval& interval) {
-  return Json::array({json_number(interval.low), json_number(interval.high)});
-}
-
-std::string to_line(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-std::string to_page(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-namespace {
-
-std::optional<double> reciprocal(const std::optional<double>& size_mrad) {
-  if (!size_mrad || !std::isfinite(*size_mrad) || *size_mrad <= 0) return std::nullopt;
-  return 1 / *size_mrad;
-}
-
-}  // namespace
-
-std::optional<double> acuity_per_mrad(const PsychometricFit& fit) {
-  return reciprocal(fit.threshold);
-}
-
-Interval acuity_interval(const Interval& s75_mrad) {
-  return {reciprocal(s75_mrad.high), reciprocal(s75_mrad.low)};
-}
 
 Json fit_json(const PsychometricFit& fit) {
   Json json;

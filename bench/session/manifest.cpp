@@ -4,9 +4,9 @@
 #include <array>
 #include <map>
 
-#include "bench/session/files.h"
-#include "bench/session/json_reader.h"
-#include "bench/session/text.h"
+#include "bench/text/files.h"
+#include "bench/text/json_reader.h"
+#include "bench/text/text.h"
 
 namespace todbench {
 

@@ -7,7 +7,7 @@
 
 #include "bench/session/build_info.h"
 #include "bench/session/fit_record.h"
-#include "bench/session/json_reader.h"
+#include "bench/text/json_reader.h"
 
 namespace todbench {
 

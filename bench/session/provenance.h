@@ -9,8 +9,8 @@
 
 #include "acquisition/core/frame_source.h"
 #include "bench/session/json_output.h"
-#include "bench/session/plan_options.h"
-#include "tod/measurement.h"
+#include "bench/plan/plan_options.h"
+#include "tod/measurement/measurement.h"
 
 namespace todbench {
 

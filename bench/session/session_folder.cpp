@@ -9,9 +9,10 @@
 #include <system_error>
 
 #include "bench/session/cost_record.h"
-#include "bench/session/files.h"
+#include "bench/text/files.h"
 #include "bench/session/fit_record.h"
-#include "bench/session/text.h"
+#include "bench/text/text.h"
+#include "tod/psychometric/acuity.h"
 
 namespace todbench {
 

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "bench/session/manifest.h"
-#include "bench/session/plan.h"
+#include "bench/plan/plan.h"
 #include "bench/session/provenance.h"
 #include "bench/session/trials_csv.h"
 #include "sim_devices/prediction/cost_frontier.h"
-#include "tod/comparison.h"
-#include "tod/tod_curve.h"
+#include "tod/comparison/comparison.h"
+#include "tod/psychometric/tod_curve.h"
 
 namespace todbench {
 

@@ -8,8 +8,8 @@
 #include <span>
 #include <string>
 
-#include "bench/session/csv_table.h"
-#include "bench/session/text.h"
+#include "bench/text/csv_table.h"
+#include "bench/text/text.h"
 
 namespace todbench {
 

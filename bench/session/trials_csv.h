@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "acquisition/core/result.h"
-#include "bench/session/files.h"
-#include "tod/psychometric_fit.h"
-#include "tod/trial.h"
+#include "bench/text/files.h"
+#include "tod/psychometric/psychometric_fit.h"
+#include "tod/presentation/trial.h"
 
 namespace todbench {
 

@@ -6,7 +6,7 @@
 
 #include "acquisition/aravis/aravis_backend.h"
 #include "acquisition/core/control_text.h"
-#include "sim_devices/lab/camera_models.h"
+#include "sim_devices/lab/gige/camera_models.h"
 
 namespace todbench {
 namespace {

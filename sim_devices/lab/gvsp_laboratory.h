@@ -1,7 +1,7 @@
 // The emulated laboratory with a GigE Vision camera on plain sockets.
 #pragma once
 
-#include "sim_devices/lab/gvsp_camera.h"
+#include "sim_devices/lab/gige/gvsp_camera.h"
 #include "sim_devices/lab/laboratory_camera.h"
 #include "sim_devices/sensor/sensor_spec.h"
 

@@ -2,7 +2,7 @@
 
 #include "acquisition/aravis/aravis_backend.h"
 #include "acquisition/core/control_text.h"
-#include "sim_devices/lab/usbfs_host.h"
+#include "sim_devices/lab/usb/usbfs_host.h"
 
 namespace todbench {
 namespace {

@@ -1,7 +1,7 @@
 #include "sim_devices/lab/v4l2_laboratory.h"
 
 #include "acquisition/v4l2/video_listing.h"
-#include "sim_devices/lab/v4l2_camera.h"
+#include "sim_devices/lab/video/v4l2_camera.h"
 
 namespace todbench {
 namespace {

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "sim_devices/lab/laboratory_camera.h"
-#include "sim_devices/lab/mock_system.h"
-#include "sim_devices/lab/video_frames.h"
+#include "sim_devices/lab/device_nodes/mock_system.h"
+#include "sim_devices/lab/video/video_frames.h"
 
 namespace todbench {
 

@@ -6,7 +6,7 @@
 
 #include "sim_devices/sensor/sensor_model.h"
 #include "sim_devices/sensor/super_resolution.h"
-#include "tod/patch_windows.h"
+#include "tod/registration/patch_windows.h"
 
 namespace todbench {
 namespace {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "acquisition/core/accuracy.h"
-#include "hvs/template_observer.h"
+#include "hvs/observer/template_observer.h"
 #include "sim_devices/sensor/sensor_spec.h"
-#include "tod/psychometric_fit.h"
+#include "tod/psychometric/psychometric_fit.h"
 
 namespace todbench {
 

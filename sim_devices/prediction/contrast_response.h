@@ -5,7 +5,7 @@
 
 #include "acquisition/core/result.h"
 #include "sim_devices/sensor/sensor_model.h"
-#include "tod/registration.h"
+#include "tod/registration/registration.h"
 
 namespace todbench {
 

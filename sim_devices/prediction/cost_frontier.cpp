@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "sim_devices/prediction/direct_estimate.h"
-#include "tod/test_pattern.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {

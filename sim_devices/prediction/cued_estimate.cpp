@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "hvs/polygon_spectrum.h"
+#include "hvs/shape/polygon_spectrum.h"
 #include "sim_devices/sensor/transfer_functions.h"
-#include "tod/test_pattern.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {

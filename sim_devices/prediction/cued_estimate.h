@@ -7,7 +7,7 @@
 #include <opencv2/core/types.hpp>
 
 #include "acquisition/core/result.h"
-#include "hvs/template_observer.h"
+#include "hvs/observer/template_observer.h"
 #include "sim_devices/prediction/size_trial.h"
 
 namespace todbench {

@@ -12,7 +12,7 @@
 
 #include "sim_devices/prediction/size_trial.h"
 #include "sim_devices/sensor/image_chain.h"
-#include "tod/test_pattern.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "acquisition/core/accuracy.h"
-#include "hvs/template_observer.h"
+#include "hvs/observer/template_observer.h"
 #include "sim_devices/prediction/size_trial.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"

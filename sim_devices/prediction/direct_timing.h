@@ -1,7 +1,7 @@
 // What a direct estimate will take on this machine, from a moment of the work itself.
 #pragma once
 
-#include "hvs/template_observer.h"
+#include "hvs/observer/template_observer.h"
 #include "sim_devices/prediction/direct_estimate.h"
 
 namespace todbench {

@@ -8,7 +8,7 @@
 
 #include "sim_devices/prediction/cued_estimate.h"
 #include "sim_devices/sensor/transfer_functions.h"
-#include "tod/test_pattern.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {

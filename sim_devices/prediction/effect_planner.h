@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "acquisition/core/result.h"
-#include "hvs/template_observer.h"
+#include "hvs/observer/template_observer.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"
 

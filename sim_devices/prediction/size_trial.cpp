@@ -5,11 +5,11 @@
 #include <cmath>
 #include <map>
 
-#include "hvs/known_position.h"
-#include "hvs/observer.h"
-#include "hvs/score_maxima.h"
+#include "hvs/observer/known_position.h"
+#include "hvs/observer/observer.h"
+#include "hvs/observer/score_maxima.h"
 #include "sim_devices/sensor/picture_stages.h"
-#include "tod/test_pattern.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {

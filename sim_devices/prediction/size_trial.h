@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "acquisition/core/rng.h"
-#include "hvs/template_bank.h"
+#include "hvs/observer/template_bank.h"
 #include "sim_devices/sensor/image_chain.h"
 
 namespace todbench {

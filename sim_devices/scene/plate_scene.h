@@ -3,8 +3,8 @@
 
 #include <opencv2/core/types.hpp>
 
-#include "sim_devices/sensor/sensor_spec.h"
-#include "tod/target_plate.h"
+#include "sim_devices/scene/scene_motion.h"
+#include "tod/plate/target_plate.h"
 
 namespace todbench {
 

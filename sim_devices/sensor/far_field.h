@@ -1,7 +1,7 @@
 // What the parts of a huge shape that are far away add to a sample: the tail of the diffraction spot, integrated.
 #pragma once
 
-#include "hvs/polygon.h"
+#include "hvs/shape/polygon.h"
 
 namespace todbench {
 

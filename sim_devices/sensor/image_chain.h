@@ -6,7 +6,7 @@
 #include <mutex>
 
 #include "acquisition/core/accuracy.h"
-#include "hvs/polygon_image.h"
+#include "hvs/shape/polygon_image.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "hvs/gauss_legendre.h"
+#include "hvs/shape/gauss_legendre.h"
 
 namespace todbench {
 namespace {

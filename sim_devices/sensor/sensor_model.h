@@ -7,7 +7,7 @@
 
 #include "acquisition/core/accuracy.h"
 #include "acquisition/core/rng.h"
-#include "hvs/polygon_image.h"
+#include "hvs/shape/polygon_image.h"
 #include "sim_devices/scene/plate_scene.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"

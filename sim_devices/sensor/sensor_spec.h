@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "acquisition/core/result.h"
+#include "sim_devices/scene/scene_motion.h"
 
 namespace todbench {
 
@@ -14,14 +15,6 @@ enum class DisplayReconstruction {
   bilinear,         ///< interpolated: the squares averaged over another sample
 };
 [[nodiscard]] std::string_view to_string(DisplayReconstruction reconstruction);
-
-/// Angular velocity of the target in the picture, x right, y down. The camera's operator tracks it: the picture shows
-/// it where it is, smeared.
-struct SceneMotion {
-  double x_mrad_s = 0, y_mrad_s = 0;
-  bool operator==(const SceneMotion&) const = default;
-  [[nodiscard]] bool moving() const { return x_mrad_s != 0 || y_mrad_s != 0; }
-};
 
 /// A staring thermal camera. Lengths in the unit of the name; square detectors.
 struct SensorSpec {

@@ -7,7 +7,7 @@
 
 #include "acquisition/core/frame_source.h"
 #include "sim_devices/sensor/sensor_model.h"
-#include "tod/target.h"
+#include "tod/presentation/target.h"
 
 namespace todbench {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "hvs/gauss_legendre.h"
+#include "hvs/shape/gauss_legendre.h"
 
 namespace todbench {
 namespace {

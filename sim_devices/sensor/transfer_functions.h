@@ -5,7 +5,7 @@
 #include <opencv2/core/types.hpp>
 #include <vector>
 
-#include "hvs/polygon_image.h"
+#include "hvs/shape/polygon_image.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "tod/psychometric_fit.h"
+#include "tod/psychometric/psychometric_fit.h"
 
 namespace todbench {
 namespace {

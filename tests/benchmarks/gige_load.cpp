@@ -18,8 +18,8 @@
 
 #include "acquisition/aravis/aravis_backend.h"
 #include "acquisition/recording/recording_camera.h"
-#include "sim_devices/lab/gige_camera.h"
-#include "sim_devices/lab/gvsp_camera.h"
+#include "sim_devices/lab/gige/gige_camera.h"
+#include "sim_devices/lab/gige/gvsp_camera.h"
 
 namespace todbench {
 namespace {

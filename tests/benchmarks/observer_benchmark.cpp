@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "hvs/template_observer.h"
-#include "tod/test_pattern.h"
+#include "hvs/observer/template_observer.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {

@@ -5,7 +5,7 @@
 #include "sim_devices/sensor/sensor_model.h"
 #include "tests/sim_devices/reference.h"
 #include "tests/sim_devices/test_plates.h"
-#include "tod/registration.h"
+#include "tod/registration/registration.h"
 
 namespace todbench {
 namespace {

@@ -8,7 +8,7 @@
 #include "sim_devices/sensor/sensor_model.h"
 #include "tests/sim_devices/reference.h"
 #include "tests/sim_devices/test_plates.h"
-#include "tod/test_pattern.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {

@@ -2,8 +2,8 @@
 // from 288 presentations, and three fits. Everything is built anew each time.
 #include <benchmark/benchmark.h>
 
-#include "tests/sim_devices/measurement_bench.h"
-#include "tod/tod_curve.h"
+#include "tests/tod/measurement/measurement_bench.h"
+#include "tod/psychometric/tod_curve.h"
 
 namespace todbench {
 namespace {

@@ -13,20 +13,20 @@
 #include "acquisition/recording/flir_seq.h"
 #include "acquisition/recording/raw_recording.h"
 #include "sim_devices/sensor/simulated_camera.h"
-#include "tests/source_file.h"
+#include "tests/support/source_file.h"
 #ifdef TODBENCH_CONTRACT_WITH_ARAVIS
-#include "tests/acquisition/gvsp_test_support.h"
+#include "tests/acquisition/aravis/gvsp_test_support.h"
 #endif
 #ifdef TODBENCH_CONTRACT_WITH_V4L2
-#include "tests/acquisition/video_test_support.h"
+#include "tests/acquisition/v4l2/video_test_support.h"
 #endif
 
 #ifdef TODBENCH_CONTRACT_WITH_USB
 #include "acquisition/aravis/aravis_backend.h"
 #include "acquisition/usb/usb_backend.h"
 #include "sim_devices/lab/usb_laboratory.h"
-#include "tests/acquisition/usb_test_support.h"
-#include "tests/acquisition/video_test_support.h"
+#include "tests/acquisition/usb/usb_test_support.h"
+#include "tests/acquisition/v4l2/video_test_support.h"
 #endif
 
 namespace todbench {

@@ -12,9 +12,9 @@
 #include <memory>
 
 #include "acquisition/aravis/aravis_backend.h"
-#include "sim_devices/lab/gev_registers.h"
-#include "sim_devices/lab/gvsp_camera.h"
-#include "tests/acquisition/private_network.h"
+#include "sim_devices/lab/gige/gev_registers.h"
+#include "sim_devices/lab/gige/gvsp_camera.h"
+#include "tests/support/private_network.h"
 
 namespace {
 

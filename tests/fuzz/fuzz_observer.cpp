@@ -1,5 +1,5 @@
 // Any text as the description of a observer.
-#include "bench/session/descriptions.h"
+#include "bench/plan/descriptions.h"
 #include "tests/fuzz/fuzz_input.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

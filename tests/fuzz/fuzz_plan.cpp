@@ -1,5 +1,5 @@
 // Any text as a plan; one that is accepted is written and read again to the same plan.
-#include "bench/session/plan.h"
+#include "bench/plan/plan.h"
 #include "tests/fuzz/fuzz_input.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -5,38 +5,73 @@
 cd "$1" || exit 2
 find acquisition hvs tod sim_devices bench \( -name '*.h' -o -name '*.cpp' \) 2>/dev/null | sort | xargs awk '
 BEGIN {
-  # layer: folders of the project that it may include beside itself
+  # library (a folder): the libraries that it may include beside itself
+  core = "acquisition/core"
   may["acquisition/core"] = ""
-  may["acquisition/*"] = "acquisition/"
-  may["hvs"] = "acquisition/core/"
-  may["tod"] = "acquisition/core/ hvs/"
-  may["sim_devices"] = "acquisition/core/ hvs/ tod/"
-  may["sim_devices/lab"] = "acquisition/core/ acquisition/aravis/ acquisition/usb/ acquisition/v4l2/ hvs/ tod/ sim_devices/"
-  may["bench"] = "acquisition/ hvs/ tod/ sim_devices/"
-  may["bench/gui"] = "acquisition/ hvs/ tod/ sim_devices/ bench/"
+  may["acquisition/pixel_formats"] = core
+  may["acquisition/recording"] = core " acquisition/pixel_formats"
+  may["acquisition/aravis"] = core " acquisition/pixel_formats"
+  may["acquisition/v4l2"] = core " acquisition/pixel_formats"
+  may["acquisition/usb"] = core " acquisition/pixel_formats"
+  may["hvs/shape"] = core
+  may["hvs/observer"] = core " hvs/shape"
+  hvs = core " hvs/shape hvs/observer"
+  may["tod/plate"] = hvs
+  may["tod/presentation"] = core " tod/plate"
+  may["tod/registration"] = hvs " tod/plate"
+  may["tod/psychometric"] = core " tod/presentation"
+  may["tod/schedule"] = core " tod/plate tod/presentation tod/psychometric"
+  may["tod/measurement"] = hvs " tod/plate tod/presentation tod/registration tod/schedule"
+  may["tod/comparison"] = core " tod/psychometric"
+  may["tod/range"] = core " tod/psychometric"
+  may["tod/measures"] = core
+  may["tod/instruments"] = core " tod/plate tod/presentation"
+  tod = hvs " tod/plate tod/presentation tod/registration tod/psychometric tod/schedule tod/measurement tod/comparison tod/range tod/measures"
+  may["sim_devices/scene"] = hvs " tod/plate"
+  may["sim_devices/sensor"] = hvs " tod/plate tod/presentation sim_devices/scene"
+  may["sim_devices/prediction"] = tod " sim_devices/scene sim_devices/sensor"
+  may["sim_devices/lab/device_nodes"] = core
+  may["sim_devices/lab/instruments"] = core " tod/plate tod/instruments"
+  may["sim_devices/lab/gige"] = core " acquisition/aravis acquisition/pixel_formats"
+  may["sim_devices/lab/video"] = core " acquisition/v4l2 acquisition/pixel_formats sim_devices/lab/device_nodes"
+  may["sim_devices/lab/usb"] = core " acquisition/usb acquisition/pixel_formats sim_devices/lab/device_nodes sim_devices/lab/video"
+  lab = "sim_devices/lab/device_nodes sim_devices/lab/instruments sim_devices/lab/gige sim_devices/lab/video sim_devices/lab/usb"
+  may["sim_devices/lab"] = core " acquisition/aravis acquisition/v4l2 tod/plate sim_devices/scene sim_devices/sensor " lab
+  science = tod " sim_devices/scene sim_devices/sensor sim_devices/prediction"
+  may["bench/text"] = core " tod/psychometric"
+  may["bench/plan"] = science " bench/text"
+  may["bench/judgement"] = science " bench/text bench/plan"
+  may["bench/session"] = science " bench/text bench/plan bench/judgement"
+  may["bench/report"] = science " bench/text bench/plan bench/judgement bench/session"
+  devices = "acquisition/recording acquisition/aravis acquisition/v4l2 acquisition/usb tod/instruments sim_devices/lab"
+  may["bench/run"] = science " " devices " bench/text bench/plan bench/judgement bench/session bench/report"
+  may["bench/studies"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
+  may["bench/doctor"] = core " bench/text"
+  bench = "bench/text bench/plan bench/judgement bench/session bench/report bench/run bench/studies"
+  may["bench/cli"] = science " acquisition/recording bench/doctor " bench
+  may["bench/gui/presenters"] = science " " bench
+  may["bench/gui/views"] = science " " bench " bench/gui/presenters"
+  may["bench/gui"] = science " " bench " bench/gui/presenters bench/gui/views"
   # third-party header: the only folders that may include it
-  home["^arv"] = "^(acquisition/aravis|sim_devices/lab)/"
-  home["^linux/videodev2.h"] = "^(acquisition/v4l2|sim_devices/lab)/"
+  home["^arv"] = "^(acquisition/aravis|sim_devices/lab/gige)/"
+  home["^linux/videodev2.h"] = "^(acquisition/v4l2|sim_devices/lab/video)/"
   home["^libudev.h"] = "^acquisition/v4l2/"
-  home["^umockdev.h"] = "^sim_devices/lab/"
+  home["^umockdev.h"] = "^sim_devices/lab/(device_nodes|video|usb)/"
   home["^libusb"] = "^acquisition/usb/"
   home["^(Q[A-Z]|qcustomplot.h)"] = "^bench/gui/"
-  home["^toml\\+\\+/"] = "^bench/"
+  home["^toml\\+\\+/"] = "^bench/plan/"
   home["^CLI/"] = "^bench/cli/"
   home["^tiffio.h"] = "^acquisition/recording/"
-  home["^fftw3.h"] = "^hvs/"
+  home["^fftw3.h"] = "^hvs/shape/"
 }
-function layer_of(file,   parts) {
-  split(file, parts, "/")
-  if (parts[1] == "acquisition") return parts[2] == "core" ? "acquisition/core" : "acquisition/*"
-  if (file ~ /^sim_devices\/lab\//) return "sim_devices/lab"
-  if (file ~ /^bench\/gui\//) return "bench/gui"
-  return parts[1]
+function folder_of(path) {
+  sub(/\/[^\/]*$/, "", path)
+  return path
 }
 FNR == 1 {
-  layer = layer_of(FILENAME)
-  own = layer == "acquisition/*" ? "acquisition/" : layer "/"
-  allowed = split(own " " may[layer], prefixes, " ")
+  library = folder_of(FILENAME)
+  if (!(library in may)) { print FILENAME ": " library " has no line in the layering check"; bad = 1 }
+  allowed = split(library " " may[library], folders, " ")
   header = FILENAME
   owed = sub(/\.cpp$/, ".h", header) && (getline line < header) >= 0
   close(header)
@@ -48,8 +83,8 @@ owed && /^[ \t]*#[ \t]*include/ {
 /^[ \t]*#[ \t]*include[ \t]*"/ {
   path = $0; sub(/^[^"]*"/, "", path); sub(/".*/, "", path)
   ok = 0
-  for (i = 1; i <= allowed; i++) if (index(path, prefixes[i]) == 1) ok = 1
-  if (!ok) { print FILENAME ":" FNR ": layer " layer " may not include \"" path "\""; bad = 1 }
+  for (i = 1; i <= allowed; i++) if (folder_of(path) == folders[i]) ok = 1
+  if (!ok) { print FILENAME ":" FNR ": " library " may not include \"" path "\""; bad = 1 }
 }
 /^[ \t]*#[ \t]*include[ \t]*</ {
   path = $0; sub(/^[^<]*</, "", path); sub(/>.*/, "", path)

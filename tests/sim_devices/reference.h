@@ -6,7 +6,7 @@
 
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"
-#include "tests/source_file.h"
+#include "tests/support/source_file.h"
 
 namespace todbench::test {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tod/target_plate.h"
+#include "tod/plate/target_plate.h"
 
 namespace todbench::test {
 

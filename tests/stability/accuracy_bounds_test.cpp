@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "sim_devices/sensor/image_chain.h"
-#include "tod/test_pattern.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {

@@ -7,16 +7,16 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "hvs/known_position.h"
+#include "hvs/observer/known_position.h"
 #include "sim_devices/prediction/cued_estimate.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "sim_devices/sensor/transfer_functions.h"
-#include "tests/source_file.h"
-#include "tod/planning.h"
-#include "tod/psi_placement.h"
-#include "tod/range_prediction.h"
-#include "tod/test_pattern.h"
+#include "tests/support/source_file.h"
+#include "tod/comparison/planning.h"
+#include "tod/schedule/psi_placement.h"
+#include "tod/range/range_prediction.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "tests/stability/fifty_digits.h"
-#include "tod/psychometric_fit.h"
-#include "tod/tod_curve.h"
+#include "tod/psychometric/psychometric_fit.h"
+#include "tod/psychometric/tod_curve.h"
 
 namespace todbench {
 namespace {

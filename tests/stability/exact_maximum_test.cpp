@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "tests/stability/fifty_digits.h"
-#include "tod/psychometric_fit.h"
+#include "tod/psychometric/psychometric_fit.h"
 
 namespace todbench {
 namespace {

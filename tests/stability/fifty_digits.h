@@ -5,7 +5,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <vector>
 
-#include "tod/psychometric_fit.h"
+#include "tod/psychometric/psychometric_fit.h"
 
 namespace todbench::testing {
 

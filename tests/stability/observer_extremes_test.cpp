@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "hvs/known_position.h"
-#include "hvs/template_observer.h"
+#include "hvs/observer/known_position.h"
+#include "hvs/observer/template_observer.h"
 #include "sim_devices/sensor/image_chain.h"
-#include "tod/test_pattern.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {

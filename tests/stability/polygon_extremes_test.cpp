@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "hvs/polygon_image.h"
-#include "tod/test_pattern.h"
+#include "hvs/shape/polygon_image.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {

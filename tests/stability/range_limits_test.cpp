@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "tod/range_prediction.h"
+#include "tod/range/range_prediction.h"
 
 namespace todbench {
 namespace {

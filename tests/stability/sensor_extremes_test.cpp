@@ -9,7 +9,7 @@
 #include "sim_devices/sensor/far_field.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "sim_devices/sensor/sensor_model.h"
-#include "tod/test_pattern.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {

@@ -1,7 +1,7 @@
 // What accuracy costs, what a plan cannot reach, and sensors that cannot exist: as a user meets them.
 #include <cmath>
 
-#include "tests/source_file.h"
+#include "tests/support/source_file.h"
 #include "tests/system/system_test_support.h"
 
 namespace todbench::testing {

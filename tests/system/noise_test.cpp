@@ -1,7 +1,7 @@
 // The noise of recordings, as a user asks for it.
 #include <cmath>
 
-#include "tests/source_file.h"
+#include "tests/support/source_file.h"
 #include "tests/system/system_test_support.h"
 
 namespace todbench::testing {

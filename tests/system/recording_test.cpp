@@ -1,7 +1,7 @@
 // Recording and replay as a user has them: the same answers bit for bit, also of a run that did not end well.
-#include "bench/session/files.h"
+#include "bench/text/files.h"
 #include "bench/session/session_folder.h"
-#include "bench/session/text.h"
+#include "bench/text/text.h"
 #include "tests/system/system_test_support.h"
 
 namespace todbench::testing {

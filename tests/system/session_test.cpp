@@ -1,6 +1,6 @@
 // Sessions of simulated cameras: what is in them, that they repeat, what they pass and fail.
 #include "bench/session/session_folder.h"
-#include "tests/source_file.h"
+#include "tests/support/source_file.h"
 #include "tests/system/system_test_support.h"
 
 namespace todbench::testing {
@@ -83,7 +83,7 @@ TEST_F(Sessions, TheStoredPlanRepeatsTheRunAlsoOnOneProcessor) {
 }
 
 TEST_F(Sessions, AMovedSessionRepeatsWithoutTheFilesItWasMadeFrom) {
-  write("plates/mine.toml", content_of(source_file("tod/plates/tcat-a.toml")));
+  write("plates/mine.toml", content_of(source_file("tod/plate/tcat-a.toml")));
   write("plan.toml",
         "[target]\ndistance_m = 2\nplates = [\"plates/mine.toml\"]\nmountings = [\"identity\"]\n"
         "delta_t_k = [16.9]\nphases = 2\n[simulation]\naccuracy = \"draft\"\n");

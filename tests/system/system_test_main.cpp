@@ -2,7 +2,7 @@
 // table of mounts of their own: the control port of GigE Vision is fixed, and a small disk is a mount.
 #include <gmock/gmock.h>
 
-#include "tests/acquisition/private_network.h"
+#include "tests/support/private_network.h"
 
 int main(int argc, char** argv) {
   testing::InitGoogleMock(&argc, argv);

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/bench/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/system/child_process.h"
 
 namespace todbench::testing {

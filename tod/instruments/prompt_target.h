@@ -9,7 +9,7 @@
 #include <string>
 
 #include "acquisition/core/result.h"
-#include "tod/target.h"
+#include "tod/presentation/target.h"
 
 namespace todbench {
 

@@ -17,7 +17,7 @@
 #include <string>
 
 #include "tod/instruments/scpi_client.h"
-#include "tod/target.h"
+#include "tod/presentation/target.h"
 
 namespace todbench {
 

@@ -1,8 +1,8 @@
 // Every hint of the alignment, provoked with a badly set up emulated laboratory.
 #include <numbers>
 
-#include "bench/gui/align_presenter.h"
-#include "bench/session/descriptions.h"
+#include "bench/gui/presenters/align_presenter.h"
+#include "bench/plan/descriptions.h"
 #include "sim_devices/lab/laboratory.h"
 #include "tests/bench/gui/gui_test_support.h"
 #include "tod/instruments/scpi_client.h"

@@ -1,12 +1,12 @@
-#include "bench/gui/chain_presenter.h"
+#include "bench/gui/presenters/chain_presenter.h"
 
 #include <gmock/gmock.h>
 
-#include "bench/session/descriptions.h"
+#include "bench/plan/descriptions.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "tests/bench/gui/gui_test_support.h"
-#include "tod/test_pattern.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {

@@ -1,8 +1,8 @@
-#include "bench/gui/colour_map.h"
+#include "bench/gui/presenters/colour_map.h"
 
 #include <gmock/gmock.h>
 
-#include "bench/gui/live_feed.h"
+#include "bench/gui/presenters/live_feed.h"
 
 namespace todbench {
 namespace {

@@ -2,7 +2,7 @@
 // of its own where the system permits it, because the control port of GigE Vision is fixed.
 #include <gmock/gmock.h>
 
-#include "tests/acquisition/private_network.h"
+#include "tests/support/private_network.h"
 #include "tests/bench/gui/watched_application.h"
 
 int main(int argc, char** argv) {

@@ -6,8 +6,8 @@
 #include <QtTest/QTest>
 #include <functional>
 
-#include "bench/gui/main_window.h"
-#include "tests/bench/temporary_folder.h"
+#include "bench/gui/views/main_window.h"
+#include "tests/support/temporary_folder.h"
 
 namespace todbench::testing {
 

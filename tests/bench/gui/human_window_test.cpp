@@ -3,8 +3,8 @@
 #include <QSpinBox>
 #include <QStackedWidget>
 
-#include "bench/gui/human_view.h"
-#include "bench/gui/picture_view.h"
+#include "bench/gui/views/human_view.h"
+#include "bench/gui/views/picture_view.h"
 #include "bench/session/trials_csv.h"
 #include "tests/bench/gui/gui_test_support.h"
 

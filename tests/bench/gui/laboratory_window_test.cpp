@@ -5,8 +5,8 @@
 #include <QTableWidget>
 #include <QTreeWidget>
 
-#include "bench/gui/picture_view.h"
-#include "bench/gui/plot_view.h"
+#include "bench/gui/views/picture_view.h"
+#include "bench/gui/views/plot_view.h"
 #include "tests/bench/gui/gui_test_support.h"
 #include "tests/bench/gui/watched_application.h"
 

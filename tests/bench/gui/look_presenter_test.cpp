@@ -1,4 +1,4 @@
-#include "bench/gui/look_presenter.h"
+#include "bench/gui/presenters/look_presenter.h"
 
 #include <gmock/gmock.h>
 

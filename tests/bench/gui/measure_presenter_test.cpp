@@ -1,4 +1,4 @@
-#include "bench/gui/measure_presenter.h"
+#include "bench/gui/presenters/measure_presenter.h"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // The PDF, read back by other programs.
-#include "bench/gui/pdf_report.h"
+#include "bench/gui/presenters/pdf_report.h"
 
 #include <QImage>
 #include <QProcess>

@@ -1,4 +1,4 @@
-#include "bench/gui/plan_fields.h"
+#include "bench/gui/presenters/plan_fields.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "bench/gui/plan_presenter.h"
+#include "bench/gui/presenters/plan_presenter.h"
 
 #include <gmock/gmock.h>
 

@@ -1,8 +1,8 @@
-#include "bench/gui/session_presenter.h"
+#include "bench/gui/presenters/session_presenter.h"
 
 #include <gmock/gmock.h>
 
-#include "bench/gui/measure_presenter.h"
+#include "bench/gui/presenters/measure_presenter.h"
 #include "tests/bench/gui/gui_test_support.h"
 
 namespace todbench {

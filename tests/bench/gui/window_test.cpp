@@ -12,9 +12,9 @@
 #include <cmath>
 #include <ctime>
 
-#include "bench/gui/picture_view.h"
-#include "bench/gui/plot_view.h"
-#include "bench/session/text.h"
+#include "bench/gui/views/picture_view.h"
+#include "bench/gui/views/plot_view.h"
+#include "bench/text/text.h"
 #include "tests/bench/gui/gui_test_support.h"
 #include "tests/bench/gui/watched_application.h"
 

@@ -1,0 +1,66 @@
+// One triangle on its way through the simulated sensor: the picture after every stage.
+#pragma once
+
+#include <QObject>
+#include <QString>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "bench/gui/presenters/workbench.h"
+#include "sim_devices/sensor/sensor_plan.h"
+
+namespace todbench {
+
+struct ChainOptions {
+  std::string sensor = "sc2000", observer = "hvs-1";  ///< names or files
+  double size_pitch = 3;                              ///< square root of area, in detector pitches
+  double delta_t_k = 1;
+  Apex apex = Apex::up;
+  std::vector<Effect> skip;
+  std::uint64_t seed = 1;
+  std::uint64_t index = 0;  ///< of the exposure
+};
+
+enum class Stage { scene, optics, detector, samples, noise, quantised, display, observer };
+inline constexpr std::array all_stages{Stage::scene, Stage::optics,    Stage::detector, Stage::samples,
+                                       Stage::noise, Stage::quantised, Stage::display,  Stage::observer};
+[[nodiscard]] QString name_of(Stage stage);
+
+struct StagePicture {
+  Stage stage = Stage::scene;
+  cv::Mat1d kelvin;             ///< above the surround
+  double pixels_per_pitch = 1;  ///< of this picture
+  QString note;                 ///< what happened here, with numbers
+};
+
+/// Scene, optics and detector are sampled 16 times per pitch; samples, noise and quantisation are the pictures of the
+/// sensor model itself. Display and observer are enlarged 8 times. Every picture shows the same square. Errors: as the
+/// loaders.
+[[nodiscard]] Result<std::vector<StagePicture>> chain_pictures(const ChainOptions& options);
+
+/// Computes in the background. In the window's thread.
+class ChainPresenter final : public QObject {
+  Q_OBJECT
+
+ public:
+  explicit ChainPresenter(Workbench& bench, QObject* parent = nullptr);
+  [[nodiscard]] const ChainOptions& options() const { return options_; }
+  void set_options(const ChainOptions& options);
+  [[nodiscard]] const std::vector<StagePicture>& pictures() const { return pictures_; }
+  [[nodiscard]] QString problem() const { return problem_; }
+  [[nodiscard]] bool busy() const { return busy_; }
+
+ signals:
+  void updated();
+
+ private:
+  Workbench& bench_;
+  ChainOptions options_;
+  std::vector<StagePicture> pictures_;
+  QString problem_;
+  bool busy_ = false;
+  std::uint64_t request_ = 0;
+  JobRunner jobs_;
+};
+
+}  // namespace todbench

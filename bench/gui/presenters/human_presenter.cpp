@@ -1,0 +1,143 @@
+#include "bench/gui/presenters/human_presenter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "acquisition/core/rng.h"
+#include "bench/gui/presenters/colour_map.h"
+
+namespace todbench {
+namespace {
+
+/// Fisher-Yates with numbers that repeat.
+void shuffle(std::vector<std::size_t>& items, const RandomStream& stream) {
+  for (std::size_t i = items.size(); i > 1; --i) std::swap(items[i - 1], items[stream.below(i, i)]);
+}
+
+double median(cv::Mat1f values) {
+  std::vector<float> sorted(values.begin(), values.end());
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return *middle;
+}
+
+}  // namespace
+
+std::vector<JudgedTrial> patches_for_a_person(const std::vector<JudgedTrial>& trials, const HumanOptions& options) {
+  const RandomStream stream(options.seed, "human");
+  // Sizes of one row of the plate are equal to the last bit of the description: micrometres tell them apart.
+  std::map<std::pair<double, std::int64_t>, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < trials.size(); ++i)
+    groups[{trials[i].trial.set_delta_t_k, std::llround(trials[i].trial.size_mm * 1000)}].push_back(i);
+  std::vector<std::size_t> chosen;
+  std::uint64_t number = 0;
+  for (auto& [key, members] : groups) {
+    shuffle(members, stream.sub(++number));
+    const auto count = std::min(members.size(), static_cast<std::size_t>(std::max(options.per_size, 0)));
+    chosen.insert(chosen.end(), members.begin(), members.begin() + static_cast<std::ptrdiff_t>(count));
+  }
+  shuffle(chosen, stream.sub(0));
+  std::vector<JudgedTrial> out;
+  out.reserve(chosen.size());
+  for (const std::size_t i : chosen) out.push_back(trials[i]);
+  return out;
+}
+
+LevelSpan grey_levels(const JudgedTrial& judged) {
+  const double surround = median(judged.patch_k);
+  cv::Scalar mean, sd;
+  cv::meanStdDev(judged.patch_k, mean, sd);
+  const double half = 1.5 * std::max(std::abs(judged.trial.delta_t_k), sd[0]);
+  return {surround - half, surround + half};
+}
+
+QImage picture_for_a_person(const JudgedTrial& judged, int magnification) {
+  cv::Mat1d fine;
+  cv::resize(cv::Mat1d(judged.patch_k), fine, {}, magnification, magnification, cv::INTER_CUBIC);
+  return to_image(fine, grey_levels(judged), ColourMap::white_hot);
+}
+
+HumanPresenter::HumanPresenter(QObject* parent) : QObject(parent) {
+  hide_.setSingleShot(true);
+  connect(&hide_, &QTimer::timeout, this, [this] {
+    if (state_ != HumanState::showing) return;
+    state_ = HumanState::hidden;
+    emit updated();
+  });
+}
+
+QString HumanPresenter::begin(const std::vector<JudgedTrial>& trials, const Plan& plan,
+                              const std::filesystem::path& session, const HumanOptions& options) {
+  if (trials.empty()) return "There are no frames to show: measure first.";
+  options_ = options;
+  plan_ = plan;
+  session_ = session;
+  patches_ = patches_for_a_person(trials, options);
+  answers_.clear();
+  shown_.clear();
+  record_.reset();
+  problem_.clear();
+  show_next();
+  return {};
+}
+
+void HumanPresenter::show_next() {
+  if (answers_.size() == patches_.size()) {
+    finish();
+    return;
+  }
+  picture_ = picture_for_a_person(patches_[answers_.size()], options_.magnification);
+  state_ = HumanState::showing;
+  since_shown_.start();
+  if (options_.shown_ms) hide_.start(*options_.shown_ms);
+  emit updated();
+}
+
+void HumanPresenter::answer(Apex apex) {
+  if (state_ != HumanState::showing && state_ != HumanState::hidden) return;
+  hide_.stop();
+  const JudgedTrial& patch = patches_[answers_.size()];
+  const LevelSpan grey = grey_levels(patch);
+  shown_.push_back({.kelvin = patch.patch_k,
+                    .black_k = grey.low,
+                    .white_k = grey.high,
+                    .magnification = options_.magnification,
+                    .limit_ms = options_.shown_ms,
+                    .response_s = static_cast<double>(since_shown_.nsecsElapsed()) * 1e-9});
+  Trial trial = patch.trial;
+  trial.answer = apex;
+  trial.scores = {};
+  answers_.push_back(std::move(trial));
+  show_next();
+}
+
+void HumanPresenter::abort() {
+  if (state_ == HumanState::idle || state_ == HumanState::finished) return;
+  hide_.stop();
+  if (answers_.empty()) {
+    state_ = HumanState::idle;
+    emit updated();
+    return;
+  }
+  finish();
+}
+
+void HumanPresenter::finish() {
+  picture_ = {};
+  state_ = HumanState::finished;
+  auto record = human_record(answers_, shown_, plan_);
+  if (!record) {
+    problem_ = QString::fromStdString(record.error().message);
+  } else {
+    record_ = std::move(*record);
+    if (auto written = write_human(session_, *record_); !written)
+      problem_ = QString::fromStdString(written.error().message);
+  }
+  emit updated();
+  emit finished(QString::fromStdString(session_.string()));
+}
+
+}  // namespace todbench

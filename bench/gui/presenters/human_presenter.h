@@ -1,0 +1,80 @@
+// The same patches for a person: four alternatives, arrow keys, no feedback, blind to the model.
+#pragma once
+
+#include <QImage>
+#include <QObject>
+#include <QString>
+#include <QTimer>
+#include <optional>
+#include <vector>
+
+#include "bench/gui/presenters/colour_map.h"
+#include "bench/gui/presenters/measure_presenter.h"
+#include "bench/session/human_record.h"
+
+namespace todbench {
+
+struct HumanOptions {
+  int per_size = 8;             ///< patches per contrast and size, or all where there are fewer
+  std::optional<int> shown_ms;  ///< nothing: until answered
+  int magnification = 24;       ///< screen pixels per displayed sample: far above what display and eye resolve
+  std::uint64_t seed = 1;
+};
+
+enum class HumanState { idle, showing, hidden, finished };
+
+/// A balanced random choice of the camera's patches in random order.
+[[nodiscard]] std::vector<JudgedTrial> patches_for_a_person(const std::vector<JudgedTrial>& trials,
+                                                            const HumanOptions& options);
+/// The temperatures that are shown black and white.
+[[nodiscard]] LevelSpan grey_levels(const JudgedTrial& judged);
+/// The patch enlarged by bicubic interpolation. Grey levels span three contrasts and more round the surround, the same
+/// for every answer: nothing depends on where the triangle points.
+[[nodiscard]] QImage picture_for_a_person(const JudgedTrial& judged, int magnification);
+
+/// In the window's thread.
+class HumanPresenter final : public QObject {
+  Q_OBJECT
+
+ public:
+  explicit HumanPresenter(QObject* parent = nullptr);
+
+  /// Begins with the patches of a finished run. Returns in one sentence why it cannot.
+  [[nodiscard]] QString begin(const std::vector<JudgedTrial>& trials, const Plan& plan,
+                              const std::filesystem::path& session, const HumanOptions& options);
+  /// The person's choice for the patch that is or was shown.
+  void answer(Apex apex);
+  void abort();
+
+  [[nodiscard]] HumanState state() const { return state_; }
+  [[nodiscard]] const QImage& picture() const { return picture_; }
+  [[nodiscard]] std::size_t done() const { return answers_.size(); }
+  [[nodiscard]] std::size_t planned() const { return patches_.size(); }
+  /// When finished: what was written into the session.
+  [[nodiscard]] const std::optional<HumanRecord>& record() const { return record_; }
+  /// Why the answers could not be kept; empty otherwise.
+  [[nodiscard]] QString problem() const { return problem_; }
+
+ signals:
+  void updated();
+  void finished(const QString& session);
+
+ private:
+  void show_next();
+  void finish();
+
+  HumanOptions options_;
+  Plan plan_;
+  std::filesystem::path session_;
+  std::vector<JudgedTrial> patches_;
+  std::vector<Trial> answers_;
+  std::vector<ShownPatch> shown_;
+  QElapsedTimer since_shown_;
+  QImage picture_;
+  HumanState state_ = HumanState::idle;
+  std::optional<HumanRecord> record_;
+  QString problem_;
+  QTimer hide_;
+};
+
+}  // namespace todbench

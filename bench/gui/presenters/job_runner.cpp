@@ -1,0 +1,61 @@
+#include "bench/gui/presenters/job_runner.h"
+
+#include <utility>
+
+namespace todbench {
+
+JobRunner::JobRunner(QObject* parent) : QObject(parent), thread_(QThread::create([this] { run(end_.get_token()); })) {
+  thread_->start();
+}
+
+JobRunner::~JobRunner() {
+  shut_down();
+}
+
+void JobRunner::shut_down() {
+  end_.request_stop();
+  (void)stop();
+  wake_.notify_all();
+  thread_->wait();
+}
+
+void JobRunner::start(Job job) {
+  {
+    const std::lock_guard lock(mutex_);
+    waiting_ = std::move(job);
+    if (running_) running_->request_stop();
+  }
+  wake_.notify_all();
+}
+
+JobRunner::Waiting JobRunner::stop() {
+  const std::lock_guard lock(mutex_);
+  const Waiting waiting = waiting_ ? Waiting::dropped : Waiting::none;
+  waiting_.reset();
+  if (running_) running_->request_stop();
+  return waiting;
+}
+
+bool JobRunner::busy() const {
+  const std::lock_guard lock(mutex_);
+  return waiting_ || running_;
+}
+
+void JobRunner::run(const std::stop_token& end) {
+  for (;;) {
+    Job job;
+    std::stop_token stop;
+    {
+      std::unique_lock lock(mutex_);
+      if (!wake_.wait(lock, end, [this] { return waiting_.has_value(); })) return;
+      job = *std::exchange(waiting_, std::nullopt);
+      running_.emplace();
+      stop = running_->get_token();
+    }
+    job(stop);
+    const std::lock_guard lock(mutex_);
+    running_.reset();
+  }
+}
+
+}  // namespace todbench

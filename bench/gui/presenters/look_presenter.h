@@ -1,0 +1,77 @@
+// The live picture: which camera, how its counts become colours, what is under the cursor.
+#pragma once
+
+#include <QImage>
+#include <QObject>
+#include <QString>
+#include <QTimer>
+#include <optional>
+#include <vector>
+
+#include "bench/gui/presenters/colour_map.h"
+#include "bench/gui/presenters/live_feed.h"
+#include "bench/gui/presenters/workbench.h"
+
+namespace todbench {
+
+/// Level and span: from the picture, or held.
+enum class LevelMode { automatic, fixed };
+
+/// A pixel in the units that people think in.
+struct PixelReading {
+  int column = 0, row = 0;
+  int counts = 0;
+  std::optional<double> kelvin;  ///< nothing without a temperature scale
+};
+
+/// Takes the latest frame 25 times a second, whoever runs the camera. In the window's thread.
+class LookPresenter final : public QObject {
+  Q_OBJECT
+
+ public:
+  explicit LookPresenter(Workbench& bench, QObject* parent = nullptr);
+
+  /// Runs the selected camera; a target that the plan can drive shows the plan's highest contrast first.
+  void start();
+  void stop() { bench_.stop(); }
+
+  [[nodiscard]] const std::optional<LiveFrame>& latest() const { return latest_; }
+  [[nodiscard]] const QImage& image() const { return image_; }
+  [[nodiscard]] const std::vector<int>& histogram() const { return histogram_; }
+  [[nodiscard]] const std::vector<cv::Point>& dead() const { return dead_; }
+  [[nodiscard]] LevelSpan level() const { return level_; }
+  [[nodiscard]] LevelMode level_mode() const { return mode_; }
+  [[nodiscard]] ColourMap colour_map() const { return map_; }
+  void set_colour_map(ColourMap map);
+  void set_level_mode(LevelMode mode);
+  /// Holds level and span, in counts; span is at least 1.
+  void set_level(double level, double span);
+  void set_marks(bool on);
+
+  /// Nothing outside the picture or before the first frame.
+  [[nodiscard]] std::optional<PixelReading> reading(int column, int row) const;
+  /// "12 good, 1 incomplete, 2 lost, 50.0 Hz, buffer 33554432 bytes".
+  [[nodiscard]] QString counters() const;
+  /// Camera as it was read back, in words; empty before the first frame.
+  [[nodiscard]] QString camera() const;
+
+ signals:
+  void updated();
+
+ private:
+  void take_latest();
+  void render();
+
+  Workbench& bench_;
+  QTimer timer_;
+  std::optional<LiveFrame> latest_;
+  QImage image_;
+  std::vector<int> histogram_;
+  std::vector<cv::Point> dead_;
+  LevelSpan level_;
+  LevelMode mode_ = LevelMode::automatic;
+  ColourMap map_ = ColourMap::white_hot;
+  bool marks_ = true;
+};
+
+}  // namespace todbench

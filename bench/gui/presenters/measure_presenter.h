@@ -1,0 +1,141 @@
+// A measurement as it goes on: progress, answers, curves.
+#pragma once
+
+#include <QElapsedTimer>
+#include <QImage>
+#include <QObject>
+#include <QString>
+#include <QStringList>
+#include <QTimer>
+#include <chrono>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "bench/gui/presenters/operator_desk.h"
+#include "bench/gui/presenters/workbench.h"
+#include "bench/report/svg_plot.h"
+#include "bench/run/experiment.h"
+
+namespace todbench {
+
+/// An answer with what was judged.
+struct JudgedTrial {
+  SessionCurve curve = SessionCurve::main;
+  Trial trial;
+  cv::Mat1f patch_k;  ///< kelvin
+};
+
+enum class RunState { idle, running, paused, stopping };
+
+/// Drives one measurement at a time through measure_plan(). In the window's thread.
+class MeasurePresenter final : public QObject {
+  Q_OBJECT
+
+ public:
+  explicit MeasurePresenter(Workbench& bench, QObject* parent = nullptr);
+
+  /// Measures the plan of the workbench into a new session folder.
+  void start();
+  /// Measures again from the recorded frames of a session, whose plan is `plan`, into a new session folder.
+  void replay(const std::filesystem::path& session, const Plan& plan);
+  /// The same as last time: start() or replay().
+  void again();
+  void pause();
+  void resume();
+  /// Ends the run within a second; what was measured stays.
+  void abort();
+  /// Answers the request of operator_request().
+  void operator_done() { desk_->answer(""); }
+
+  [[nodiscard]] RunState state() const { return state_; }
+  [[nodiscard]] QString phase() const { return phase_; }
+  [[nodiscard]] std::size_t done() const { return done_; }
+  [[nodiscard]] std::size_t planned() const { return planned_; }
+  /// "1 min 12 s left", from the presentations of this phase; empty when not known.
+  [[nodiscard]] QString time_left() const;
+  [[nodiscard]] QString operator_request() const { return request_; }
+  /// While a lost camera is waited for: what happened, how long it is still waited for; empty otherwise.
+  [[nodiscard]] QString camera_away() const;
+  [[nodiscard]] const QStringList& notes() const { return notes_; }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+
+  /// Of the camera and of its twin: fitted while it goes on, from the session's own results when it is over.
+  [[nodiscard]] const std::optional<TodCurve>& measured() const { return measured_; }
+  [[nodiscard]] const std::optional<TodCurve>& twin() const { return twin_; }
+  /// What the simulated sensor lets expect, shown until its own trials come.
+  void set_predicted(std::optional<TodCurve> predicted) { predicted_ = std::move(predicted); }
+  [[nodiscard]] const std::optional<ExperimentOutcome>& outcome() const { return outcome_; }
+  /// Of a finished replay: whether trials and fits are those of the session, byte for byte.
+  [[nodiscard]] std::optional<bool> same_as_recorded() const { return same_; }
+  /// Trials of the camera.
+  [[nodiscard]] const std::vector<JudgedTrial>& trials() const { return trials_; }
+  /// The last answers of either curve, newest first.
+  [[nodiscard]] const std::deque<JudgedTrial>& recent() const { return recent_; }
+
+  /// Set contrasts of the plan, in its order.
+  [[nodiscard]] std::vector<double> contrasts() const { return plan_.target.delta_t_k; }
+  [[nodiscard]] Plot psychometric_plot(double set_delta_t_k) const;
+  [[nodiscard]] Plot tod_plot(AxisScale acuity_axis) const;
+
+ signals:
+  /// Something that is shown has changed; at most ten times a second.
+  void updated();
+  void state_changed();
+  /// The session is whole and closed.
+  void finished(const QString& folder);
+
+ private:
+  /// What the device thread leaves for the window.
+  struct Inbox {
+    std::mutex mutex;
+    std::vector<JudgedTrial> trials;
+    std::optional<std::pair<std::size_t, std::size_t>> progress;
+    bool frame_came = false;
+  };
+  /// A camera that was lost and may come back.
+  struct Away {
+    QString camera;
+    std::chrono::steady_clock::time_point until;
+  };
+
+  [[nodiscard]] ExperimentListener listener();
+  void begin(const Plan& plan);
+  /// Hands the end of a run over to the window; what ended it early is the job's own error.
+  [[nodiscard]] Result<void> hand_over(std::uint64_t run, const Result<ExperimentOutcome>& outcome,
+                                       std::optional<bool> same);
+  void set_state(RunState state);
+  void camera_lost(const SourceInfo& camera, std::chrono::milliseconds patience);
+  void collect();
+  void fit();
+  void conclude(const Result<ExperimentOutcome>& outcome);
+
+  Workbench& bench_;
+  Plan plan_;
+  RunState state_ = RunState::idle;
+  QString phase_, request_;
+  QStringList notes_;
+  std::size_t done_ = 0, planned_ = 0, done_at_start_ = 0;
+  QElapsedTimer in_phase_, since_fit_;
+  std::filesystem::path folder_;
+  std::vector<JudgedTrial> trials_;
+  std::vector<Trial> twin_trials_;
+  std::deque<JudgedTrial> recent_;
+  std::size_t fitted_ = 0;
+  bool fitting_ = false;
+  std::uint64_t run_ = 0;
+  std::optional<TodCurve> measured_, twin_, predicted_;
+  std::optional<ExperimentOutcome> outcome_;
+  std::optional<bool> same_;
+  std::optional<Away> away_;
+  std::optional<std::filesystem::path> replayed_;  ///< nothing: the last run was of the camera
+  Pause pause_;
+  std::shared_ptr<OperatorDesk> desk_ = std::make_shared<OperatorDesk>();
+  Inbox inbox_;
+  QTimer timer_;
+  JobRunner jobs_;
+};
+
+}  // namespace todbench

@@ -1,0 +1,246 @@
+#include "bench/gui/presenters/plan_outlook.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/plan/descriptions.h"
+#include "bench/plan/plan_options.h"
+#include "sim_devices/prediction/direct_estimate.h"
+#include "tod/plate/test_pattern.h"
+
+namespace todbench {
+namespace {
+
+constexpr int least_phases = 2, most_phases = 256;
+
+double triangles_of(const std::vector<TargetPlate>& plates) {
+  double triangles = 0;
+  for (const auto& plate : plates) triangles += static_cast<double>(plate.triangles.size());
+  return triangles;
+}
+
+double duration_s(const TargetPlan& target, double presentations, double frames_per_set_up, double frame_rate_hz) {
+  const auto plates = static_cast<double>(target.plates.size());
+  const auto mountings = static_cast<double>(target.mountings.size());
+  const auto contrasts = static_cast<double>(target.delta_t_k.size());
+  // Nested so that what takes longest changes least often.
+  std::vector<std::pair<double, double>> levels{
+      {target.plate_change_s, plates}, {target.mounting_change_s, mountings}, {target.contrast_change_s, contrasts}};
+  std::stable_sort(levels.begin(), levels.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  double changes = 1, seconds = 0;
+  for (const auto& [cost, count] : levels) {
+    changes *= count;
+    seconds += cost * changes;
+  }
+  // Per presentation: the shift, two exposures in flight, the one that is measured.
+  seconds += presentations * (target.shift_change_s + 3 / frame_rate_hz);
+  return seconds + changes * frames_per_set_up / frame_rate_hz;
+}
+
+/// With `phases` in place of `from`: intervals in ln S75 fall with the root of the number of answers.
+std::optional<double> rescaled_percent(std::optional<double> uncertainty_percent, int from, int phases) {
+  if (!uncertainty_percent || from == phases || phases <= 0) return uncertainty_percent;
+  return 100 * std::expm1(std::log1p(*uncertainty_percent / 100) * std::sqrt(static_cast<double>(from) / phases));
+}
+
+const ContrastPrediction* at(const std::vector<ContrastPrediction>& contrasts, double delta_t_k) {
+  const auto found = std::find_if(contrasts.begin(), contrasts.end(),
+                                  [&](const ContrastPrediction& c) { return c.delta_t_k == delta_t_k; });
+  return found == contrasts.end() ? nullptr : &*found;
+}
+
+/// Answers that an adaptive schedule is expected to need, all contrasts together.
+std::optional<double> adaptive_trials(const Plan& plan, const PlanForecast* seen) {
+  if (plan.schedule.kind != ScheduleKind::adaptive || seen == nullptr || seen->camera.empty()) return std::nullopt;
+  double trials = 0;
+  for (const auto& contrast : seen->camera) trials += contrast.trials;
+  return trials;
+}
+
+}  // namespace
+
+Result<std::vector<ExpectedThreshold>> expected_thresholds(const Plan& plan, std::stop_token stop) {
+  auto sensor = sensor_of(plan);
+  if (!sensor) return tl::unexpected(sensor.error());
+  auto spec = load_observer(plan.observer);
+  if (!spec) return tl::unexpected(spec.error());
+  TemplateObserver observer(*spec, triangle_alternatives());
+  const SensorPlan effects = full_plan(*sensor, plan.simulation.skip, plan.simulation.force, plan.simulation.motion);
+  std::vector<ExpectedThreshold> out;
+  for (const double contrast : plan.target.delta_t_k) {
+    ExpectedThreshold expected{.delta_t_k = contrast, .s75_mrad = {}};
+    const auto point = direct_estimate(as_planned(*sensor, effects), effects, observer, {std::abs(contrast)},
+                                       {.motion = plan.simulation.motion, .accuracy = Accuracy::draft(), .stop = stop});
+    if (!point && point.error().code == ErrorCode::interrupted) return tl::unexpected(point.error());
+    if (point) expected.s75_mrad = point->front().s75_pitch * sensor->ifov_mrad();
+    out.push_back(expected);
+  }
+  return out;
+}
+
+TodCurve as_curve(const std::vector<ExpectedThreshold>& expected) {
+  TodCurve curve;
+  for (const auto& e : expected) {
+    TodPoint point;
+    point.set_delta_t_k = point.delta_t_k = e.delta_t_k;
+    point.fit.threshold = e.s75_mrad;
+    curve.points.push_back(std::move(point));
+  }
+  return curve;
+}
+
+Result<PlanForecast> forecast(const Plan& plan, EffectPlanner& planner, std::stop_token stop) {
+  PlanForecast out;
+  out.plan = plan;
+  auto prediction = predict_plan(plan, planner);
+  if (prediction) {
+    if (auto timed = predict_times(plan, *prediction, planner, stop);
+        !timed && timed.error().code == ErrorCode::interrupted)
+      return tl::unexpected(timed.error());
+    out.effects = std::move(prediction->effects.plan);
+    out.warnings = std::move(prediction->warnings);
+    out.twin = std::move(prediction->contrasts);
+    out.twin_s = prediction->figures.predicted_s;
+  } else {
+    // A tolerance that the simulation cannot meet does not keep the effects from being planned.
+    auto inputs = read_inputs(plan, planner);
+    if (!inputs) return tl::unexpected(inputs.error());
+    out.effects = std::move(inputs->effects);
+    out.warnings = std::move(inputs->warnings);
+    out.problem = prediction.error().message;
+  }
+  if (out.problem.empty() && plan.simulation.phases == plan.target.phases) {
+    out.camera = out.twin;
+    return out;
+  }
+  Plan camera = plan;
+  camera.simulation.phases = plan.target.phases;
+  // What limits the simulation does not limit the camera.
+  camera.simulation.accuracy = "draft";
+  if (auto seen = predict_plan(camera, planner)) out.camera = std::move(seen->contrasts);
+  return out;
+}
+
+std::optional<double> PlanOutlook::uncertainty_percent() const {
+  double largest = 0;
+  for (const auto& contrast : contrasts) {
+    if (!contrast.camera_uncertainty_percent) return std::nullopt;
+    largest = std::max(largest, *contrast.camera_uncertainty_percent);
+  }
+  return contrasts.empty() ? std::nullopt : std::optional(largest);
+}
+
+PlanOutlook outlook(const Plan& plan, const std::vector<TargetPlate>& plates, const PlanForecast* seen,
+                    double frame_rate_hz) {
+  PlanOutlook out;
+  const double repeats = static_cast<double>(plan.target.mountings.size()) * std::max(plan.target.phases, 0) *
+                         static_cast<double>(plan.target.delta_t_k.size());
+  double presentations = repeats * static_cast<double>(plates.size()), trials = repeats * triangles_of(plates);
+  const bool adaptive = plan.schedule.kind == ScheduleKind::adaptive;
+  if (const auto expected = adaptive_trials(plan, seen); expected && trials > 0) {
+    presentations *= *expected / trials;
+    trials = *expected;
+  }
+  out.presentations = static_cast<std::uint64_t>(std::llround(presentations));
+  out.trials = static_cast<std::uint64_t>(std::llround(trials));
+  out.bench_s = duration_s(plan.target, presentations,
+                           plan.measurement.registration_frames + plan.measurement.contrast_frames, frame_rate_hz);
+  const auto scaled = [&](const ContrastPrediction* c, int from, int phases) -> std::optional<double> {
+    if (c == nullptr) return std::nullopt;
+    return adaptive ? c->uncertainty_percent : rescaled_percent(c->uncertainty_percent, from, phases);
+  };
+  for (const double contrast : plan.target.delta_t_k) {
+    PlannedContrast entry;
+    entry.delta_t_k = contrast;
+    if (seen != nullptr) {
+      const ContrastPrediction *camera = at(seen->camera, contrast), *twin = at(seen->twin, contrast);
+      if (camera != nullptr) entry.s75_mrad = camera->s75_mrad;
+      entry.camera_uncertainty_percent = scaled(camera, seen->plan.target.phases, plan.target.phases);
+      entry.twin_uncertainty_percent = scaled(twin, seen->plan.simulation.phases, plan.simulation.phases);
+    }
+    out.contrasts.push_back(entry);
+  }
+  if (seen != nullptr && seen->twin_s && seen->plan.simulation.phases > 0) {
+    const double ratio = static_cast<double>(plan.simulation.phases) / seen->plan.simulation.phases;
+    out.twin_s = *seen->twin_s * (adaptive ? 1 : ratio);
+  }
+  return out;
+}
+
+Plan with_tolerance(Plan plan, const PlanForecast* seen, double tolerance_percent) {
+  plan.simulation.tolerance_percent = tolerance_percent;
+  if (plan.schedule.kind == ScheduleKind::adaptive) {
+    plan.schedule.half_width_percent = tolerance_percent;
+    return plan;
+  }
+  if (seen == nullptr) return plan;
+  double needed = 0;
+  for (const auto& contrast : seen->camera) {
+    if (!contrast.uncertainty_percent) continue;
+    const double ratio = std::log1p(*contrast.uncertainty_percent / 100) / std::log1p(tolerance_percent / 100);
+    needed = std::max(needed, seen->plan.target.phases * ratio * ratio);
+  }
+  if (!(needed > 0)) return plan;
+  // Rounding of the ratio must not cost a phase.
+  const double whole = std::clamp(std::ceil(needed * (1 - 1e-9)), double{least_phases}, double{most_phases});
+  plan.target.phases = plan.simulation.phases = static_cast<int>(whole);
+  return plan;
+}
+
+std::vector<AccuracyPrice> accuracy_prices(const Plan& plan, const PlanForecast& seen,
+                                           const std::vector<TargetPlate>& plates, double frame_rate_hz,
+                                           EffectPlanner& planner, const std::stop_token& stop) {
+  std::vector<AccuracyPrice> prices;
+  for (const double tolerance : {0.5, 1.0, 2.0, 3.0, 5.0, 7.5, 10.0, 20.0}) {
+    if (stop.stop_requested()) break;
+    const Plan priced = with_tolerance(plan, &seen, tolerance);
+    auto found = predict_plan(priced, planner);
+    if (found && !predict_times(priced, *found, planner, stop) && stop.stop_requested()) break;
+    PlanForecast at_tolerance = seen;
+    at_tolerance.twin_s.reset();
+    if (found) {
+      at_tolerance.plan = priced;
+      at_tolerance.camera = at_tolerance.twin = found->contrasts;
+      at_tolerance.twin_s = found->figures.predicted_s;
+    }
+    const PlanOutlook out = outlook(priced, plates, &at_tolerance, frame_rate_hz);
+    const auto reached = out.uncertainty_percent();
+    if (!reached || *reached > tolerance * (1 + 1e-6)) continue;
+    prices.push_back({tolerance, priced.target.phases, out.bench_s, out.twin_s});
+  }
+  return prices;
+}
+
+Plot accuracy_plot(const std::vector<AccuracyPrice>& prices, const PlanOutlook& now) {
+  Plot plot;
+  plot.id = "accuracy-time";
+  plot.title = "Accuracy against time";
+  plot.x = {.label = "Time (s)", .scale = AxisScale::logarithmic, .low = 1, .high = 10, .ticks = {}};
+  plot.y = {.label = "Uncertainty (± %)", .scale = AxisScale::logarithmic, .low = 0.4, .high = 25, .ticks = {}};
+  PlotSeries bench{.label = "bench", .tone = PlotTone::first, .line = PlotLine::solid, .points = {}};
+  PlotSeries twin{
+      .label = "twin", .tone = PlotTone::second, .marker = PlotMarker::square, .line = PlotLine::dashed, .points = {}};
+  PlotSeries plan{.label = "plan", .tone = PlotTone::third, .marker = PlotMarker::bar, .points = {}};
+  std::vector<double> times;
+  const auto add = [&](PlotSeries& series, std::optional<double> seconds, std::optional<double> percent) {
+    if (!seconds || !percent || !(*seconds > 0) || !(*percent > 0)) return;
+    series.points.push_back({.x = *seconds, .y = *percent, .x_interval = {}, .y_interval = {}});
+    times.push_back(*seconds);
+    plot.y.low = std::min(plot.y.low, *percent / 1.2);
+    plot.y.high = std::max(plot.y.high, *percent * 1.2);
+  };
+  for (const auto& price : prices) {
+    add(bench, price.bench_s, price.tolerance_percent);
+    add(twin, price.twin_s, price.tolerance_percent);
+  }
+  add(plan, now.bench_s, now.uncertainty_percent());
+  add(plan, now.twin_s, now.uncertainty_percent());
+  if (times.empty()) return plot;
+  const auto [low, high] = std::minmax_element(times.begin(), times.end());
+  plot.x.low = *low / 1.4;
+  plot.x.high = *high * 1.4;
+  plot.series = {bench, twin, plan};
+  return plot;
+}
+
+}  // namespace todbench

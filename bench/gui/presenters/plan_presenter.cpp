@@ -1,0 +1,197 @@
+#include "bench/gui/presenters/plan_presenter.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "bench/run/experiment_inputs.h"
+#include "bench/text/files.h"
+#include "bench/plan/plan_options.h"
+
+namespace todbench {
+namespace {
+
+constexpr int delay_ms = 200;
+
+QString sentence(const Error& error) {
+  return QString::fromStdString(error.message);
+}
+
+/// Whether the expected thresholds of one plan hold for the other.
+bool same_thresholds(const Plan& a, const Plan& b) {
+  return a.target.delta_t_k == b.target.delta_t_k && a.target.plates == b.target.plates &&
+         a.target.distance_m == b.target.distance_m && a.fit == b.fit && a.observer == b.observer &&
+         a.simulation.sensor == b.simulation.sensor && a.simulation.microscan == b.simulation.microscan &&
+         a.simulation.skip == b.simulation.skip && a.simulation.force == b.simulation.force;
+}
+
+/// The plan without what a tolerance sets: prices of plans that are equal so are equal.
+Plan without_tolerance(Plan plan) {
+  plan.simulation.tolerance_percent = 1;
+  plan.schedule.half_width_percent = 10;
+  plan.target.phases = plan.simulation.phases = 1;
+  return plan;
+}
+
+struct LookAhead {
+  std::optional<std::vector<ExpectedThreshold>> expected;
+  QString misfit;
+};
+
+/// `expected` where the thresholds of the plan are known already.
+Result<LookAhead> looked_ahead(const Plan& plan, std::optional<std::vector<ExpectedThreshold>> expected,
+                               EffectPlanner& planner, const std::stop_token& stop) {
+  LookAhead out{.expected = std::move(expected), .misfit = {}};
+  if (auto inputs = read_inputs(plan, planner)) {
+    if (auto fits = check_simulated_geometry(plan, *inputs); !fits) out.misfit = sentence(fits.error());
+  } else {
+    out.misfit = sentence(inputs.error());
+  }
+  if (!out.expected) {
+    auto found = expected_thresholds(plan, stop);
+    if (!found) return tl::unexpected(found.error());
+    out.expected = std::move(*found);
+  }
+  return out;
+}
+
+}  // namespace
+
+PlanPresenter::PlanPresenter(Workbench& bench, QObject* parent) : QObject(parent), bench_(bench) {
+  delay_.setSingleShot(true);
+  delay_.setInterval(delay_ms);
+  connect(&delay_, &QTimer::timeout, this, &PlanPresenter::look_ahead);
+  connect(&bench_, &Workbench::plan_changed, this, &PlanPresenter::plan_changed);
+  // What was put off during a measurement.
+  connect(&bench_, &Workbench::activity_changed, this, [this] {
+    if (bench_.activity() != Activity::idle) return;
+    if (expected_.empty()) delay_.start();
+    if (prices_.empty()) foresee();
+  });
+  plan_changed();
+}
+
+QString PlanPresenter::toml() const {
+  return QString::fromStdString(to_toml(bench_.plan()));
+}
+
+QString PlanPresenter::apply(const Plan& plan) {
+  return apply_toml(QString::fromStdString(to_toml(plan)));
+}
+
+QString PlanPresenter::apply_toml(const QString& text) {
+  auto plan = parse_plan({"plan", text.toStdString()}, std::filesystem::current_path());
+  if (!plan) return sentence(plan.error());
+  if (*plan != bench_.plan()) bench_.set_plan(*plan);
+  return {};
+}
+
+QString PlanPresenter::load(const QString& reference) {
+  auto plan = load_plan(reference.toStdString());
+  if (!plan) return sentence(plan.error());
+  bench_.set_plan(*plan);
+  return {};
+}
+
+QString PlanPresenter::save(const QString& file) const {
+  auto written = write_file_atomically(file.toStdString(), to_toml(bench_.plan()));
+  return written ? QString() : sentence(written.error());
+}
+
+QString PlanPresenter::set_tolerance_percent(double tolerance_percent) {
+  return apply(with_tolerance(bench_.plan(), forecast_ ? &*forecast_ : nullptr, tolerance_percent));
+}
+
+QString PlanPresenter::choose(Effect effect, EffectChoice choice) {
+  Plan plan = bench_.plan();
+  std::erase(plan.simulation.skip, effect);
+  std::erase(plan.simulation.force, effect);
+  if (choice == EffectChoice::skip) plan.simulation.skip.push_back(effect);
+  if (choice == EffectChoice::simulate) plan.simulation.force.push_back(effect);
+  return apply(plan);
+}
+
+EffectChoice PlanPresenter::choice(Effect effect) const {
+  const auto among = [effect](const std::vector<Effect>& effects) {
+    return std::find(effects.begin(), effects.end(), effect) != effects.end();
+  };
+  const SimulationPlan& simulation = bench_.plan().simulation;
+  return among(simulation.skip)    ? EffectChoice::skip
+         : among(simulation.force) ? EffectChoice::simulate
+                                   : EffectChoice::planner;
+}
+
+QString PlanPresenter::misfit() const {
+  if (!misfit_.isEmpty()) return misfit_;
+  if (!trouble_.isEmpty()) return trouble_;
+  return forecast_ ? QString::fromStdString(forecast_->problem) : QString();
+}
+
+QStringList PlanPresenter::warnings() const {
+  QStringList out;
+  if (!forecast_) return out;
+  for (const auto& warning : forecast_->warnings) out << QString::fromStdString(warning);
+  return out;
+}
+
+void PlanPresenter::plan_changed() {
+  if (!expected_of_ || !same_thresholds(*expected_of_, bench_.plan())) expected_.clear();
+  if (!prices_of_ || without_tolerance(bench_.plan()) != *prices_of_) prices_.clear();
+  // Another contrast, plate or sensor: what was foreseen is of something else.
+  if (forecast_ && without_tolerance(forecast_->plan) != without_tolerance(bench_.plan())) forecast_.reset();
+  refresh();
+  foresee();
+  delay_.start();
+}
+
+void PlanPresenter::refresh() {
+  const Plan& plan = bench_.plan();
+  if (auto plates = plates_of(plan)) plates_ = std::move(*plates);
+  if (auto sensor = sensor_of(plan)) frame_rate_hz_ = sensor->frame_rate_hz > 0 ? sensor->frame_rate_hz : 50;
+  outlook_ = todbench::outlook(plan, plates_, forecast_ ? &*forecast_ : nullptr, frame_rate_hz_);
+  emit updated();
+}
+
+void PlanPresenter::foresee() {
+  const bool priced = !prices_.empty();
+  const bool measuring = bench_.activity() == Activity::measuring || bench_.activity() == Activity::replaying;
+  forecasts_.start([this, plan = bench_.plan(), plates = plates_, rate_hz = frame_rate_hz_, priced,
+                    measuring](const std::stop_token& stop) {
+    auto seen = todbench::forecast(plan, planner_);
+    // Also when a newer plan waits: while a slider moves the table follows plan by plan.
+    bench_.post([this, plan, seen] {
+      if (without_tolerance(plan) != without_tolerance(bench_.plan())) return;
+      trouble_ = seen ? QString() : sentence(seen.error());
+      if (seen) forecast_ = *seen;
+      refresh();
+    });
+    if (!seen || priced || measuring) return;
+    auto prices = accuracy_prices(plan, *seen, plates, rate_hz, planner_, stop);
+    if (stop.stop_requested()) return;
+    bench_.post([this, plan, prices = std::move(prices)] {
+      if (without_tolerance(plan) != without_tolerance(bench_.plan())) return;
+      prices_of_ = without_tolerance(plan);
+      prices_ = prices;
+      refresh();
+    });
+  });
+}
+
+void PlanPresenter::look_ahead() {
+  const Plan plan = bench_.plan();
+  // A running measurement needs the processor more than a forecast does.
+  if (bench_.activity() == Activity::measuring || bench_.activity() == Activity::replaying) return;
+  const auto known = expected_.empty() ? std::nullopt : std::optional(expected_);
+  jobs_.start([this, plan, known](const std::stop_token& stop) {
+    auto seen = looked_ahead(plan, known, planner_, stop);
+    if (!seen && seen.error().code == ErrorCode::interrupted) return;
+    bench_.post([this, plan, seen = std::move(seen)] {
+      if (plan != bench_.plan()) return;
+      expected_of_ = plan;
+      expected_ = seen ? *seen->expected : std::vector<ExpectedThreshold>();
+      misfit_ = seen ? seen->misfit : sentence(seen.error());
+      refresh();
+    });
+  });
+}
+
+}  // namespace todbench

@@ -1,0 +1,164 @@
+#include "bench/gui/presenters/session_presenter.h"
+
+#include <QRegularExpression>
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "bench/gui/presenters/pdf_report.h"
+#include "bench/report/tod_figures.h"
+#include "bench/run/recorded_bench.h"
+#include "bench/run/report_data.h"
+#include "bench/text/files.h"
+#include "bench/plan/plan_options.h"
+#include "bench/text/text.h"
+
+namespace todbench {
+namespace {
+
+/// Without "session-" and the time, which stands in a column of its own.
+QString short_name(const QString& session) {
+  static const QRegularExpression stamp("^session-[0-9]{8}T[0-9]{6}Z-");
+  return QString(session).remove(stamp);
+}
+
+Result<SessionEntry> entry_of(const std::filesystem::path& folder) {
+  const auto text = read_text_file(folder / "provenance.json");
+  if (!text) return tl::unexpected(text.error());
+  const Json json = Json::parse(*text, nullptr, false);
+  if (json.is_discarded()) return fail(ErrorCode::invalid_input, folder.string() + ": provenance.json is not JSON");
+  auto provenance = provenance_from(json);
+  if (!provenance) return tl::unexpected(provenance.error());
+  SessionEntry entry;
+  entry.folder = folder;
+  entry.name = short_name(QString::fromStdString(session_name(folder)));
+  entry.when = QString::fromStdString(provenance->started_utc).replace('T', ' ').remove('Z');
+  entry.state = QString::fromUtf8(to_string(provenance->state).data());
+  if (provenance->camera)
+    entry.unit = QString::fromStdString(provenance->camera->model + ", serial " + provenance->camera->serial);
+  if (!provenance->camera) entry.unit = "simulation";
+  return entry;
+}
+
+}  // namespace
+
+Result<Exported> export_reports(const OpenedSession& opened) {
+  const auto html = opened.folder / "report.html";
+  const auto pdf = opened.folder / "report.pdf";
+  if (auto written = write_file_atomically(html, render_report(opened.report)); !written)
+    return tl::unexpected(written.error());
+  if (auto written = write_pdf_report(opened.report, pdf); !written) return tl::unexpected(written.error());
+  std::error_code none;
+  if (std::filesystem::exists(opened.folder / "manifest.json", none)) {
+    if (auto refreshed = refresh_manifest(opened.folder, {"report.html", "report.pdf"}); !refreshed)
+      return tl::unexpected(refreshed.error());
+  }
+  return Exported{QString::fromStdString(html.string()), QString::fromStdString(pdf.string())};
+}
+
+Result<OpenedSession> read_opened_session(const std::filesystem::path& folder) {
+  auto session = read_session(folder);
+  if (!session) return tl::unexpected(session.error());
+  const std::string name = session_name(folder);
+  auto data = report_data(*session, name);
+  if (!data) return tl::unexpected(data.error());
+  auto human = read_human(folder);
+  if (!human) return tl::unexpected(human.error());
+  if (*human) data->human = (*human)->curve;
+  std::error_code none;
+  const bool recorded = std::filesystem::exists(recorded_frames(folder), none);
+  return OpenedSession{folder,  QString::fromStdString(name), *std::move(session), *std::move(data), *std::move(human),
+                       recorded};
+}
+
+std::vector<SessionEntry> sessions_below(const std::filesystem::path& folder) {
+  std::vector<SessionEntry> out;
+  std::error_code problem;
+  for (const auto& child : std::filesystem::directory_iterator(folder, problem)) {
+    if (!std::filesystem::exists(child.path() / "session.toml", problem)) continue;
+    if (auto entry = entry_of(child.path())) out.push_back(*std::move(entry));
+  }
+  std::sort(out.begin(), out.end(), [](const SessionEntry& a, const SessionEntry& b) {
+    return std::pair(b.when, b.name) < std::pair(a.when, a.name);
+  });
+  return out;
+}
+
+SessionPresenter::SessionPresenter(Workbench& bench, QObject* parent) : QObject(parent), bench_(bench) {}
+
+template <typename T>
+void SessionPresenter::in_background(std::function<Result<T>()> work, std::function<void(T)> done) {
+  jobs_.start([this, work = std::move(work), done = std::move(done)](const std::stop_token&) {
+    auto result = work();
+    bench_.post([this, result = std::move(result), done] {
+      if (result) {
+        done(*result);
+      } else {
+        emit problem(QString::fromStdString(result.error().message));
+      }
+    });
+  });
+}
+
+void SessionPresenter::refresh() {
+  list_jobs_.start([this, folder = bench_.sessions_folder()](const std::stop_token&) {
+    bench_.post([this, found = sessions_below(folder)] {
+      sessions_ = found;
+      emit listed();
+    });
+  });
+}
+
+void SessionPresenter::open(const std::filesystem::path& folder) {
+  in_background<OpenedSession>([folder] { return read_opened_session(folder); },
+                               [this](OpenedSession session) {
+                                 current_ = std::move(session);
+                                 compared_.reset();
+                                 emit opened();
+                               });
+}
+
+void SessionPresenter::compare_with(const std::filesystem::path& other) {
+  if (!current_) return;
+  if (!current_->session.curve) {
+    emit problem(current_->name + ": the session holds no curve");
+    return;
+  }
+  in_background<ComparedSessions>(
+      [a = current_->name, curve = *current_->session.curve, options = comparison_options(current_->session.plan),
+       other]() -> Result<ComparedSessions> {
+        auto session = read_session(other);
+        if (!session) return tl::unexpected(session.error());
+        if (!session->curve) return fail(ErrorCode::invalid_input, other.string() + ": the session holds no curve");
+        auto comparison = compare(curve, *session->curve, options);
+        if (!comparison) return tl::unexpected(comparison.error());
+        return ComparedSessions{a, QString::fromStdString(session_name(other)), curve, *session->curve,
+                                *std::move(comparison)};
+      },
+      [this](ComparedSessions sessions) {
+        compared_ = std::move(sessions);
+        emit compared();
+      });
+}
+
+void SessionPresenter::export_reports() {
+  if (!current_) return;
+  in_background<Exported>([opened = *current_] { return todbench::export_reports(opened); },
+                          [this](const Exported& files) { emit exported(files.html, files.pdf); });
+}
+
+void SessionPresenter::use_plan_again() {
+  if (current_) bench_.set_plan(current_->session.plan);
+}
+
+Plot SessionPresenter::tod_figure(AxisScale acuity_axis) const {
+  if (compared_) {
+    return with_acuity_axis(todbench::tod_figure({compared_->a.toStdString(), &compared_->curve_a},
+                                                 {compared_->b.toStdString(), &compared_->curve_b}, {}),
+                            acuity_axis);
+  }
+  if (!current_) return {};
+  return with_acuity_axis(tod_plot(current_->report), acuity_axis);
+}
+
+}  // namespace todbench

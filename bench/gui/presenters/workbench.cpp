@@ -1,0 +1,247 @@
+#include "bench/gui/presenters/workbench.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "bench/run/devices.h"
+#include "bench/plan/descriptions.h"
+#include "bench/plan/resources.h"
+
+namespace todbench {
+namespace {
+
+constexpr std::string_view simulated_scheme = "sim:";
+
+bool is_simulated(const QString& id) {
+  return id.startsWith("sim:");
+}
+
+QString group_of(const CameraEntry& camera) {
+  return QString::fromStdString(camera.transport == "simulation" ? "Simulated sensors" : camera.transport);
+}
+
+std::vector<DeviceEntry> built_in_devices() {
+  std::vector<DeviceEntry> entries;
+#ifdef TODBENCH_WITH_ARAVIS
+  entries.push_back({.id = emulated_laboratory,
+                     .group = "Emulated",
+                     .label = "Emulated laboratory",
+                     .detail = "GigE camera, black body and plate stage, on loopback",
+                     .health = DeviceHealth::ready});
+#endif
+  for (const auto& name : resource_names(ResourceKind::sensor)) {
+    entries.push_back({.id = QString::fromStdString("sim:" + name),
+                       .group = "Simulated sensors",
+                       .label = QString::fromStdString(name),
+                       .detail = "Sensor model, as fast as the processor",
+                       .health = DeviceHealth::ready});
+  }
+  return entries;
+}
+
+}  // namespace
+
+QString name_of(DeviceHealth health) {
+  switch (health) {
+    case DeviceHealth::ready:
+      return "ready";
+    case DeviceHealth::in_use:
+      return "in use";
+    case DeviceHealth::lost:
+      return "lost";
+  }
+  return {};
+}
+
+QString name_of(Activity activity) {
+  switch (activity) {
+    case Activity::idle:
+      return "idle";
+    case Activity::looking:
+      return "looking";
+    case Activity::aligning:
+      return "aligning";
+    case Activity::measuring:
+      return "measuring";
+    case Activity::replaying:
+      return "replaying";
+  }
+  return {};
+}
+
+Workbench::Workbench(std::filesystem::path sessions, QObject* parent)
+    : QObject(parent), sessions_(std::move(sessions)), devices_(built_in_devices()) {
+  if (auto plan = load_plan("demo")) plan_ = std::move(*plan);
+  if (devices_.front().id != device_) (void)select_device(devices_.front().id);
+}
+
+Workbench::~Workbench() = default;
+
+void Workbench::set_plan(const Plan& plan) {
+  plan_ = plan;
+  emit plan_changed();
+}
+
+Result<void> Workbench::select_device(const QString& id) {
+  Plan plan = plan_;
+  if (id == emulated_laboratory) {
+    plan.camera.id = "gige:127.0.0.1";
+    plan.target.kind = TargetKind::scpi;
+    plan.target.black_body = "127.0.0.1:5025";
+    plan.target.stage = "127.0.0.1:5026";
+  } else if (is_simulated(id)) {
+    const std::string name = id.toStdString().substr(simulated_scheme.size());
+    auto sensor = load_sensor(name);
+    if (!sensor) return tl::unexpected(sensor.error());
+    plan.camera.id = id.toStdString();
+    plan.camera.ifov_mrad = sensor->ifov_mrad() / sensor->microscan;
+    plan.target.kind = TargetKind::scene;
+    plan.target.black_body.clear();
+    plan.target.stage.clear();
+    plan.simulation.sensor = name;
+  } else {
+    plan.camera.id = id.toStdString();
+    if (plan.target.kind == TargetKind::scene) plan.target.kind = TargetKind::prompt;
+  }
+  if (device_ != id) stop();
+  device_ = id;
+  set_plan(plan);
+  emit device_selected();
+  return {};
+}
+
+void Workbench::rescan() {
+  scan_.start([this](const std::stop_token&) {
+    const auto listing = camera_registry().list();
+    post([this, listing] {
+      auto entries = built_in_devices();
+      for (const auto& camera : listing.cameras) {
+        // The emulated laboratory and the shipped sensors are in the list already.
+        if (camera.transport == "simulation" || camera.address.starts_with("127.")) continue;
+        entries.push_back({.id = QString::fromStdString(camera.id),
+                           .group = group_of(camera),
+                           .label = QString::fromStdString(camera.vendor + " " + camera.model),
+                           .detail = QString::fromStdString("serial " + camera.serial +
+                                                            (camera.address.empty() ? "" : ", at " + camera.address)),
+                           .health = DeviceHealth::ready});
+      }
+      for (auto& entry : entries) {
+        const auto before = std::find_if(devices_.begin(), devices_.end(),
+                                         [&](const DeviceEntry& known) { return known.id == entry.id; });
+        if (before != devices_.end()) entry.health = before->health;
+      }
+      devices_ = std::move(entries);
+      emit devices_changed();
+      for (const auto& warning : listing.warnings) emit noted(QString::fromStdString(warning));
+    });
+  });
+}
+
+Result<Plan> Workbench::with_devices(Plan plan, const QString& device, const std::stop_token& stop) {
+  if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+  if (device != emulated_laboratory) return plan;
+#ifdef TODBENCH_WITH_ARAVIS
+  const EmulationArguments wanted = emulation_for(plan);
+  const std::lock_guard lock(laboratory_mutex_);
+  if (!laboratory_ || laboratory_is_ != wanted) {
+    laboratory_.reset();
+    auto laboratory = start_laboratory(wanted);
+    if (!laboratory) return fail("starting the emulated laboratory", laboratory.error());
+    laboratory_ = std::move(*laboratory);
+    laboratory_is_ = wanted;
+  }
+  return with_laboratory(std::move(plan), *laboratory_);
+#else
+  return fail(ErrorCode::not_found, "this build has no camera libraries: nothing can be emulated");
+#endif
+}
+
+void Workbench::run(Activity activity, DeviceJob job) {
+  set_health(DeviceHealth::in_use);
+  begin(activity, Devices::needed, std::move(job));
+}
+
+void Workbench::run_without_devices(Activity activity, DeviceJob job) {
+  set_health(DeviceHealth::ready);
+  begin(activity, Devices::none, std::move(job));
+}
+
+void Workbench::begin(Activity activity, Devices devices, DeviceJob job) {
+  const std::uint64_t number = ++run_;
+  set_activity(activity);
+  bench_.start(
+      [this, number, devices, plan = plan_, device = device_, job = std::move(job)](const std::stop_token& stop) {
+        Result<void> result;
+        if (auto ready = devices == Devices::none ? Result<Plan>(plan) : with_devices(plan, device, stop)) {
+          result = job(*ready, stop);
+        } else {
+          result = tl::unexpected(ready.error());
+        }
+#ifdef TODBENCH_WITH_ARAVIS
+        // A laboratory whose camera is gone is of no use any more: the next run starts another.
+        if (!result && result.error().code == ErrorCode::disconnected) {
+          const std::lock_guard lock(laboratory_mutex_);
+          laboratory_.reset();
+        }
+#endif
+        post([this, number, result] { ended(number, result); });
+      });
+}
+
+void Workbench::stop() {
+  // A job that was waiting never says that it has ended.
+  if (bench_.stop() == JobRunner::Waiting::dropped) {
+    ++run_;
+    set_activity(Activity::idle);
+    set_health(DeviceHealth::ready);
+  }
+}
+
+void Workbench::ended(std::uint64_t run, const Result<void>& result) {
+  if (run != run_) return;
+  const bool failed = !result && result.error().code != ErrorCode::interrupted;
+  const bool lost =
+      failed && (result.error().code == ErrorCode::disconnected || result.error().code == ErrorCode::not_found);
+  set_health(lost ? DeviceHealth::lost : DeviceHealth::ready);
+  set_activity(Activity::idle);
+  if (failed) emit trouble(QString::fromStdString(result.error().message));
+}
+
+void Workbench::switch_emulated_camera_off() {
+#ifdef TODBENCH_WITH_ARAVIS
+  const std::lock_guard lock(laboratory_mutex_);
+  if (laboratory_) laboratory_->switch_camera_off();
+#endif
+}
+
+void Workbench::shut_down() {
+  scan_.shut_down();
+  bench_.shut_down();
+}
+
+void Workbench::post(std::function<void()> what) {
+  QMetaObject::invokeMethod(this, std::move(what), Qt::QueuedConnection);
+}
+
+void Workbench::note(const std::string& sentence) {
+  post([this, text = QString::fromStdString(sentence)] { emit noted(text); });
+}
+
+void Workbench::set_activity(Activity activity) {
+  if (activity_ == activity) return;
+  activity_ = activity;
+  emit activity_changed();
+}
+
+void Workbench::set_health(DeviceHealth health) {
+  for (auto& entry : devices_) {
+    if (entry.id == device_) {
+      entry.health = health;
+    } else if (entry.health == DeviceHealth::in_use) {
+      entry.health = DeviceHealth::ready;
+    }
+  }
+  emit devices_changed();
+}
+
+}  // namespace todbench

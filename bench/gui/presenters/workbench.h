@@ -1,0 +1,110 @@
+// What all views share: the plan, the devices, the thread that works with them, the live pictures.
+#pragma once
+
+#include <QObject>
+#include <QString>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "bench/gui/presenters/job_runner.h"
+#include "bench/gui/presenters/live_feed.h"
+#include "bench/run/emulation.h"
+#include "bench/plan/plan.h"
+
+namespace todbench {
+
+/// What a badge says about a device.
+enum class DeviceHealth { ready, in_use, lost };
+[[nodiscard]] QString name_of(DeviceHealth health);
+
+struct DeviceEntry {
+  QString id;     ///< of a camera, or `emulated_laboratory`
+  QString group;  ///< "Emulated", "Simulated", "GigE Vision", ...
+  QString label, detail;
+  DeviceHealth health = DeviceHealth::ready;
+};
+inline constexpr const char* emulated_laboratory = "emulated";
+
+/// What the bench does now. One at a time.
+enum class Activity { idle, looking, aligning, measuring, replaying };
+[[nodiscard]] QString name_of(Activity activity);
+
+/// Lives in the thread of the window; members marked so may be called from jobs.
+class Workbench final : public QObject {
+  Q_OBJECT
+
+ public:
+  /// Sessions are looked for and written in `sessions`.
+  explicit Workbench(std::filesystem::path sessions, QObject* parent = nullptr);
+  ~Workbench() override;
+
+  [[nodiscard]] const Plan& plan() const { return plan_; }
+  void set_plan(const Plan& plan);
+  [[nodiscard]] const std::filesystem::path& sessions_folder() const { return sessions_; }
+
+  [[nodiscard]] const std::vector<DeviceEntry>& devices() const { return devices_; }
+  [[nodiscard]] QString device() const { return device_; }
+  /// Puts the device into the plan. Errors: `invalid_input` for a simulated sensor that cannot be read.
+  [[nodiscard]] Result<void> select_device(const QString& id);
+  /// Looks for cameras; devices_changed() follows.
+  void rescan();
+
+  [[nodiscard]] Activity activity() const { return activity_; }
+  /// Runs a job with the devices; what ran before is stopped. `job` is called on the device thread with the plan whose
+  /// devices are ready; the error that it returns (`interrupted` is none) becomes a trouble().
+  using DeviceJob = std::function<Result<void>(const Plan&, std::stop_token)>;
+  void run(Activity activity, DeviceJob job);
+  /// The same for a job that needs none of the devices: it gets the plan as it is.
+  void run_without_devices(Activity activity, DeviceJob job);
+  void stop();
+  /// Ends all jobs and waits for them. To be called before anything that a job uses goes.
+  void shut_down();
+  [[nodiscard]] LiveFeed& feed() { return feed_; }
+
+  /// Cuts the power of the emulated camera, as a pulled cable does: to show and to test what happens then. Any thread.
+  void switch_emulated_camera_off();
+
+  /// What a job learns about the device it uses. Window's thread.
+  void report_health(DeviceHealth health) { set_health(health); }
+
+  /// Calls `what` in the window's thread, unless the workbench is gone by then. Any thread.
+  void post(std::function<void()> what);
+  /// Says something to the user. Any thread.
+  void note(const std::string& sentence);
+
+ signals:
+  void plan_changed();
+  void devices_changed();
+  void device_selected();
+  void activity_changed();
+  void noted(const QString& sentence);
+  /// Something went wrong; `retry` says whether doing the same again may help.
+  void trouble(const QString& sentence);
+
+ private:
+  [[nodiscard]] Result<Plan> with_devices(Plan plan, const QString& device, const std::stop_token& stop);
+  enum class Devices { needed, none };
+  void begin(Activity activity, Devices devices, DeviceJob job);
+  void set_activity(Activity activity);
+  void set_health(DeviceHealth health);
+  void ended(std::uint64_t run, const Result<void>& result);
+
+  std::filesystem::path sessions_;
+  Plan plan_;
+  QString device_ = emulated_laboratory;
+  std::vector<DeviceEntry> devices_;
+  Activity activity_ = Activity::idle;
+  std::uint64_t run_ = 0;  ///< number of the last run: an older one that ends says nothing
+  LiveFeed feed_;
+#ifdef TODBENCH_WITH_ARAVIS
+  std::mutex laboratory_mutex_;
+  std::unique_ptr<Laboratory> laboratory_;
+  std::optional<EmulationArguments> laboratory_is_;
+#endif
+  JobRunner scan_, bench_;  // last: their jobs use everything above
+};
+
+}  // namespace todbench

@@ -1,0 +1,95 @@
+#include "bench/gui/views/align_view.h"
+
+#include <QHBoxLayout>
+
+#include "bench/gui/presenters/align_presenter.h"
+#include "bench/gui/views/layout_pieces.h"
+#include "bench/gui/presenters/look_presenter.h"
+#include "bench/gui/views/picture_view.h"
+
+namespace todbench {
+namespace {
+
+QPolygonF polygon_of(const Polygon& points) {
+  QPolygonF out;
+  for (const auto& p : points) out << QPointF(p.x, p.y);
+  return out;
+}
+
+}  // namespace
+
+AlignView::AlignView(Workbench& bench, AlignPresenter& presenter, LookPresenter& live, QWidget* parent)
+    : QWidget(parent), bench_(bench), presenter_(presenter) {
+  auto* layout = new QHBoxLayout(this);
+  picture_ = new PictureView;
+  picture_->setObjectName("alignPicture");
+  picture_->set_placeholder("Start to show the first plate of the plan at its highest contrast and find it.");
+  layout->addWidget(picture_, 1);
+  auto* panel = new QWidget;
+  panel->setFixedWidth(300);
+  auto* side = new QVBoxLayout(panel);
+  side->setContentsMargins(0, 0, 0, 0);
+  side->addWidget(title_label("Registration"));
+  verdict_ = new QLabel("Not aligned yet");
+  verdict_->setObjectName("alignVerdict");
+  verdict_->setProperty("role", "verdict");
+  verdict_->setWordWrap(true);
+  side->addWidget(verdict_);
+  figures_ = plain_table({"Quantity", "Value"}, "alignFigures");
+  figures_->setColumnWidth(0, 150);
+  side->addWidget(figures_, 1);
+  side->addWidget(title_label("To mend"));
+  hints_ = hint_label("Nothing known yet.");
+  hints_->setObjectName("alignHints");
+  side->addWidget(hints_);
+  side->addWidget(
+      hint_label("Blue: triangles where the plate says they are. Orange: what the observer will see. "
+                 "Green: the edge of the plate."));
+  start_ = primary_button("Start alignment", "startAligning");
+  side->addWidget(start_);
+  layout->addWidget(panel);
+  connect(start_, &QPushButton::clicked, this, [this] {
+    if (bench_.activity() == Activity::aligning) {
+      presenter_.stop();
+    } else {
+      presenter_.start();
+    }
+  });
+  connect(&live, &LookPresenter::updated, this, [this, &live] {
+    if (isVisible()) picture_->set_image(live.image());
+  });
+  connect(&presenter_, &AlignPresenter::updated, this, &AlignView::show_alignment);
+  connect(&bench_, &Workbench::activity_changed, this, &AlignView::show_activity);
+  show_activity();
+}
+
+void AlignView::show_alignment() {
+  QList<QStringList> rows;
+  for (const auto& [name, value] : presenter_.figures()) rows << QStringList{name, value};
+  fill_table(*figures_, rows);
+  const QStringList hints = presenter_.hints();
+  hints_->setText(hints.isEmpty() ? "Nothing." : "• " + hints.join("\n• "));
+  const auto& alignment = presenter_.alignment();
+  if (!alignment) {
+    verdict_->setText("Not aligned yet");
+    picture_->set_outlines({});
+    return;
+  }
+  verdict_->setText(alignment->remarks.empty() ? "✓ Ready to measure" : "✗ Not ready");
+  std::vector<PictureOutline> outlines;
+  outlines.push_back({polygon_of(alignment->plate_px), QColor(0, 158, 115)});
+  for (const auto& t : alignment->triangles) {
+    outlines.push_back({polygon_of(t.outline_px), QColor(86, 180, 233)});
+    const QRectF window(t.window.x - 0.5, t.window.y - 0.5, t.window.width, t.window.height);
+    outlines.push_back({QPolygonF(window), QColor(230, 159, 0), Qt::DotLine});
+  }
+  picture_->set_outlines(std::move(outlines));
+}
+
+void AlignView::show_activity() {
+  const bool aligning = bench_.activity() == Activity::aligning;
+  start_->setText(aligning ? "Stop alignment" : "Start alignment");
+  start_->setEnabled(bench_.activity() != Activity::measuring && bench_.activity() != Activity::replaying);
+}
+
+}  // namespace todbench

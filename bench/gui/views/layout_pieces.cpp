@@ -1,0 +1,68 @@
+#include "bench/gui/views/layout_pieces.h"
+
+#include <QHeaderView>
+
+namespace todbench {
+
+QLabel* title_label(const QString& text) {
+  auto* label = new QLabel(text);  // NOLINT: owned by the layout's parent, as all widgets below
+  label->setProperty("role", "title");
+  return label;
+}
+
+QLabel* hint_label(const QString& text) {
+  auto* label = new QLabel(text);  // NOLINT
+  label->setProperty("role", "hint");
+  label->setWordWrap(true);
+  return label;
+}
+
+QPushButton* primary_button(const QString& text, const QString& object_name) {
+  QPushButton* button = plain_button(text, object_name);
+  button->setProperty("role", "primary");
+  return button;
+}
+
+QPushButton* plain_button(const QString& text, const QString& object_name) {
+  auto* button = new QPushButton(text);  // NOLINT
+  button->setObjectName(object_name);
+  return button;
+}
+
+QTableWidget* plain_table(const QStringList& header, const QString& object_name) {
+  auto* table = new QTableWidget(0, static_cast<int>(header.size()));  // NOLINT
+  table->setObjectName(object_name);
+  table->setHorizontalHeaderLabels(header);
+  table->verticalHeader()->hide();
+  table->setEditTriggers(QAbstractItemView::NoEditTriggers);
+  table->setSelectionBehavior(QAbstractItemView::SelectRows);
+  table->setAlternatingRowColors(true);
+  table->setTabKeyNavigation(false);
+  table->setWordWrap(false);
+  table->horizontalHeader()->setDefaultAlignment(Qt::AlignLeft | Qt::AlignVCenter);
+  table->horizontalHeader()->setStretchLastSection(true);
+  table->verticalHeader()->setDefaultSectionSize(table->fontMetrics().height() + 8);
+  return table;
+}
+
+void fill_table(QTableWidget& table, const QList<QStringList>& rows) {
+  table.setUpdatesEnabled(false);
+  table.setRowCount(static_cast<int>(rows.size()));
+  for (int row = 0; row < rows.size(); ++row) {
+    for (int column = 0; column < table.columnCount(); ++column) {
+      const QString text = column < rows[row].size() ? rows[row][column] : QString();
+      QTableWidgetItem* item = table.item(row, column);
+      if (item == nullptr) {
+        item = new QTableWidgetItem;  // NOLINT: owned by the table
+        table.setItem(row, column, item);
+      }
+      if (item->text() != text) {
+        item->setText(text);
+        item->setToolTip(text);
+      }
+    }
+  }
+  table.setUpdatesEnabled(true);
+}
+
+}  // namespace todbench

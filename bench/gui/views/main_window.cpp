@@ -1,0 +1,280 @@
+#include "bench/gui/views/main_window.h"
+
+#include <QActionGroup>
+#include <QApplication>
+#include <QCloseEvent>
+#include <QComboBox>
+#include <QFrame>
+#include <QHBoxLayout>
+#include <QListWidget>
+#include <QMenuBar>
+#include <QSettings>
+#include <QShortcut>
+#include <QStackedWidget>
+#include <QStatusBar>
+#include <QStyleFactory>
+#include <algorithm>
+
+#include "bench/gui/views/align_view.h"
+#include "bench/gui/views/chain_view.h"
+#include "bench/gui/views/human_view.h"
+#include "bench/gui/views/layout_pieces.h"
+#include "bench/gui/views/look_view.h"
+#include "bench/gui/views/measure_view.h"
+#include "bench/gui/views/plan_view.h"
+#include "bench/gui/views/report_view.h"
+
+namespace todbench {
+
+QString name_of(View view) {
+  switch (view) {
+    case View::look:
+      return "Choose and look";
+    case View::align:
+      return "Align";
+    case View::plan:
+      return "Plan";
+    case View::measure:
+      return "Measure";
+    case View::human:
+      return "Human observer";
+    case View::chain:
+      return "See the chain";
+    case View::report:
+      return "Compare and report";
+  }
+  return {};
+}
+
+MainWindow::MainWindow(const std::filesystem::path& sessions, Memory memory, QWidget* parent)
+    : QMainWindow(parent),
+      memory_(memory),
+      bench_(sessions),
+      look_(bench_),
+      align_(bench_),
+      plan_(bench_),
+      measure_(bench_),
+      chain_(bench_),
+      sessions_(bench_) {
+  setWindowTitle("todbench");
+  theme_ = desktop_theme();
+  make_views();
+  make_menu();
+  connect_parts();
+  resize(1280, 700);
+  if (memory_ == Memory::remember) recall();
+  set_theme(theme_);
+  show_view(View::look);
+  show_state();
+}
+
+MainWindow::~MainWindow() {
+  // Jobs use presenters: they end before any of these goes.
+  bench_.shut_down();
+}
+
+void MainWindow::make_views() {
+  auto* central = new QWidget;
+  auto* layout = new QHBoxLayout(central);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(0);
+  navigation_ = new QListWidget;
+  navigation_->setObjectName("navigation");
+  navigation_->setFixedWidth(165);
+  navigation_->setAccessibleName("Views");
+  views_ = new QStackedWidget;
+  int number = 0;
+  for (const View view : all_views) {
+    auto* item = new QListWidgetItem(name_of(view), navigation_);
+    item->setToolTip(QString("Ctrl+%1").arg(++number));
+    auto* shortcut = new QShortcut(QKeySequence(QString("Ctrl+%1").arg(number)), this);
+    connect(shortcut, &QShortcut::activated, this, [this, view] { show_view(view); });
+  }
+  views_->addWidget(new LookView(bench_, look_));
+  views_->addWidget(new AlignView(bench_, align_, look_));
+  views_->addWidget(new PlanView(plan_));
+  views_->addWidget(new MeasureView(bench_, measure_));
+  views_->addWidget(new HumanView(bench_, human_, measure_));
+  views_->addWidget(new ChainView(chain_));
+  auto* report = new ReportView(sessions_);
+  connect(report, &ReportView::again, this, [this] { show_view(View::measure); });
+  connect(report, &ReportView::replay, this, [this] {
+    if (!sessions_.current()) return;
+    show_view(View::measure);
+    measure_.replay(sessions_.current()->folder, sessions_.current()->session.plan);
+  });
+  views_->addWidget(report);
+
+  message_ = new QFrame;
+  message_->setObjectName("messageBar");
+  auto* line = new QHBoxLayout(message_);
+  message_text_ = new QLabel;
+  message_text_->setObjectName("messageText");
+  message_text_->setWordWrap(true);
+  message_text_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  retry_ = primary_button("Try again", "retry");
+  auto* close = plain_button("Close", "closeMessage");
+  abandon_ = primary_button("Abort the run", "abandonRun");
+  other_camera_ = plain_button("Choose another camera", "otherCamera");
+  line->addWidget(message_text_, 1);
+  for (QPushButton* button : {retry_, abandon_, other_camera_}) line->addWidget(button);
+  line->addWidget(close);
+  connect(close, &QPushButton::clicked, message_, &QWidget::hide);
+  message_->hide();
+
+  auto* right = new QVBoxLayout;
+  right->addWidget(message_);
+  right->addWidget(views_, 1);
+  layout->addWidget(navigation_);
+  layout->addLayout(right, 1);
+  setCentralWidget(central);
+  state_ = new QLabel;
+  state_->setObjectName("benchState");
+  statusBar()->addPermanentWidget(state_);
+  connect(navigation_, &QListWidget::currentRowChanged, this, [this](int row) {
+    if (row < 0) return;
+    views_->setCurrentIndex(row);
+  });
+}
+
+void MainWindow::make_menu() {
+  QMenu* bench = menuBar()->addMenu("&Bench");
+  connect(bench->addAction("&Look for cameras"), &QAction::triggered, this, [this] { bench_.rescan(); });
+  connect(bench->addAction("&Stop"), &QAction::triggered, this, [this] { bench_.stop(); });
+  QAction* cable = bench->addAction("&Pull the emulated camera's cable");
+  cable->setToolTip("Cuts the power of the emulated camera, to see what happens then");
+  connect(cable, &QAction::triggered, this, [this] { bench_.switch_emulated_camera_off(); });
+  bench->addSeparator();
+  QAction* quit = bench->addAction("&Quit");
+  quit->setShortcut(QKeySequence::Quit);
+  connect(quit, &QAction::triggered, this, &QWidget::close);
+  QMenu* view = menuBar()->addMenu("&View");
+  auto* themes = new QActionGroup(this);
+  for (const auto& [theme, name] : {std::pair{Theme::light, "&Light"}, std::pair{Theme::dark, "&Dark"}}) {
+    QAction* action = view->addAction(name);
+    action->setCheckable(true);
+    action->setData(static_cast<int>(theme));
+    themes->addAction(action);
+    connect(action, &QAction::triggered, this, [this, chosen = theme] { set_theme(chosen); });
+  }
+}
+
+void MainWindow::connect_parts() {
+  connect(&bench_, &Workbench::trouble, this, &MainWindow::show_trouble);
+  connect(&sessions_, &SessionPresenter::problem, this, &MainWindow::show_trouble);
+  connect(&bench_, &Workbench::noted, this, [this](const QString& text) { statusBar()->showMessage(text, 8000); });
+  connect(&bench_, &Workbench::activity_changed, this, [this] {
+    if (bench_.activity() != Activity::idle) {
+      last_activity_ = bench_.activity();
+      message_->hide();
+    }
+    show_state();
+  });
+  connect(&bench_, &Workbench::device_selected, this, &MainWindow::show_state);
+  connect(&bench_, &Workbench::devices_changed, this, &MainWindow::show_state);
+  connect(retry_, &QPushButton::clicked, this, [this] {
+    message_->hide();
+    if (last_activity_ == Activity::measuring || last_activity_ == Activity::replaying) measure_.again();
+    if (last_activity_ == Activity::aligning) align_.start();
+    if (last_activity_ == Activity::looking || last_activity_ == Activity::idle) look_.start();
+  });
+  connect(abandon_, &QPushButton::clicked, this, [this] { measure_.abort(); });
+  connect(other_camera_, &QPushButton::clicked, this, [this] {
+    measure_.abort();
+    message_->hide();
+    show_view(View::look);
+  });
+  connect(&measure_, &MeasurePresenter::updated, this, &MainWindow::show_camera_away);
+  connect(&plan_, &PlanPresenter::updated, this, [this] {
+    measure_.set_predicted(plan_.expected_known() ? std::optional(as_curve(plan_.expected())) : std::nullopt);
+  });
+  // What has just been measured is what one wants to see next.
+  connect(&measure_, &MeasurePresenter::finished, this, [this](const QString& folder) {
+    sessions_.refresh();
+    sessions_.open(folder.toStdString());
+  });
+  connect(&human_, &HumanPresenter::finished, this,
+          [this](const QString& folder) { sessions_.open(folder.toStdString()); });
+}
+
+void MainWindow::show_trouble(const QString& sentence) {
+  message_text_->setText(sentence);
+  retry_->show();
+  abandon_->hide();
+  other_camera_->setVisible(last_activity_ != Activity::replaying);
+  away_ = false;
+  message_->show();
+}
+
+void MainWindow::show_camera_away() {
+  const QString sentence = measure_.camera_away();
+  const bool stopping = measure_.state() == RunState::stopping;
+  if (!sentence.isEmpty() && !stopping) {
+    message_text_->setText(sentence);
+    retry_->hide();
+    abandon_->show();
+    other_camera_->show();
+    message_->show();
+  } else if (away_) {
+    message_->hide();
+  }
+  away_ = !sentence.isEmpty() && !stopping;
+}
+
+void MainWindow::show_state() {
+  QString device = bench_.device();
+  for (const auto& entry : bench_.devices()) {
+    if (entry.id == bench_.device()) device = entry.label + ", " + name_of(entry.health);
+  }
+  state_->setText(device + "  |  " + name_of(bench_.activity()));
+}
+
+void MainWindow::show_view(View view) {
+  navigation_->setCurrentRow(static_cast<int>(view));
+  if (QWidget* shown = views_->currentWidget(); view == View::human && shown != nullptr) shown->setFocus();
+}
+
+View MainWindow::view() const {
+  return all_views.at(static_cast<std::size_t>(views_->currentIndex()));
+}
+
+void MainWindow::set_theme(Theme theme) {
+  theme_ = theme;
+  QApplication::setStyle(QStyleFactory::create("Fusion"));
+  QApplication::setPalette(palette_of(theme));
+  QApplication::setPalette(box_palette_of(theme), "QCheckBox");
+  setStyleSheet(style_sheet(theme));
+  for (QAction* action : findChildren<QAction*>()) {
+    if (action->isCheckable() && action->actionGroup() != nullptr)
+      action->setChecked(action->data().toInt() == static_cast<int>(theme));
+  }
+}
+
+void MainWindow::recall() {
+  const QSettings settings("todbench", "todbench-gui");
+  restoreGeometry(settings.value("geometry").toByteArray());
+  if (settings.contains("theme")) theme_ = settings.value("theme").toInt() == 1 ? Theme::dark : Theme::light;
+  const QString device = settings.value("device", emulated_laboratory).toString();
+  // A device that is not there any more leaves the one that always is.
+  if (!device.isEmpty() && device != bench_.device()) (void)bench_.select_device(device);
+  // A plan that this version does not read any more leaves the shipped one.
+  if (const QString plan = settings.value("plan").toString(); !plan.isEmpty()) (void)plan_.apply_toml(plan);
+  if (auto* colours = findChild<QComboBox*>("colourMap"))
+    colours->setCurrentIndex(std::clamp(settings.value("colourMap", 0).toInt(), 0, colours->count() - 1));
+}
+
+void MainWindow::remember() {
+  QSettings settings("todbench", "todbench-gui");
+  settings.setValue("geometry", saveGeometry());
+  settings.setValue("theme", theme_ == Theme::dark ? 1 : 0);
+  settings.setValue("device", bench_.device());
+  settings.setValue("plan", plan_.toml());
+  if (const auto* colours = findChild<QComboBox*>("colourMap")) settings.setValue("colourMap", colours->currentIndex());
+}
+
+void MainWindow::closeEvent(QCloseEvent* event) {
+  if (memory_ == Memory::remember) remember();
+  event->accept();
+}
+
+}  // namespace todbench

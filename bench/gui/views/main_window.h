@@ -1,0 +1,90 @@
+// The window: seven views, one message line, one state.
+#pragma once
+
+#include <QMainWindow>
+#include <filesystem>
+#include <optional>
+
+#include "bench/gui/presenters/align_presenter.h"
+#include "bench/gui/presenters/chain_presenter.h"
+#include "bench/gui/presenters/human_presenter.h"
+#include "bench/gui/presenters/look_presenter.h"
+#include "bench/gui/presenters/measure_presenter.h"
+#include "bench/gui/presenters/plan_presenter.h"
+#include "bench/gui/presenters/session_presenter.h"
+#include "bench/gui/views/theme.h"
+#include "bench/gui/presenters/workbench.h"
+
+class QFrame;
+class QLabel;
+class QListWidget;
+class QPushButton;
+class QStackedWidget;
+
+namespace todbench {
+
+enum class View { look, align, plan, measure, human, chain, report };
+inline constexpr std::array all_views{View::look,  View::align, View::plan,  View::measure,
+                                      View::human, View::chain, View::report};
+[[nodiscard]] QString name_of(View view);
+
+/// What the window remembers from one start to the next.
+enum class Memory { remember, forget };
+
+class MainWindow final : public QMainWindow {
+  Q_OBJECT
+
+ public:
+  /// Sessions are listed and written in `sessions`.
+  MainWindow(const std::filesystem::path& sessions, Memory memory, QWidget* parent = nullptr);
+  ~MainWindow() override;
+
+  void show_view(View view);
+  [[nodiscard]] View view() const;
+  void set_theme(Theme theme);
+
+  // The parts behind the views, for tests and pictures.
+  [[nodiscard]] Workbench& bench() { return bench_; }
+  [[nodiscard]] LookPresenter& look() { return look_; }
+  [[nodiscard]] AlignPresenter& align() { return align_; }
+  [[nodiscard]] PlanPresenter& plan() { return plan_; }
+  [[nodiscard]] MeasurePresenter& measure() { return measure_; }
+  [[nodiscard]] HumanPresenter& human() { return human_; }
+  [[nodiscard]] ChainPresenter& chain() { return chain_; }
+  [[nodiscard]] SessionPresenter& sessions() { return sessions_; }
+
+ protected:
+  void closeEvent(QCloseEvent* event) override;
+
+ private:
+  void make_views();
+  void make_menu();
+  void connect_parts();
+  void show_trouble(const QString& sentence);
+  /// Message with the time left and the ways back while a lost camera is waited for.
+  void show_camera_away();
+  void show_state();
+  void recall();
+  void remember();
+
+  Memory memory_;
+  Workbench bench_;
+  LookPresenter look_;
+  AlignPresenter align_;
+  PlanPresenter plan_;
+  MeasurePresenter measure_;
+  HumanPresenter human_;
+  ChainPresenter chain_;
+  SessionPresenter sessions_;
+  Theme theme_ = Theme::light;
+  bool away_ = false;  ///< the message says that a camera is waited for
+  Activity last_activity_ = Activity::idle;
+  QListWidget* navigation_ = nullptr;
+  QStackedWidget* views_ = nullptr;
+  QFrame* message_ = nullptr;
+  QLabel* message_text_ = nullptr;
+  QPushButton *retry_ = nullptr, *abandon_ = nullptr, *other_camera_ = nullptr;
+  QLabel* state_ = nullptr;
+};
+
+}  // namespace todbench

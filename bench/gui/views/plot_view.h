@@ -1,0 +1,47 @@
+// A plot of the report in the window: the same values, with zoom and the theme's colours.
+#pragma once
+
+#include <qcustomplot.h>
+
+#include "bench/gui/presenters/plot_painter.h"
+#include "bench/report/svg_plot.h"
+
+namespace todbench {
+
+/// Drag and wheel, or arrow keys, plus and minus, move and zoom; a double click or 0 shows everything again.
+class PlotView final : public QCustomPlot {
+  Q_OBJECT
+
+ public:
+  explicit PlotView(QWidget* parent = nullptr);
+  /// Shows a plot; the view stays where the user has zoomed to while the axes' scales stay.
+  void show_plot(const Plot& plot);
+  [[nodiscard]] const Plot& shown() const { return plot_; }
+  /// Points of a series as they are drawn; none for an unknown label.
+  [[nodiscard]] QVector<QPointF> points(const QString& label) const;
+
+  [[nodiscard]] QSize minimumSizeHint() const override { return {160, 120}; }
+  [[nodiscard]] QSize sizeHint() const override { return {360, 260}; }
+
+ protected:
+  void changeEvent(QEvent* event) override;
+  void mouseDoubleClickEvent(QMouseEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
+  void focusInEvent(QFocusEvent* event) override;
+  void focusOutEvent(QFocusEvent* event) override;
+  void paintEvent(QPaintEvent* event) override;
+
+ private:
+  void zoom(double factor);
+  void shift(double right, double up);
+  void show_all();
+  void draw();
+  void set_axis(QCPAxis& axis, const PlotAxis& description, bool keep_range);
+  void add_series(const PlotSeries& series);
+  void add_intervals(const PlotSeries& series, const QColor& colour);
+
+  Plot plot_;
+  bool zoomed_ = false;
+};
+
+}  // namespace todbench

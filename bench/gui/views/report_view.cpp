@@ -1,0 +1,226 @@
+#include "bench/gui/views/report_view.h"
+
+#include <QCheckBox>
+#include <QDesktopServices>
+#include <QHBoxLayout>
+#include <QSplitter>
+#include <QUrl>
+
+#include "bench/gui/views/layout_pieces.h"
+#include "bench/gui/views/plot_view.h"
+#include "bench/gui/presenters/session_presenter.h"
+#include "bench/report/number_format.h"
+
+namespace todbench {
+namespace {
+
+QString text_of(std::string_view text) {
+  return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
+}
+
+QString verdict_text(ReportVerdict verdict) {
+  switch (verdict) {
+    case ReportVerdict::pass:
+      return "✓ PASS: every limit is met";
+    case ReportVerdict::fail:
+      return "✗ FAIL: a limit is not met";
+    case ReportVerdict::inconclusive:
+      return "? INCONCLUSIVE: a limit is not decided";
+    case ReportVerdict::interrupted:
+      return "? INTERRUPTED: the run ended early";
+    case ReportVerdict::not_judged:
+      return "Not judged: no limits were asked for";
+  }
+  return {};
+}
+
+QList<QStringList> ratio_rows(const Comparison& comparison) {
+  QList<QStringList> rows;
+  for (const auto& p : comparison.points) {
+    rows << QStringList{QString::number(p.set_delta_t_k),
+                        QString::fromStdString(with_interval(p.ratio, p.ratio_ci95)),
+                        QString::fromStdString(with_interval(p.ratio, p.ratio_ci90)),
+                        p.p_difference ? QString::fromStdString(probability(*p.p_difference)) : "–",
+                        p.p_equivalence ? QString::fromStdString(probability(*p.p_equivalence)) : "–",
+                        text_of(to_string(p.verdict))};
+  }
+  return rows;
+}
+
+}  // namespace
+
+ReportView::ReportView(SessionPresenter& presenter, QWidget* parent) : QWidget(parent), presenter_(presenter) {
+  auto* layout = new QVBoxLayout(this);
+  auto* splitter = new QSplitter(Qt::Horizontal);
+  splitter->addWidget(browser());
+  splitter->addWidget(session_panel());
+  splitter->setStretchFactor(0, 2);
+  splitter->setStretchFactor(1, 5);
+  splitter->setSizes({400, 770});
+  layout->addWidget(splitter);
+  connect(&presenter_, &SessionPresenter::listed, this, &ReportView::list_sessions);
+  connect(&presenter_, &SessionPresenter::opened, this, &ReportView::show_session);
+  connect(&presenter_, &SessionPresenter::compared, this, &ReportView::show_comparison);
+  connect(&presenter_, &SessionPresenter::exported, this, [this](const QString& html, const QString& pdf) {
+    files_->setText("Written: " + html + " and " + pdf);
+    page_->setEnabled(true);
+  });
+}
+
+QWidget* ReportView::browser() {
+  auto* panel = new QWidget;
+  auto* layout = new QVBoxLayout(panel);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(title_label("Sessions"));
+  sessions_ = plain_table({"Started (UTC)", "Session", "State", "Unit under test"}, "sessionTable");
+  sessions_->setColumnWidth(0, 146);
+  sessions_->setColumnWidth(1, 92);
+  sessions_->setColumnWidth(2, 74);
+  layout->addWidget(sessions_, 1);
+  auto* buttons = new QHBoxLayout;
+  auto* open = primary_button("Open", "openSession");
+  compare_ = plain_button("Compare with the open one", "compareSessions");
+  buttons->addWidget(open);
+  buttons->addWidget(compare_);
+  buttons->addStretch();
+  layout->addLayout(buttons);
+  const auto selected = [this]() -> std::optional<std::filesystem::path> {
+    const int row = sessions_->currentRow();
+    if (row < 0 || row >= static_cast<int>(presenter_.sessions().size())) return std::nullopt;
+    return presenter_.sessions()[static_cast<std::size_t>(row)].folder;
+  };
+  connect(open, &QPushButton::clicked, this, [this, selected] {
+    if (const auto folder = selected()) presenter_.open(*folder);
+  });
+  connect(sessions_, &QTableWidget::cellActivated, this, [this, selected] {
+    if (const auto folder = selected()) presenter_.open(*folder);
+  });
+  connect(compare_, &QPushButton::clicked, this, [this, selected] {
+    if (const auto folder = selected()) presenter_.compare_with(*folder);
+  });
+  return panel;
+}
+
+QWidget* ReportView::session_panel() {
+  auto* panel = new QWidget;
+  auto* layout = new QVBoxLayout(panel);
+  layout->setContentsMargins(0, 0, 0, 0);
+  title_ = title_label("No session is open");
+  title_->setObjectName("sessionTitle");
+  title_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  layout->addWidget(title_);
+  verdict_ = new QLabel;
+  verdict_->setObjectName("sessionVerdict");
+  verdict_->setProperty("role", "verdict");
+  verdict_->setWordWrap(true);
+  layout->addWidget(verdict_);
+  plot_ = new PlotView;
+  plot_->setObjectName("comparePlot");
+  layout->addWidget(plot_, 1);
+  log_log_ = new QCheckBox("Logarithmic acuity");
+  layout->addWidget(log_log_);
+  ratios_ = plain_table(
+      {"Set ΔT (K)", "Acuity ratio [95 %]", "Acuity ratio [90 %]", "p different", "p equivalent", "Verdict"},
+      "ratioTable");
+  limits_ = plain_table({"Limit", "Result [95 %]", "Verdict", "Reason"}, "limitTable");
+  ratios_->setColumnWidth(1, 160);
+  ratios_->setColumnWidth(2, 160);
+  limits_->setColumnWidth(0, 230);
+  limits_->setColumnWidth(1, 200);
+  for (QTableWidget* table : {ratios_, limits_}) {
+    table->setMaximumHeight(132);
+    layout->addWidget(table);
+  }
+  auto* buttons = new QHBoxLayout;
+  export_ = primary_button("Write HTML and PDF", "exportReports");
+  page_ = plain_button("Show the PDF", "showPdf");
+  replay_ = plain_button("Replay", "replaySession");
+  replay_->setToolTip(
+      "Measures again from the recorded frames of the session and says whether every answer is the same.");
+  again_ = plain_button("Measure this plan again", "measureAgain");
+  again_->setToolTip("A new measurement with the plan of this session and the camera that is chosen now.");
+  for (QPushButton* button : {export_, page_, replay_, again_}) {
+    button->setEnabled(false);
+    buttons->addWidget(button);
+  }
+  compare_->setEnabled(false);
+  buttons->addStretch();
+  layout->addLayout(buttons);
+  frames_ = hint_label();
+  frames_->setObjectName("sessionFrames");
+  layout->addWidget(frames_);
+  files_ = hint_label();
+  files_->setObjectName("exportedFiles");
+  layout->addWidget(files_);
+  connect(log_log_, &QCheckBox::toggled, this, &ReportView::show_plot);
+  connect(export_, &QPushButton::clicked, this, [this] { presenter_.export_reports(); });
+  connect(page_, &QPushButton::clicked, this, [this] {
+    if (presenter_.current())
+      QDesktopServices::openUrl(
+          QUrl::fromLocalFile(QString::fromStdString((presenter_.current()->folder / "report.pdf").string())));
+  });
+  connect(replay_, &QPushButton::clicked, this, &ReportView::replay);
+  connect(again_, &QPushButton::clicked, this, [this] {
+    presenter_.use_plan_again();
+    emit again();
+  });
+  return panel;
+}
+
+void ReportView::showEvent(QShowEvent* event) {
+  QWidget::showEvent(event);
+  presenter_.refresh();
+}
+
+void ReportView::list_sessions() {
+  QList<QStringList> rows;
+  for (const auto& s : presenter_.sessions()) rows << QStringList{s.when, s.name, s.state, s.unit};
+  fill_table(*sessions_, rows);
+  if (sessions_->currentRow() < 0 && !rows.isEmpty()) sessions_->selectRow(0);
+}
+
+void ReportView::show_session() {
+  const OpenedSession& opened = *presenter_.current();
+  title_->setText(opened.name + (opened.report.camera
+                                     ? ", serial number " + QString::fromStdString(opened.report.camera->serial)
+                                     : QString()));
+  verdict_->setText(verdict_text(report_verdict(opened.report)));
+  fill_table(*ratios_, opened.session.comparison ? ratio_rows(*opened.session.comparison) : QList<QStringList>());
+  QList<QStringList> rows;
+  for (const auto& limit : opened.report.limits) {
+    rows << QStringList{QString::fromStdString(limit.quantity),
+                        QString::fromStdString(with_interval(limit.value, limit.ci95) + " " + limit.unit),
+                        limit.verdict == LimitVerdict::pass   ? "✓ pass"
+                        : limit.verdict == LimitVerdict::fail ? "✗ fail"
+                                                              : "? inconclusive",
+                        QString::fromStdString(limit.reason)};
+  }
+  fill_table(*limits_, rows);
+  files_->clear();
+  for (QPushButton* button : {export_, again_, compare_}) button->setEnabled(true);
+  replay_->setEnabled(opened.recorded);
+  frames_->setText(opened.recorded
+                       ? "The frames are in the session: Replay judges them again."
+                       : "No frames were recorded in this session: it cannot be replayed, only measured again. "
+                         "\"Keep frames\" in the plan records them.");
+  std::error_code none;
+  page_->setEnabled(std::filesystem::exists(opened.folder / "report.pdf", none));
+  show_plot();
+}
+
+void ReportView::show_comparison() {
+  const ComparedSessions& compared = *presenter_.compared_sessions();
+  title_->setText(compared.a + " against " + compared.b);
+  verdict_->setText("Acuity ratio " + compared.a + " / " + compared.b + ": " +
+                    text_of(to_string(compared.comparison.verdict)));
+  fill_table(*ratios_, ratio_rows(compared.comparison));
+  fill_table(*limits_, {});
+  show_plot();
+}
+
+void ReportView::show_plot() {
+  if (!presenter_.current()) return;
+  plot_->show_plot(presenter_.tod_figure(log_log_->isChecked() ? AxisScale::logarithmic : AxisScale::linear));
+}
+
+}  // namespace todbench

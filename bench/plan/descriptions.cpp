@@ -1,0 +1,147 @@
+#include "bench/plan/descriptions.h"
+
+#include <string>
+#include <vector>
+
+#include "bench/plan/strict_toml.h"
+
+namespace todbench {
+
+namespace {
+
+/// A description passes when its file was read without mistakes and the whole makes sense to the part that uses it.
+template <typename T>
+Result<T> checked(const TomlReader& reader, const Resource& resource, T value) {
+  if (const Result<void> read = reader.finish(); !read) return tl::unexpected(read.error());
+  if (const Result<void> possible = validate(value); !possible) return fail(resource.origin, possible.error());
+  return value;
+}
+
+void read_row(TomlReader& row, std::size_t number, TargetPlate& plate) {
+  static const std::vector<std::string> apex_names = [] {
+    std::vector<std::string> names;
+    for (const Apex apex : all_apexes) names.emplace_back(to_string(apex));
+    return names;
+  }();
+  const double size_mm = row.number("size_mm", NumberRange::positive(), std::nullopt);
+  const double y_mm = row.number("y_mm", NumberRange::any(), std::nullopt);
+  const std::vector<double> x_mm = row.numbers("x_mm", NumberRange::any(), std::nullopt);
+  const std::vector<std::string> apexes = row.choices("apex", apex_names, std::nullopt);
+  const std::vector<std::string> names = row.texts("names", std::vector<std::string>());
+  const auto one_each = [&](const char* key, std::size_t count) {
+    if (count == x_mm.size()) return true;
+    row.reject(key, "expected as many as in x_mm, " + std::to_string(x_mm.size()) + ", found " + std::to_string(count));
+    return false;
+  };
+  if (!one_each("apex", apexes.size()) || (row.has("names") && !one_each("names", names.size()))) return;
+  for (std::size_t i = 0; i < x_mm.size(); ++i) {
+    PlateTriangle triangle;
+    triangle.name =
+        i < names.size() ? names[i] : "row " + std::to_string(number) + ", triangle " + std::to_string(i + 1);
+    triangle.position_mm = {x_mm[i], y_mm};
+    triangle.size_mm = size_mm;
+    triangle.apex = apex_from(apexes[i]).value_or(Apex::up);
+    plate.triangles.push_back(std::move(triangle));
+  }
+}
+
+template <typename T>
+Result<T> load(ResourceKind kind, std::string_view reference, Result<T> (*parse)(const Resource&)) {
+  const Result<Resource> resource = find_resource(kind, reference);
+  if (!resource) return tl::unexpected(resource.error());
+  return parse(*resource);
+}
+
+}  // namespace
+
+Result<SensorSpec> parse_sensor(const Resource& resource) {
+  Result<TomlReader> reader = TomlReader::parse(resource.text, resource.origin);
+  if (!reader) return tl::unexpected(reader.error());
+  SensorSpec spec;
+  const NumberRange positive = NumberRange::positive();
+  const NumberRange not_negative = NumberRange::not_negative();
+  spec.name = reader->text("name", std::nullopt);
+  spec.description = reader->text("description", spec.description);
+  spec.width = static_cast<int>(reader->whole("width", 16, 16384, std::nullopt));
+  spec.height = static_cast<int>(reader->whole("height", 16, 16384, std::nullopt));
+  spec.pitch_um = reader->number("pitch_um", positive, std::nullopt);
+  spec.detector_um = reader->number("detector_um", positive, std::nullopt);
+  spec.focal_length_mm = reader->number("focal_length_mm", positive, std::nullopt);
+  spec.f_number = reader->number("f_number", positive, std::nullopt);
+  spec.wavelength_min_um = reader->number("wavelength_min_um", positive, std::nullopt);
+  spec.wavelength_max_um = reader->number("wavelength_max_um", positive, std::nullopt);
+  spec.optics_transmission =
+      reader->number("optics_transmission", NumberRange::above_to(0, 1), spec.optics_transmission);
+  spec.aberration_sigma_pitch =
+      reader->number("aberration_sigma_pitch", NumberRange::between(0, 10), spec.aberration_sigma_pitch);
+  spec.netd_k = reader->number("netd_k", not_negative, std::nullopt);
+  spec.fixed_pattern_k = reader->number("fixed_pattern_k", not_negative, spec.fixed_pattern_k);
+  spec.time_constant_ms = reader->number("time_constant_ms", NumberRange::between(0, 1000), spec.time_constant_ms);
+  spec.row_noise_k = reader->number("row_noise_k", not_negative, spec.row_noise_k);
+  spec.column_noise_k = reader->number("column_noise_k", not_negative, spec.column_noise_k);
+  spec.dead_pixel_share = reader->number("dead_pixel_share", NumberRange::between(0, 0.1), spec.dead_pixel_share);
+  spec.frames_averaged = static_cast<int>(reader->whole("frames_averaged", 1, 1024, spec.frames_averaged));
+  spec.super_resolution_frames =
+      static_cast<int>(reader->whole("super_resolution_frames", 0, 1024, spec.super_resolution_frames));
+  const std::vector<std::string> displays{"sample_and_hold", "bilinear"};
+  spec.display = reader->choice("display", displays, "sample_and_hold") == "bilinear"
+                     ? DisplayReconstruction::bilinear
+                     : DisplayReconstruction::sample_and_hold;
+  spec.display_blur_samples =
+      reader->number("display_blur_samples", NumberRange::between(0, 3), spec.display_blur_samples);
+  spec.microscan = static_cast<int>(reader->whole("microscan", 1, 4, spec.microscan));
+  spec.bits = static_cast<int>(reader->whole("bits", 8, 16, spec.bits));
+  spec.kelvin_per_count = reader->number("kelvin_per_count", positive, spec.kelvin_per_count);
+  spec.offset_k = reader->number("offset_k", NumberRange::any(), spec.offset_k);
+  spec.frame_rate_hz = reader->number("frame_rate_hz", positive, spec.frame_rate_hz);
+  spec.scene_temperature_k =
+      reader->number("scene_temperature_k", NumberRange::between(50, 5000), spec.scene_temperature_k);
+  return checked(*reader, resource, std::move(spec));
+}
+
+Result<TemplateObserverSpec> parse_observer(const Resource& resource) {
+  Result<TomlReader> reader = TomlReader::parse(resource.text, resource.origin);
+  if (!reader) return tl::unexpected(reader.error());
+  TemplateObserverSpec spec;
+  const NumberRange positive = NumberRange::positive();
+  const NumberRange not_negative = NumberRange::not_negative();
+  spec.name = reader->text("name", std::nullopt);
+  spec.blur_sigma_samples = reader->number("blur_sigma_samples", NumberRange::between(0.1, 10), std::nullopt);
+  spec.internal_noise = reader->number("internal_noise", NumberRange::between(0, 10), std::nullopt);
+  spec.sensor_noise_factor =
+      reader->number("sensor_noise_factor", NumberRange::between(1, 100), spec.sensor_noise_factor);
+  spec.search_range_samples = reader->number("search_range_samples", not_negative, spec.search_range_samples);
+  spec.search_step_samples = reader->number("search_step_samples", positive, spec.search_step_samples);
+  spec.window_size_factor =
+      reader->number("window_size_factor", NumberRange::between(0.9, 10), spec.window_size_factor);
+  spec.window_margin_pitch =
+      reader->number("window_margin_pitch", NumberRange::between(0, 100), spec.window_margin_pitch);
+  return checked(*reader, resource, std::move(spec));
+}
+
+Result<TargetPlate> parse_plate(const Resource& resource) {
+  Result<TomlReader> reader = TomlReader::parse(resource.text, resource.origin);
+  if (!reader) return tl::unexpected(reader.error());
+  TargetPlate plate;
+  plate.name = reader->text("name", std::nullopt);
+  plate.description = reader->text("description", "");
+  plate.width_mm = reader->number("width_mm", NumberRange::positive(), std::nullopt);
+  plate.height_mm = reader->number("height_mm", NumberRange::positive(), std::nullopt);
+  std::size_t number = 0;
+  for (TomlReader& row : reader->sections("row")) read_row(row, ++number, plate);
+  return checked(*reader, resource, std::move(plate));
+}
+
+Result<SensorSpec> load_sensor(std::string_view reference) {
+  return load(ResourceKind::sensor, reference, parse_sensor);
+}
+
+Result<TemplateObserverSpec> load_observer(std::string_view reference) {
+  return load(ResourceKind::observer, reference, parse_observer);
+}
+
+Result<TargetPlate> load_plate(std::string_view reference) {
+  return load(ResourceKind::plate, reference, parse_plate);
+}
+
+}  // namespace todbench

@@ -1,0 +1,27 @@
+// Sensors, observers and plates from their TOML files.
+#pragma once
+
+#include <string_view>
+
+#include "acquisition/core/result.h"
+#include "bench/plan/resources.h"
+#include "hvs/observer/template_observer.h"
+#include "sim_devices/sensor/sensor_spec.h"
+#include "tod/plate/target_plate.h"
+
+namespace todbench {
+
+/// By name ("sc2000") or file. `invalid_input` with file and line for a key that is unknown, missing or out of its
+/// range, and for a description that is impossible as a whole. A key that may be missing has the default of its struct.
+[[nodiscard]] Result<SensorSpec> load_sensor(std::string_view reference);
+[[nodiscard]] Result<TemplateObserverSpec> load_observer(std::string_view reference);
+/// Rows of cut-outs: [[row]] size_mm, y_mm, x_mm = [...], apex = ["up", ...], optionally names = [...]; without them
+/// triangles are called "row R, triangle T", counted from 1.
+[[nodiscard]] Result<TargetPlate> load_plate(std::string_view reference);
+
+/// The same from text already read.
+[[nodiscard]] Result<SensorSpec> parse_sensor(const Resource& resource);
+[[nodiscard]] Result<TemplateObserverSpec> parse_observer(const Resource& resource);
+[[nodiscard]] Result<TargetPlate> parse_plate(const Resource& resource);
+
+}  // namespace todbench

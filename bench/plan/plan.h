@@ -1,0 +1,160 @@
+// The plan of a measurement: what is measured with what, how long, and what is demanded. A value; the file is TOML.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "acquisition/core/accuracy.h"
+#include "acquisition/core/result.h"
+#include "bench/plan/resources.h"
+#include "sim_devices/sensor/sensor_plan.h"
+#include "tod/measurement/measurement.h"
+#include "tod/psychometric/psychometric_fit.h"
+#include "tod/schedule/schedule.h"
+#include "tod/plate/target_plate.h"
+
+namespace todbench {
+
+/// [camera]: the real or emulated camera. Without an id the plan can only be simulated.
+struct CameraPlan {
+  std::string id;                               ///< as `todbench devices` lists it, e.g. "gige:FLIR-48000123"
+  double ifov_mrad = 0;                         ///< of one pixel; required with an id
+  double nuc_interval_s = 0;                    ///< correct the non-uniformity this often; 0: never commanded
+  double nuc_wait_s = 1;                        ///< frames within this time after a correction are not measured
+  std::map<std::string, std::string> settings;  ///< feature -> value, set before the run and read back
+  double reconnect_s = 60;                      ///< how long a lost camera is waited for; 0: not at all
+  bool operator==(const CameraPlan&) const = default;
+};
+
+enum class TargetKind {
+  scpi,    ///< black body and plate stage on the network
+  prompt,  ///< the operator changes the target when asked
+  scene,   ///< the simulated scene of a simulated or emulated camera
+};
+[[nodiscard]] std::string_view to_string(TargetKind kind);
+
+/// [target]: what is shown, in every combination.
+struct TargetPlan {
+  TargetKind kind = TargetKind::scene;
+  std::string black_body;                               ///< "HOST:PORT" of the SCPI instrument; required for kind scpi
+  std::string stage;                                    ///< the same for the stage that moves the plate
+  double distance_m = 2;                                ///< entrance pupil to plate; required in a file
+  std::vector<std::string> plates{"tcat-a", "tcat-b"};  ///< names or files
+  std::vector<Mounting> mountings{all_mountings.begin(), all_mountings.end()};
+  std::vector<double> delta_t_k{16.9, 1.93, 0.23};  ///< set-points, never 0; the sign is the polarity
+  int phases = 16;                                  ///< sub-pixel shifts per plate, mounting and contrast
+  double settle_timeout_s = 600;
+  double plate_change_s = 60, mounting_change_s = 30, contrast_change_s = 20, shift_change_s = 0.1;
+  bool operator==(const TargetPlan&) const = default;
+};
+
+/// [simulation]: the twin.
+struct SimulationPlan {
+  std::string sensor = "sc2000";    ///< name or file
+  std::string accuracy = "normal";  ///< draft, normal, reference, or auto: from tolerance_percent alone
+  double tolerance_percent = 1;     ///< of the 75 % acuity
+  int microscan = 1;                ///< in place of the sensor's own, which a file need not repeat
+  int phases = 16;       ///< sub-pixel shifts per plate, mounting and contrast, in place of those of [target]
+  SceneMotion motion{};  ///< of the target; matters where the sensor has a time constant
+  std::vector<Effect> skip, force;
+  bool operator==(const SimulationPlan&) const = default;
+};
+
+enum class ScheduleKind {
+  constant,  ///< every combination of [target], in every phase
+  adaptive,  ///< what the answers so far leave open, until intervals are narrow enough (tod/schedule/adaptive_schedule.h)
+};
+[[nodiscard]] std::string_view to_string(ScheduleKind kind);
+
+/// [schedule]: of camera and twin.
+struct SchedulePlan {
+  ScheduleKind kind = ScheduleKind::constant;
+  double half_width_percent = 10;  ///< adaptive: wanted half-width of the 95 % interval of S75
+  int max_presentations = 1000;    ///< adaptive: hard cap over all contrasts
+  bool operator==(const SchedulePlan&) const = default;
+};
+
+/// [fit]
+struct FitPlan {
+  PsychometricForm form = PsychometricForm::size;
+  std::optional<double> lapse = 0.0;  ///< nothing: free
+  bool operator==(const FitPlan&) const = default;
+};
+
+/// [[limits.acuity]]: the 75 % acuity demanded at a contrast.
+struct AcuityLimit {
+  double delta_t_k = 0;
+  double least_acuity_per_mrad = 0;
+  bool operator==(const AcuityLimit&) const = default;
+};
+
+/// [limits]
+struct LimitsPlan {
+  std::vector<AcuityLimit> acuity;
+  std::optional<double> equivalence_margin_percent;  ///< demanded agreement with the twin; nothing: not demanded
+  bool operator==(const LimitsPlan&) const = default;
+};
+
+/// [measurement]: see MeasurementOptions.
+struct MeasurementPlan {
+  int registration_frames = 32;
+  int contrast_frames = 16;
+  double min_reference_px = 4;
+  int frames_after_change = 2;
+  double max_rejected_share = 0.05;
+  double max_saturated_share = 0.01;
+  int frame_timeout_ms = 2000;
+  double max_scale_deviation = 0.02;
+  double max_rotation_deg = 10;
+  double max_residual_px = 0.25;
+  bool record_frames = false;  ///< every frame of the camera into frames/, for `todbench replay`
+  bool operator==(const MeasurementPlan&) const = default;
+};
+
+/// [[instrument]]: what the calibration of the result hangs on. For the report; a date that has passed refuses the
+/// measurement.
+struct InstrumentPlan {
+  std::string name, serial, certificate;
+  std::string calibration_due;  ///< "YYYY-MM-DD", the last valid day; empty: no due date
+  bool operator==(const InstrumentPlan&) const = default;
+};
+
+/// Everything with its default filled in.
+struct Plan {
+  std::string name = "unnamed", description;
+  std::string operator_name;  ///< key `operator`
+  std::string place;
+  std::string unit;  ///< unit under test, in the words of who tests it
+  std::string notes;
+  std::uint64_t seed = 1;  ///< below 2^63
+  CameraPlan camera;
+  TargetPlan target;
+  std::string observer = "hvs-1";  ///< name or file; key `name` of [observer]
+  SimulationPlan simulation;
+  SchedulePlan schedule;
+  FitPlan fit;
+  LimitsPlan limits;
+  MeasurementPlan measurement;
+  std::vector<InstrumentPlan> instruments;
+  bool operator==(const Plan&) const = default;
+};
+
+/// Reads a plan by name ("demo") or file. Relative files named in it are relative to its folder and absolute in the
+/// result. `invalid_input` with file and line for anything unknown, missing, of the wrong type, out of range,
+/// contradictory or not found.
+[[nodiscard]] Result<Plan> load_plan(std::string_view reference);
+/// The same from text already read; `folder` is where relative files are looked for.
+[[nodiscard]] Result<Plan> parse_plan(const Resource& resource, const std::filesystem::path& folder);
+/// The plan as TOML with nothing left out: parse_plan() of it is equal.
+[[nodiscard]] std::string to_toml(const Plan& plan);
+
+/// The instruments whose due date is before `today`, as one sentence with code `calibration`; success when there is
+/// none.
+[[nodiscard]] Result<void> check_calibration(const Plan& plan, std::chrono::year_month_day today);
+
+}  // namespace todbench

@@ -1,0 +1,110 @@
+#include "bench/plan/plan_options.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "bench/plan/descriptions.h"
+#include "tod/schedule/adaptive_schedule.h"
+
+namespace todbench {
+
+std::string_view to_string(Side side) {
+  return side == Side::measured ? "measured" : "simulated";
+}
+
+Result<SensorSpec> sensor_of(const Plan& plan) {
+  Result<SensorSpec> sensor = load_sensor(plan.simulation.sensor);
+  if (sensor) sensor->microscan = plan.simulation.microscan;
+  return sensor;
+}
+
+Result<std::vector<TargetPlate>> plates_of(const Plan& plan) {
+  std::vector<TargetPlate> plates;
+  for (const std::string& reference : plan.target.plates) {
+    Result<TargetPlate> plate = load_plate(reference);
+    if (!plate) return tl::unexpected(plate.error());
+    for (const TargetPlate& other : plates) {
+      if (other.name == plate->name) {
+        return fail(ErrorCode::invalid_input, reference + ": a second plate with the name '" + plate->name + "'");
+      }
+    }
+    plates.push_back(*std::move(plate));
+  }
+  return plates;
+}
+
+MeasurementOptions measurement_options(const Plan& plan, const std::vector<TargetPlate>& plates, double ifov_mrad) {
+  MeasurementOptions options;
+  options.ifov_mrad = ifov_mrad;
+  options.distance_m = plan.target.distance_m;
+  options.plates = plates;
+  options.registration_frames = plan.measurement.registration_frames;
+  options.contrast_frames = plan.measurement.contrast_frames;
+  options.min_reference_px = plan.measurement.min_reference_px;
+  options.frames_after_change = plan.measurement.frames_after_change;
+  options.nuc_interval_s = plan.camera.nuc_interval_s;
+  options.nuc_wait_s = plan.camera.nuc_wait_s;
+  options.max_rejected_share = plan.measurement.max_rejected_share;
+  options.frame_timeout = std::chrono::milliseconds(plan.measurement.frame_timeout_ms);
+  options.integrity.max_saturated_share = plan.measurement.max_saturated_share;
+  options.registration.max_scale_deviation = plan.measurement.max_scale_deviation;
+  options.registration.max_rotation_deg = plan.measurement.max_rotation_deg;
+  options.registration.max_residual_px = plan.measurement.max_residual_px;
+  options.seed = plan.seed;
+  return options;
+}
+
+ConstantStimuliOptions stimuli_options(const Plan& plan, const std::vector<TargetPlate>& plates, double ifov_mrad,
+                                       Side side) {
+  ConstantStimuliOptions options;
+  for (const TargetPlate& plate : plates) options.plates.push_back(plate.name);
+  options.mountings = plan.target.mountings;
+  options.delta_t_k = plan.target.delta_t_k;
+  options.phases = side == Side::measured ? plan.target.phases : plan.simulation.phases;
+  options.pixel_mm = ifov_mrad * plan.target.distance_m;  // mrad times m
+  const double costs[] = {plan.target.plate_change_s, plan.target.mounting_change_s, plan.target.contrast_change_s,
+                          plan.target.shift_change_s};
+  std::copy(std::begin(costs), std::end(costs), std::begin(options.change_cost_s));
+  return options;
+}
+
+std::unique_ptr<TrialSchedule> make_schedule(const Plan& plan, const std::vector<TargetPlate>& plates, double ifov_mrad,
+                                             Side side, const RandomStream& stream) {
+  const ConstantStimuliOptions stimuli = stimuli_options(plan, plates, ifov_mrad, side);
+  if (plan.schedule.kind == ScheduleKind::constant)
+    return std::make_unique<ListedSchedule>(constant_stimuli(stimuli, stream));
+  return std::make_unique<AdaptiveSchedule>(AdaptiveOptions{.stimuli = stimuli,
+                                                            .plates = plates,
+                                                            .distance_m = plan.target.distance_m,
+                                                            .fit = fit_options(plan),
+                                                            .half_width_percent = plan.schedule.half_width_percent,
+                                                            .max_presentations = plan.schedule.max_presentations},
+                                            stream);
+}
+
+FitOptions fit_options(const Plan& plan) {
+  FitOptions options;
+  options.form = plan.fit.form;
+  options.fixed_lapse = plan.fit.lapse;
+  return options;
+}
+
+ComparisonOptions comparison_options(const Plan& plan) {
+  ComparisonOptions options;
+  options.margin_percent = plan.limits.equivalence_margin_percent.value_or(options.margin_percent);
+  options.fit = fit_options(plan);
+  return options;
+}
+
+Result<Accuracy> accuracy_of(const Plan& plan) {
+  const SimulationPlan& simulation = plan.simulation;
+  if (simulation.accuracy == "auto") return Accuracy::for_tolerance(simulation.tolerance_percent);
+  Result<Accuracy> accuracy = Accuracy::named(simulation.accuracy);
+  if (!accuracy) return accuracy;
+  // A draft is not asked for more than it can give; the others meet the tolerance.
+  if (simulation.accuracy != "draft") accuracy->standard_error_percent = simulation.tolerance_percent / 2;
+  accuracy->acuity_tolerance_percent = simulation.tolerance_percent;
+  return accuracy;
+}
+
+}  // namespace todbench

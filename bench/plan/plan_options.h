@@ -1,0 +1,41 @@
+// What the plan says, in the terms of the parts that do it.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "bench/plan/plan.h"
+#include "sim_devices/sensor/sensor_spec.h"
+#include "tod/comparison/comparison.h"
+#include "tod/presentation/target.h"
+
+namespace todbench {
+
+/// Which side of the comparison runs.
+enum class Side {
+  measured,   ///< the camera of the plan
+  simulated,  ///< the simulated sensor of the plan
+};
+[[nodiscard]] std::string_view to_string(Side side);
+
+/// The simulated sensor of a plan, with the microscan of the plan.
+[[nodiscard]] Result<SensorSpec> sensor_of(const Plan& plan);
+/// The plates of a plan, in its order.
+[[nodiscard]] Result<std::vector<TargetPlate>> plates_of(const Plan& plan);
+/// `ifov_mrad` is that of the camera, or of the sensor for the simulated side. The seed is that of the plan.
+[[nodiscard]] MeasurementOptions measurement_options(const Plan& plan, const std::vector<TargetPlate>& plates,
+                                                     double ifov_mrad);
+/// Every plate (by its own name) in every mounting at every contrast; phases as the side has them.
+[[nodiscard]] ConstantStimuliOptions stimuli_options(const Plan& plan, const std::vector<TargetPlate>& plates,
+                                                     double ifov_mrad, Side side);
+/// What is shown, constant or adaptive as the plan says. `ifov_mrad` as for stimuli_options().
+[[nodiscard]] std::unique_ptr<TrialSchedule> make_schedule(const Plan& plan, const std::vector<TargetPlate>& plates,
+                                                           double ifov_mrad, Side side, const RandomStream& stream);
+[[nodiscard]] FitOptions fit_options(const Plan& plan);
+/// The margin of the limits, or 10 % where none is demanded.
+[[nodiscard]] ComparisonOptions comparison_options(const Plan& plan);
+/// The named accuracy with the tolerance of the plan; half of the tolerance is for the standard error of the direct
+/// estimate, except in a draft. "auto": everything from the tolerance.
+[[nodiscard]] Result<Accuracy> accuracy_of(const Plan& plan);
+
+}  // namespace todbench

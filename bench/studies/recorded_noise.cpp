@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "acquisition/core/rng.h"
+#include "bench/studies/real_noise_study.h"
+
+namespace todbench {
+namespace {
+
+/// Each pixel without its mean over the block, with the variance of single frames.
+void add_residuals(std::span<const cv::Mat1f> block, int index, RecordedNoise& noise) {
+  cv::Mat1d mean(block[0].size(), 0.0);
+  for (const auto& frame : block) cv::accumulate(frame, mean);
+  mean /= static_cast<double>(block.size());
+  const double scale = std::sqrt(static_cast<double>(block.size()) / static_cast<double>(block.size() - 1));
+  // Of two frames the second residual is the first with its sign changed: it tells nothing more.
+  const std::size_t count = block.size() == 2 ? 1 : block.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    cv::Mat1d residual;
+    block[k].convertTo(residual, CV_64F);
+    cv::Mat1f scaled;
+    cv::Mat1d((residual - mean) * scale).convertTo(scaled, CV_32F);
+    noise.frames.push_back(scaled);
+    noise.block_of_frame.push_back(index);
+  }
+}
+
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// A pixel counts as moving scene when its noise is above twice the median pixel's. With a single residual frame there
+/// is no noise of a pixel; then none is left out.
+void find_usable(RecordedNoise& noise) {
+  cv::Mat1d squares(noise.frames[0].size(), 0.0);
+  for (const auto& frame : noise.frames) cv::accumulateSquare(frame, squares);
+  squares /= static_cast<double>(noise.frames.size());
+  const std::vector<double> all(squares.begin(), squares.end());
+  noise.usable = cv::Mat1b(squares.size(), 255);
+  if (noise.frames.size() > 4) noise.usable = squares <= 4 * median_of(all);
+  noise.usable_share = cv::countNonZero(noise.usable) / static_cast<double>(noise.usable.total());
+  noise.temporal_noise = std::sqrt(cv::mean(squares, noise.usable)[0]);
+}
+
+void find_correlations(RecordedNoise& noise) {
+  double xx = 0, yy = 0, own_x = 0, own_y = 0;
+  for (const auto& frame : noise.frames) {
+    const double mean = cv::mean(frame, noise.usable)[0];
+    for (int y = 0; y < frame.rows; ++y) {
+      for (int x = 0; x < frame.cols; ++x) {
+        if (noise.usable(y, x) == 0) continue;
+        const double value = static_cast<double>(frame(y, x)) - mean;
+        if (x + 1 < frame.cols && noise.usable(y, x + 1) != 0)
+          xx += value * (static_cast<double>(frame(y, x + 1)) - mean), own_x += value * value;
+        if (y + 1 < frame.rows && noise.usable(y + 1, x) != 0)
+          yy += value * (static_cast<double>(frame(y + 1, x)) - mean), own_y += value * value;
+      }
+    }
+  }
+  noise.correlation_x = own_x > 0 ? xx / own_x : 0;
+  noise.correlation_y = own_y > 0 ? yy / own_y : 0;
+}
+
+/// Root of the mean of the blocks' variances, component by component.
+Result<ThreeDNoise> mean_components(std::span<const cv::Mat1f> frames, int block_frames, int blocks) {
+  ThreeDNoise sum;
+  constexpr double ThreeDNoise::*parts[] = {&ThreeDNoise::tvh, &ThreeDNoise::tv, &ThreeDNoise::th, &ThreeDNoise::t,
+                                            &ThreeDNoise::vh,  &ThreeDNoise::v,  &ThreeDNoise::h};
+  for (int b = 0; b < blocks; ++b) {
+    const auto one = three_d_noise(frames.subspan(static_cast<std::size_t>(b) * static_cast<std::size_t>(block_frames),
+                                                  static_cast<std::size_t>(block_frames)));
+    if (!one) return one;
+    for (const auto part : parts) sum.*part += (*one).*part * ((*one).*part) / blocks;
+  }
+  for (const auto part : parts) sum.*part = std::sqrt(sum.*part);
+  return sum;
+}
+
+/// The frames with pixels that are not usable held at their mean of the block: no change in time.
+std::vector<cv::Mat1f> without_moving_scene(std::span<const cv::Mat1f> frames, const RecordedNoise& noise,
+                                            int block_frames) {
+  std::vector<cv::Mat1f> still;
+  const auto size = static_cast<std::size_t>(block_frames);
+  const cv::Mat1b moving = noise.usable == 0;
+  for (std::size_t b = 0; b < static_cast<std::size_t>(noise.blocks); ++b) {
+    cv::Mat1f mean(frames[0].size(), 0.0F);
+    for (std::size_t k = 0; k < size; ++k) cv::accumulate(frames[b * size + k], mean);
+    mean /= static_cast<double>(block_frames);
+    for (std::size_t k = 0; k < size; ++k) {
+      still.push_back(frames[b * size + k].clone());
+      mean.copyTo(still.back(), moving);
+    }
+  }
+  return still;
+}
+
+}  // namespace
+
+Result<RecordedNoise> recorded_noise(std::span<const cv::Mat1f> frames, int block_frames) {
+  if (block_frames < 2 || frames.size() < static_cast<std::size_t>(block_frames)) {
+    return fail(ErrorCode::invalid_input, "the recording holds " + std::to_string(frames.size()) +
+                                              " frames; a block needs " + std::to_string(std::max(2, block_frames)));
+  }
+  RecordedNoise noise;
+  noise.blocks = static_cast<int>(frames.size()) / block_frames;
+  for (int b = 0; b < noise.blocks; ++b) {
+    const auto size = static_cast<std::size_t>(block_frames);
+    add_residuals(frames.subspan(static_cast<std::size_t>(b) * size, size), b, noise);
+  }
+  find_usable(noise);
+  // Below a millionth of the level it is the rounding of the mean.
+  if (!(noise.temporal_noise > 1e-6 * cv::norm(frames[0], cv::NORM_INF)))
+    return fail(ErrorCode::invalid_input, "the recording holds no noise: all frames are the same");
+  find_correlations(noise);
+  auto components = mean_components(without_moving_scene(frames, noise, block_frames), block_frames, noise.blocks);
+  if (!components) return tl::unexpected(components.error());
+  noise.components = *components;
+  noise.components.tvh /= std::sqrt(noise.usable_share);
+  return noise;
+}
+
+RecordedNoise white_like(const RecordedNoise& noise, std::uint64_t seed) {
+  RecordedNoise white = noise;
+  const RandomStream stream(seed, "real_noise.white");
+  std::uint64_t index = 0;
+  for (auto& frame : white.frames) {
+    cv::Mat1f drawn(frame.size());
+    stream.sub(index++).fill_normal(std::span(drawn.ptr<float>(), drawn.total()));
+    // A picture of its own: assigning the expression would write into the pixels shared with `noise`.
+    const cv::Mat1f scaled = drawn * noise.temporal_noise;
+    frame = scaled;
+  }
+  white.components = {};
+  white.components.tvh = noise.temporal_noise;
+  white.correlation_x = white.correlation_y = 0;
+  return white;
+}
+
+}  // namespace todbench

@@ -1,0 +1,117 @@
+// Reading JSON with the same strictness as TOML: a missing key or another type is a mistake that names the key.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "acquisition/core/result.h"
+#include "bench/text/json.h"
+
+namespace todbench {
+
+/// Walks through one document; the first mistake is kept, values after it are empty. Copies share the mistake. Borrows
+/// the document, which has to outlive the reader. One thread at a time.
+class JsonReader {
+ public:
+  explicit JsonReader(const Json& json, std::string path = "")
+      : JsonReader(&json, std::move(path), std::make_shared<std::string>()) {}
+
+  /// The value of a key; a missing one is a mistake.
+  [[nodiscard]] JsonReader at(const std::string& key) const {
+    const std::string path = path_.empty() ? key : path_ + "." + key;
+    if (!json_->is_object()) return wrong("an object");
+    const auto found = json_->find(key);
+    if (found == json_->end()) {
+      note("missing key '" + path + "'");
+      return {&nothing(), path, mistake_};
+    }
+    return {&*found, path, mistake_};
+  }
+  [[nodiscard]] std::vector<JsonReader> elements() const {
+    std::vector<JsonReader> readers;
+    if (!json_->is_array()) (void)wrong("a list");
+    if (!json_->is_array()) return readers;
+    for (std::size_t i = 0; i < json_->size(); ++i)
+      readers.push_back({&(*json_)[i], path_ + "[" + std::to_string(i) + "]", mistake_});
+    return readers;
+  }
+  /// Keys and values of an object in their order.
+  [[nodiscard]] std::vector<std::pair<std::string, JsonReader>> items() const {
+    std::vector<std::pair<std::string, JsonReader>> pairs;
+    if (!json_->is_object()) (void)wrong("an object");
+    if (!json_->is_object()) return pairs;
+    for (const auto& [key, value] : json_->items())
+      pairs.emplace_back(key, JsonReader(&value, path_ + "." + key, mistake_));
+    return pairs;
+  }
+  [[nodiscard]] bool is_null() const { return json_->is_null(); }
+  [[nodiscard]] double number() const { return json_->is_number() ? json_->get<double>() : (wrong("a number"), 0.0); }
+  [[nodiscard]] std::optional<double> optional_number() const {
+    return is_null() ? std::nullopt : std::optional<double>(number());
+  }
+  [[nodiscard]] std::int64_t whole() const {
+    return json_->is_number_integer() ? json_->get<std::int64_t>() : (wrong("a whole number"), 0);
+  }
+  [[nodiscard]] std::uint64_t count() const {
+    return json_->is_number_unsigned() ? json_->get<std::uint64_t>() : (wrong("a whole number of 0 or more"), 0);
+  }
+  [[nodiscard]] std::string text() const {
+    return json_->is_string() ? json_->get<std::string>() : (wrong("a text"), std::string());
+  }
+  [[nodiscard]] bool flag() const { return json_->is_boolean() ? json_->get<bool>() : (wrong("true or false"), false); }
+  [[nodiscard]] std::vector<std::string> texts() const {
+    std::vector<std::string> values;
+    for (const JsonReader& element : elements()) values.push_back(element.text());
+    return values;
+  }
+  /// The value of an enumeration in `values` whose to_string() it is.
+  template <typename Values>
+  [[nodiscard]] auto named(const Values& values) const {
+    const std::string name = text();
+    for (const auto value : values) {
+      if (to_string(value) == name) return value;
+    }
+    (void)wrong("a known word");
+    return *std::begin(values);
+  }
+  /// A list of two numbers, each null where that side is open.
+  [[nodiscard]] Interval interval() const {
+    const std::vector<JsonReader> sides = elements();
+    if (sides.size() == 2) return {sides[0].optional_number(), sides[1].optional_number()};
+    note("'" + path_ + "': expected two sides");
+    return {};
+  }
+  /// Success while nothing was wrong.
+  [[nodiscard]] Result<void> finish() const {
+    if (mistake_->empty()) return {};
+    return fail(ErrorCode::invalid_input, *mistake_);
+  }
+
+ private:
+  JsonReader(const Json* json, std::string path, std::shared_ptr<std::string> mistake)
+      : json_(json), path_(std::move(path)), mistake_(std::move(mistake)) {}
+  static const Json& nothing() {
+    static const Json null;
+    return null;
+  }
+  void note(const std::string& sentence) const {
+    if (mistake_->empty()) *mistake_ = sentence;
+  }
+  JsonReader wrong(const std::string& expected) const {
+    note("'" + path_ + "': expected " + expected);
+    return {&nothing(), path_, mistake_};
+  }
+
+  const Json* json_;
+  std::string path_;
+  std::shared_ptr<std::string> mistake_;
+};
+
+}  // namespace todbench

@@ -1,0 +1,141 @@
+#include "hvs/observer/template_bank.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "acquisition/core/multiversion.h"
+#include "hvs/shape/polygon_image.h"
+#include "hvs/observer/template_observer.h"
+
+namespace todbench {
+namespace {
+
+TODBENCH_MULTIVERSION
+void project_block(const float* values, const float* patch, std::size_t samples, float* scores) {
+  float sums[TemplateBank::block] = {};
+  for (std::size_t s = 0; s < samples; ++s) {
+    const float signal = patch[s];
+    const float* column = values + s * TemplateBank::block;
+    for (std::size_t t = 0; t < TemplateBank::block; ++t) sums[t] += column[t] * signal;
+  }
+  for (std::size_t t = 0; t < TemplateBank::block; ++t) scores[t] = sums[t];
+}
+
+/// Display (sample and hold over one sample) and blur of display and eye together: sinc(u) sinc(w) exp(-2 pi^2 sigma^2
+/// rho^2).
+TransferFunction viewing_filter(double sigma_samples) {
+  return [sigma_samples](double u, double w) -> std::complex<double> {
+    const auto sinc = [](double x) { return x == 0 ? 1.0 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x); };
+    const double pi_sigma = std::numbers::pi * sigma_samples;
+    return sinc(u) * sinc(w) * std::exp(-2 * pi_sigma * pi_sigma * (u * u + w * w));
+  };
+}
+
+/// Where the Gaussian has fallen to 1e-12, in cycles per sample: exp(-2 pi^2 sigma^2 f^2) = 1e-12.
+double filter_band(double sigma_samples) {
+  return std::sqrt(27.631 / 2) / (std::numbers::pi * sigma_samples);
+}
+
+/// A template's samples with the mean removed and the Euclidean norm 1.
+void normalise(std::vector<double>& values) {
+  double mean = 0;
+  for (const double v : values) mean += v;
+  mean /= static_cast<double>(values.size());
+  double energy = 0;
+  for (double& v : values) {
+    v -= mean;
+    energy += v * v;
+  }
+  for (double& v : values) v /= std::sqrt(energy);
+}
+
+}  // namespace
+
+Result<TemplateBank> TemplateBank::build(const TemplateObserverSpec& spec, const Alternatives& alternatives,
+                                         double size_samples, int samples_per_pitch) {
+  if (!(size_samples > 0) || samples_per_pitch < 1) {
+    return fail(ErrorCode::invalid_input, "an observer needs a positive target size and at least one sample per pitch");
+  }
+  const int steps = static_cast<int>(std::lround(1 / spec.search_step_samples));
+  const int reach = static_cast<int>(std::lround(spec.search_range_samples * steps));
+  const double half_pitch =
+      std::ceil(spec.window_size_factor * size_samples / samples_per_pitch + spec.window_margin_pitch - 1e-9);
+  const double samples = std::pow(2 * half_pitch * samples_per_pitch, 2);
+  TemplateBank bank;
+  bank.alternatives_ = static_cast<int>(alternatives.size());
+  bank.places_ = (2 * reach + 1) * (2 * reach + 1);
+  bank.blocks_ = (static_cast<std::size_t>(bank.templates()) + block - 1) / block;
+  if (samples * static_cast<double>(bank.padded_templates() * sizeof(float)) > static_cast<double>(max_bytes)) {
+    return fail(ErrorCode::invalid_input,
+                "a target of " + std::to_string(size_samples) +
+                    " samples is too large for this observer: its templates would need over 1 GiB");
+  }
+  const int half = static_cast<int>(half_pitch) * samples_per_pitch;
+  bank.window_ = 2 * half;
+
+  // Sample centres lie on half samples, search places on 1 / steps: one fine grid holds them all.
+  const double band = filter_band(spec.blur_sigma_samples);
+  int per_sample = steps % 2 == 0 ? steps : 2 * steps;
+  while (per_sample <= 2 * band) per_sample *= 2;
+  // The next copy of the shape must stay out of the window: shape, seven sigma of blur, the display sample, and the
+  // search range.
+  const int period = static_cast<int>(
+      std::ceil(half + spec.search_range_samples + 0.9 * size_samples + 7 * spec.blur_sigma_samples + 1));
+  const FrequencyLattice lattice{.period = period, .band = static_cast<int>(std::ceil(band * period))};
+  const FilterTable filter(lattice, viewing_filter(spec.blur_sigma_samples));
+  const int stride = per_sample / steps;
+  const int n = period * per_sample;
+  const auto count = static_cast<std::size_t>(bank.window_) * static_cast<std::size_t>(bank.window_);
+  bank.values_.assign(bank.blocks_ * block * count, 0.0F);
+  std::vector<double> values(count);
+  for (int o = 0; o < bank.alternatives_; ++o) {
+    const cv::Mat1d fine = PolygonImage(placed(alternatives[static_cast<std::size_t>(o)], size_samples, {0, 0}), filter)
+                               .fine_image(per_sample);
+    for (int place = 0; place < bank.places_; ++place) {
+      const int dx = place % (2 * reach + 1) - reach;
+      const int dy = place / (2 * reach + 1) - reach;
+      for (int j = 0; j < bank.window_; ++j) {
+        const int y = ((2 * (j - half) + 1) * per_sample / 2 - dy * stride + 2 * n) % n;
+        for (int i = 0; i < bank.window_; ++i) {
+          const int x = ((2 * (i - half) + 1) * per_sample / 2 - dx * stride + 2 * n) % n;
+          values[static_cast<std::size_t>(j * bank.window_ + i)] = fine(y, x);
+        }
+      }
+      normalise(values);
+      const auto t = static_cast<std::size_t>(o * bank.places_ + place);
+      float* target = bank.values_.data() + t / block * block * count + t % block;
+      for (std::size_t s = 0; s < count; ++s) target[s * block] = static_cast<float>(values[s]);
+    }
+  }
+  return bank;
+}
+
+void TemplateBank::project(std::span<const float> patch, std::span<float> scores) const {
+  const auto count = static_cast<std::size_t>(window_) * static_cast<std::size_t>(window_);
+  CV_Assert(patch.size() == count && scores.size() == padded_templates());
+  for (std::size_t b = 0; b < blocks_; ++b)
+    project_block(values_.data() + b * block * count, patch.data(), count, scores.data() + b * block);
+}
+
+void TemplateBank::add_sample(std::size_t sample, float amount, std::span<float> scores) const {
+  const auto count = static_cast<std::size_t>(window_) * static_cast<std::size_t>(window_);
+  CV_Assert(sample < count && scores.size() == padded_templates());
+  for (std::size_t b = 0; b < blocks_; ++b) {
+    const float* column = values_.data() + (b * count + sample) * block;
+    for (std::size_t t = 0; t < block; ++t) scores[b * block + t] += amount * column[t];
+  }
+}
+
+cv::Mat1f TemplateBank::image(int alternative, int place) const {
+  const auto count = static_cast<std::size_t>(window_) * static_cast<std::size_t>(window_);
+  const auto t = static_cast<std::size_t>(alternative * places_ + place);
+  const float* source = values_.data() + t / block * block * count + t % block;
+  cv::Mat1f out(window_, window_);
+  for (std::size_t s = 0; s < count; ++s)
+    out(static_cast<int>(s) / window_, static_cast<int>(s) % window_) = source[s * block];
+  return out;
+}
+
+}  // namespace todbench

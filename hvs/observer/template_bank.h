@@ -1,0 +1,57 @@
+// The templates of one observer for one size: ideal shapes seen through the visual filter, at every place of the
+// search.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "acquisition/core/result.h"
+#include "hvs/observer/observer.h"
+
+namespace todbench {
+
+struct TemplateObserverSpec;
+
+/// Zero-mean, unit-norm templates, single precision. Immutable, thread-safe.
+///
+/// Template (o, p): alternative o at search place p, sampled at displayed-sample centres k + 1/2, k = -m..m-1, from the
+/// window's centre.
+class TemplateBank {
+ public:
+  /// `invalid_input` for sizes whose bank would not fit into `max_bytes`.
+  [[nodiscard]] static Result<TemplateBank> build(const TemplateObserverSpec& spec, const Alternatives& alternatives,
+                                                  double size_samples, int samples_per_pitch);
+
+  [[nodiscard]] int window_samples() const { return window_; }
+  [[nodiscard]] int alternatives() const { return alternatives_; }
+  /// Search places per alternative.
+  [[nodiscard]] int places() const { return places_; }
+  /// Templates in all: alternatives times places; template (o, p) has index o * places() + p.
+  [[nodiscard]] int templates() const { return alternatives_ * places_; }
+  /// templates() rounded up to whole blocks: the length of a score vector. The padding scores are zero.
+  [[nodiscard]] std::size_t padded_templates() const { return blocks_ * block; }
+
+  /// Scores of all templates for a patch of window_samples()^2 values, row by row. `scores` has padded_templates()
+  /// elements. Each score is one sum over samples in a fixed order: the same bits on every instruction set.
+  void project(std::span<const float> patch, std::span<float> scores) const;
+  /// Adds `amount` times every template's value at one sample of the patch to the scores: the change of project() when
+  /// that sample changes by `amount`.
+  void add_sample(std::size_t sample, float amount, std::span<float> scores) const;
+  /// One template as an image, for tests and pictures.
+  [[nodiscard]] cv::Mat1f image(int alternative, int place) const;
+
+  /// Index of the search place without shift.
+  [[nodiscard]] int central_place() const { return places_ / 2; }
+
+  static constexpr std::size_t block = 64;                        ///< templates computed together
+  static constexpr std::size_t max_bytes = std::size_t{1} << 30;  ///< 1 GiB
+
+ private:
+  TemplateBank() = default;
+  int window_ = 0, alternatives_ = 0, places_ = 0;
+  std::size_t blocks_ = 0;
+  std::vector<float> values_;  ///< [block of templates][sample][template in block]
+};
+
+}  // namespace todbench

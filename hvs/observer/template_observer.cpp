@@ -1,0 +1,143 @@
+#include "hvs/observer/template_observer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace todbench {
+namespace {
+
+// Windows up to this many samples, and banks up to this many templates, are judged without touching the heap.
+constexpr std::size_t stack_samples = 64 * 64;
+constexpr std::size_t stack_templates = 4096;
+
+// Positions in a trial's random stream: pixel noise first, the tie-break far behind it.
+constexpr std::uint64_t tie_break_index = std::uint64_t{1} << 40;
+
+/// Winner among equal scores by lot.
+int winner(const Choice& choice, const RandomStream& noise) {
+  const auto end = choice.scores.begin() + choice.alternatives;
+  const double best = *std::max_element(choice.scores.begin(), end);
+  const auto ties = static_cast<std::uint64_t>(std::count(choice.scores.begin(), end, best));
+  auto pick = ties > 1 ? noise.below(ties, tie_break_index) : 0;
+  for (int o = 0; o < choice.alternatives; ++o) {
+    if (choice.scores[static_cast<std::size_t>(o)] == best && pick-- == 0) return o;
+  }
+  return 0;  // unreachable: some score equals the maximum
+}
+
+class PreparedTemplateObserver final : public PreparedObserver {
+ public:
+  PreparedTemplateObserver(TemplateObserverSpec spec, std::shared_ptr<const TemplateBank> bank)
+      : spec_(std::move(spec)), bank_(std::move(bank)) {}
+
+  [[nodiscard]] int window_samples() const override { return bank_->window_samples(); }
+  [[nodiscard]] double search_samples() const override { return spec_.search_range_samples; }
+
+  [[nodiscard]] Choice choose(const Patch& patch, double contrast_k, const RandomStream& noise) const override {
+    const auto side = static_cast<std::size_t>(bank_->window_samples());
+    CV_Assert(patch.kelvin.rows == bank_->window_samples() && patch.kelvin.cols == bank_->window_samples());
+    if (side * side <= stack_samples && bank_->padded_templates() <= stack_templates) {
+      std::array<float, stack_samples> signal;
+      std::array<float, stack_samples> draws;
+      std::array<float, stack_templates> scores;
+      return decide(patch, contrast_k, noise, std::span(signal).first(side * side), std::span(draws).first(side * side),
+                    std::span(scores).first(bank_->padded_templates()));
+    }
+    std::vector<float> signal(side * side), draws(side * side), scores(bank_->padded_templates());
+    return decide(patch, contrast_k, noise, signal, draws, scores);
+  }
+
+ private:
+  [[nodiscard]] Choice decide(const Patch& patch, double contrast_k, const RandomStream& noise, std::span<float> signal,
+                              std::span<float> draws, std::span<float> scores) const {
+    scale_to_contrast(patch, contrast_k, signal);
+    // Internal noise, and the part of the sensor's noise by which this observer sees it enlarged, in units of the
+    // contrast.
+    const double enlarged = spec_.sensor_noise_factor * spec_.sensor_noise_factor - 1;
+    const double seen = patch.noise_k / contrast_k;
+    const auto sd = static_cast<float>(std::sqrt(spec_.internal_noise * spec_.internal_noise + enlarged * seen * seen));
+    if (sd > 0) {
+      noise.fill_normal(draws);
+      for (std::size_t s = 0; s < signal.size(); ++s) signal[s] += sd * draws[s];
+    }
+    bank_->project(signal, scores);
+    Choice choice;
+    choice.alternatives = bank_->alternatives();
+    const auto places = static_cast<std::size_t>(bank_->places());
+    for (int o = 0; o < choice.alternatives; ++o) {
+      const auto mine = scores.subspan(static_cast<std::size_t>(o) * places, places);
+      choice.scores[static_cast<std::size_t>(o)] = static_cast<double>(*std::max_element(mine.begin(), mine.end()));
+    }
+    choice.alternative = winner(choice, noise);
+    return choice;
+  }
+
+  /// The patch without its mean, in units of the contrast. Differences are formed in double precision, so a background
+  /// of 300 K leaves no trace.
+  static void scale_to_contrast(const Patch& patch, double contrast_k, std::span<float> signal) {
+    const double background = patch.kelvin(0, 0);
+    double mean = 0;
+    for (const double value : patch.kelvin) mean += value - background;
+    mean = background + mean / static_cast<double>(signal.size());
+    std::size_t s = 0;
+    for (const double value : patch.kelvin) signal[s++] = static_cast<float>((value - mean) / contrast_k);
+  }
+
+  TemplateObserverSpec spec_;
+  std::shared_ptr<const TemplateBank> bank_;
+};
+
+}  // namespace
+
+Result<void> validate(const TemplateObserverSpec& spec) {
+  const auto refuse = [](const std::string& what) { return fail(ErrorCode::invalid_input, what); };
+  if (spec.name.empty()) return refuse("an observer needs a name");
+  if (!(spec.blur_sigma_samples >= 0.1 && spec.blur_sigma_samples <= 10))
+    return refuse("blur_sigma_samples must be in [0.1, 10]");
+  if (!(spec.internal_noise >= 0 && spec.internal_noise <= 10)) return refuse("internal_noise must be in [0, 10]");
+  if (!(spec.sensor_noise_factor >= 1 && spec.sensor_noise_factor <= 100))
+    return refuse("sensor_noise_factor must be in [1, 100]");
+  const double steps = spec.search_step_samples > 0 ? 1 / spec.search_step_samples : 0;
+  if (!(steps >= 1 && steps <= 64 && std::abs(steps - std::round(steps)) < 1e-9)) {
+    return refuse("search_step_samples must be 1/n with a whole n up to 64");
+  }
+  const double reach = spec.search_range_samples * steps;
+  if (!(reach >= 0 && reach <= 128 && std::abs(reach - std::round(reach)) < 1e-9)) {
+    return refuse("search_range_samples must be a whole number of search steps, at most 128");
+  }
+  if (!(spec.window_size_factor >= 0.9 && spec.window_size_factor <= 10))
+    return refuse("window_size_factor must be in [0.9, 10]");
+  if (!(spec.window_margin_pitch >= 0 && spec.window_margin_pitch <= 100))
+    return refuse("window_margin_pitch must be in [0, 100]");
+  return {};
+}
+
+TemplateObserver::TemplateObserver(TemplateObserverSpec spec, Alternatives alternatives)
+    : spec_(std::move(spec)), alternatives_(std::move(alternatives)) {
+  CV_Assert(alternatives_.size() >= 2 && alternatives_.size() <= Choice::max_alternatives);
+}
+
+Result<std::shared_ptr<const TemplateBank>> TemplateObserver::bank(double size_samples, int samples_per_pitch) {
+  const std::scoped_lock lock(mutex_);
+  auto& slot = banks_[{size_samples, samples_per_pitch}];
+  if (slot == nullptr) {
+    auto built = TemplateBank::build(spec_, alternatives_, size_samples, samples_per_pitch);
+    if (!built) {
+      banks_.erase({size_samples, samples_per_pitch});
+      return fail("observer " + spec_.name, built.error());
+    }
+    slot = std::make_shared<const TemplateBank>(std::move(*built));
+  }
+  return slot;
+}
+
+Result<std::shared_ptr<const PreparedObserver>> TemplateObserver::prepare(double size_samples, int samples_per_pitch) {
+  auto found = bank(size_samples, samples_per_pitch);
+  if (!found) return tl::unexpected(found.error());
+  return std::make_shared<const PreparedTemplateObserver>(spec_, *found);
+}
+
+}  // namespace todbench

@@ -1,0 +1,52 @@
+// The recommended observer: normalised correlation with ideal shapes seen through the visual filter, searching for the
+// position, with internal noise in proportion to the contrast.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "hvs/observer/observer.h"
+#include "hvs/observer/template_bank.h"
+
+namespace todbench {
+
+/// Parameters of the template observer; the defaults are hvs-1. A parameter set has a versioned name and is never
+/// changed afterwards. sigma and the internal noise of hvs-1 were tuned to a published microscan gain of 55 % (Bijl,
+/// Hogervorst and Vos): not a validated model of people.
+struct TemplateObserverSpec {
+  std::string name = "hvs-1";
+  double blur_sigma_samples = 0.6;  ///< Gaussian of display and eye together, in displayed samples
+  double internal_noise = 0.07;     ///< sd per displayed sample, relative to the contrast
+  double sensor_noise_factor = 1;  ///< by how much the observer sees the sensor's noise enlarged (1.75 in human-like-1)
+  double search_range_samples = 1;  ///< each way, in x and y
+  double search_step_samples = 0.125;
+  double window_size_factor = 1.05;  ///< half window = ceil(factor * size + margin), in detector pitches
+  double window_margin_pitch = 2;
+  bool operator==(const TemplateObserverSpec&) const = default;
+};
+
+/// Fails with `invalid_input`, naming the parameter that is out of its range.
+[[nodiscard]] Result<void> validate(const TemplateObserverSpec& spec);
+
+class TemplateObserver final : public Observer {
+ public:
+  /// Precondition: validate(spec) succeeds; 2..8 alternatives.
+  TemplateObserver(TemplateObserverSpec spec, Alternatives alternatives);
+  [[nodiscard]] const std::string& name() const override { return spec_.name; }
+  [[nodiscard]] const TemplateObserverSpec& spec() const { return spec_; }
+  [[nodiscard]] Result<std::shared_ptr<const PreparedObserver>> prepare(double size_samples,
+                                                                        int samples_per_pitch) override;
+  /// The bank behind prepare(), for estimates that work on the templates themselves.
+  [[nodiscard]] Result<std::shared_ptr<const TemplateBank>> bank(double size_samples, int samples_per_pitch);
+
+ private:
+  TemplateObserverSpec spec_;
+  Alternatives alternatives_;
+  std::mutex mutex_;
+  std::map<std::pair<double, int>, std::shared_ptr<const TemplateBank>> banks_;
+};
+
+}  // namespace todbench

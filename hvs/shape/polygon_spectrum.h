@@ -1,0 +1,58 @@
+// The closed-form Fourier transform of a polygon.
+#pragma once
+
+#include <complex>
+#include <opencv2/core.hpp>
+#include <span>
+#include <vector>
+
+#include "hvs/shape/polygon.h"
+
+namespace todbench {
+
+/// The frequencies m / period, |m| <= band, in both directions.
+struct FrequencyLattice {
+  int period = 32;  ///< in unit lengths (pitches or samples), >= 1
+  int band = 203;   ///< highest m kept; the highest frequency is band / period
+  bool operator==(const FrequencyLattice&) const = default;
+};
+
+/// Fourier transform of the polygon's indicator at frequency (u, w), in cycles per unit length: the integral of
+/// exp(-2 pi i (u x + w y)) over its area. Sum over edges with sinc factors; relative accuracy near 1e-15 times the
+/// number of turns, also for wave vectors perpendicular to an edge and at the origin.
+[[nodiscard]] std::complex<double> polygon_spectrum(const Polygon& polygon, double u, double w);
+
+/// The same on a lattice, half plane u >= 0 (the rest follows by symmetry): rows w = -band..band, columns u = 0..band.
+/// Phase factors are separable and tabulated per row and column; agrees with the single-frequency form to 1e-13 of the
+/// area.
+[[nodiscard]] cv::Mat_<std::complex<double>> polygon_spectrum(const Polygon& polygon, const FrequencyLattice& lattice);
+
+/// The same, row by row, real and imaginary parts apart: for callers that filter a row while it is in the cache.
+/// One thread at a time.
+class PolygonSpectrumRows {
+ public:
+  PolygonSpectrumRows(const Polygon& polygon, FrequencyLattice lattice);
+  struct Row {
+    std::span<const double> re, im;  ///< columns u = 0, 1, ...; valid until the next call
+  };
+  /// The first `columns` of row `r`: w = r - band, r = 0 .. 2 band.
+  [[nodiscard]] Row row(int r, std::size_t columns);
+
+ private:
+  /// exp(-2 pi i m x / period), real and imaginary parts apart.
+  struct PhaseTable {
+    std::vector<double> re, im;
+    PhaseTable(int first, int count, double x, double period);
+  };
+  void sum_edges(int r, double ky, std::size_t n);
+  void replace_unsafe(double ky, std::size_t n);
+
+  Polygon polygon_;
+  FrequencyLattice lattice_;
+  double reach_;
+  std::vector<PhaseTable> ex_, ey_;               ///< per vertex
+  std::vector<double> kx_, re_, im_;              ///< of the row
+  std::vector<std::vector<double>> e_re_, e_im_;  ///< per vertex: exp(-i k.v) of the row
+};
+
+}  // namespace todbench

@@ -1,0 +1,70 @@
+// The cameras that the GigE Vision emulation can be: registers, features and what they do to the picture.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "sim_devices/lab/gige/genicam_description.h"
+
+namespace todbench {
+
+enum class CameraModel {
+  ax5,       ///< FLIR A5 ... A65: TemperatureLinearMode, CMOSBitDepth, NUCMode, test ramp, rates by video standard
+  a_series,  ///< FLIR A3xx ... A700: IRFormat, NoiseReduction, AcquisitionFrameRate
+  legacy_science,  ///< FLIR A305sc and A320G: Mono16 with the high byte first, and no feature that says so
+  unlisted,        ///< a vendor nobody knows: raw counts and a shutter with a name of its own
+};
+
+[[nodiscard]] std::string_view to_string(CameraModel model);
+/// "ax5", "a-series", "legacy-science", "unlisted".
+[[nodiscard]] std::optional<CameraModel> camera_model(std::string_view name);
+
+/// Addresses of the registers that the emulation itself looks at; 0: the model has none.
+struct ModelRegisters {
+  std::uint32_t width = 0, height = 0, pixel_format = 0, payload_size = 0;
+  std::uint32_t acquisition_start = 0, acquisition_stop = 0;
+  std::uint32_t temperature_linear_mode = 0, temperature_linear_resolution = 0;  ///< as the Ax5 has them
+  std::uint32_t ir_format = 0;                                                   ///< as the A series has it
+  std::uint32_t video_standard = 0;                                              ///< Ax5 enumeration
+  std::uint32_t test_pattern = 0;
+  std::uint32_t noise_reduction = 0;
+  std::uint32_t nuc_mode = 0, nuc_action = 0, nuc_action_long = 0;
+  std::uint32_t nuc_mode_automatic = 0;  ///< value of nuc_mode
+  std::uint32_t sensor_temperature = 0;  ///< raw/10 degrees Celsius
+  std::uint32_t chunk_mode = 0;
+  std::uint32_t largest_count = 0;
+};
+
+/// Ids of the chunks behind a frame, where chunk mode is on.
+inline constexpr std::uint32_t chunk_image = 0x00000001;
+inline constexpr std::uint32_t chunk_exposure = 0xA0000001;            ///< ChunkExposureIndex
+inline constexpr std::uint32_t chunk_sensor_temperature = 0xA0000002;  ///< ChunkSensorTemperature, raw/10
+inline constexpr std::uint32_t chunk_nuc_active = 0xA0000003;          ///< ChunkNUCActive
+
+/// Where DEVICE strings come from and what the registers hold at power-up.
+struct ModelOptions {
+  std::string vendor, model, serial, firmware;  ///< empty vendor or model: those of the family
+  int width = 0, height = 0;
+  int significant_bits = 14;
+  double frame_rate_hz = 50;
+};
+
+struct ModelDescription {
+  CameraDescription genicam;
+  ModelRegisters registers;
+};
+
+/// Registers and features of a model.
+[[nodiscard]] ModelDescription describe_camera(CameraModel model, const ModelOptions& options);
+
+/// Pixel formats that the models send (PFNC 2.4).
+inline constexpr std::uint32_t pfnc_mono8 = 0x01080001;
+inline constexpr std::uint32_t pfnc_mono14 = 0x01100025;
+inline constexpr std::uint32_t pfnc_mono16 = 0x01100007;
+
+/// Frames per second of a value of the Ax5's SensorVideoStandard; 0 for one that does not exist.
+[[nodiscard]] double video_standard_hz(std::uint32_t value);
+
+}  // namespace todbench

@@ -1,0 +1,61 @@
+// Messages of the GigE Vision control protocol (GVCP) as values. Source: GigE Vision 2.0, chapters 14 to 18.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "sim_devices/lab/gige/big_endian.h"
+
+namespace todbench {
+
+enum class GvcpCommand : std::uint16_t {
+  discovery = 0x0002,
+  force_ip = 0x0004,
+  packet_resend = 0x0040,
+  read_register = 0x0080,
+  write_register = 0x0082,
+  read_memory = 0x0084,
+  write_memory = 0x0086,
+};
+
+enum class GvcpStatus : std::uint16_t {
+  success = 0x0000,
+  not_implemented = 0x8001,
+  invalid_parameter = 0x8002,
+  invalid_address = 0x8003,
+  write_protect = 0x8004,
+  bad_alignment = 0x8005,
+  access_denied = 0x8006,
+  busy = 0x8007,
+};
+
+/// A request as it came; `command` may be a number that is none of GvcpCommand.
+struct GvcpRequest {
+  std::uint16_t command = 0;
+  std::uint16_t id = 0;
+  bool wants_acknowledge = false;
+  std::span<const std::uint8_t> payload;  ///< borrowed from the datagram
+};
+
+/// Longest payload of a message: a READMEM of 536 bytes with its address.
+inline constexpr std::size_t gvcp_most_payload_bytes = 540;
+
+/// Nothing unless the datagram begins with the key 0x42, has an id and is as long as it says: such a datagram is not
+/// answered.
+[[nodiscard]] std::optional<GvcpRequest> parse_gvcp_request(std::span<const std::uint8_t> datagram);
+
+/// The acknowledge of a request; its command is that of the request plus one.
+[[nodiscard]] Bytes gvcp_acknowledge(const GvcpRequest& request, GvcpStatus status,
+                                     std::span<const std::uint8_t> payload);
+
+/// What a PACKETRESEND asks for.
+struct ResendRequest {
+  std::uint16_t block_id = 0;
+  std::uint32_t first_packet = 0, last_packet = 0;  ///< 24 bits each, inclusive
+};
+
+/// Nothing when the payload is too short or asks for packets backwards.
+[[nodiscard]] std::optional<ResendRequest> parse_resend_request(std::span<const std::uint8_t> payload);
+
+}  // namespace todbench

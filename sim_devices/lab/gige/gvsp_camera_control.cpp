@@ -1,0 +1,141 @@
+// What an emulated GVSP camera does when it is spoken to: registers and their side effects.
+#include <cmath>
+#include <cstdio>
+
+#include "sim_devices/lab/gige/gvsp_camera_state.h"
+
+namespace todbench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+/// How often the heartbeat is looked at.
+constexpr auto control_patience = 50ms;
+/// What chunk mode adds to an image: four chunks with id and length, with contents of 8, 4 and 4 bytes beside the
+/// image.
+constexpr std::uint32_t chunk_bytes = 4 * 8 + 8 + 4 + 4;
+constexpr std::uint32_t default_packet_bytes = 1400;
+
+}  // namespace
+
+std::uint64_t gvsp_period_ns(double rate_hz) {
+  return 1000 * static_cast<std::uint64_t>(std::lround(1e6 / rate_hz));
+}
+
+void GvspCamera::State::power_up() {
+  registers.power_up();
+  registers.unlock_transport();
+  const auto set = [this](std::uint32_t address, std::uint32_t value) { registers.set(address, value); };
+  set(gev::version, 0x00010002);
+  set(gev::device_mode, 0x80000001);  // big-endian transmitter, UTF-8
+  set(gev::mac_high, 0x0000AA00);     // a locally administered address
+  set(gev::mac_low, 0x54420000 | (interface.address & 0xFFFF));
+  set(gev::supported_ip_configuration, 7);
+  set(gev::current_ip_configuration, 5);
+  set(gev::current_ip_address, interface.address);
+  set(gev::current_subnet_mask, interface.mask);
+  registers.set_text(gev::vendor_name, description.genicam.vendor, 32);
+  registers.set_text(gev::model_name, description.genicam.model, 32);
+  registers.set_text(gev::device_version, config.firmware, 32);
+  registers.set_text(gev::manufacturer_info, "emulation", 48);
+  registers.set_text(gev::serial_number, config.serial, 16);
+  char url[128];
+  std::snprintf(url, sizeof url, "Local:%s;%X;%zX", description.genicam.file_name.c_str(), RegisterMap::xml_address,
+                genicam_xml(description.genicam).size());
+  registers.set_text(gev::first_url, url, 512);
+  set(gev::network_interfaces, 1);
+  set(gev::stream_channels, 1);
+  set(gev::gvcp_capability, gev::capabilities);
+  set(gev::heartbeat_timeout, static_cast<std::uint32_t>(config.heartbeat_timeout.count()));
+  set(gev::tick_frequency_low, 1000000000);
+  set(gev::control_privilege, 0);
+  set(gev::stream_port, 0);
+  set(gev::stream_destination, 0);
+  set(gev::stream_packet_size, default_packet_bytes);
+  set(gev::stream_packet_delay, 0);
+  set(gev::stream_source_port, stream.port());
+  next_block_id = config.first_block_id;
+  // Until the client chooses a video standard, the rate may be one that no standard has.
+  period_ns = gvsp_period_ns(config.frame_rate_hz);
+}
+
+void GvspCamera::State::serve_control(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    const auto request = control.receive(control_patience);
+    device.check_heartbeat(Clock::now());
+    if (!request) continue;
+    {
+      const std::lock_guard lock(mutex);
+      if (Clock::now() < link_down_until || Clock::now() < control_down_until) continue;
+    }
+    if (const auto answer = device.answer(request->content, request->from, Clock::now())) {
+      control.send(*answer, request->from);
+    }
+  }
+}
+
+void GvspCamera::State::on_write(std::uint32_t address, std::uint32_t value) {
+  const ModelRegisters& r = description.registers;
+  if (address == r.acquisition_start) {
+    registers.lock_transport();
+    const std::lock_guard lock(mutex);
+    acquiring = true;
+    ++acquisitions;
+    changed.notify_all();
+  } else if (address == r.acquisition_stop) {
+    stop_acquisition();
+  } else if (address == r.nuc_action) {
+    begin_correction(1);
+  } else if (r.nuc_action_long != 0 && address == r.nuc_action_long) {
+    begin_correction(4);
+  } else if (address == r.pixel_format || address == r.chunk_mode) {
+    update_payload_size();
+  } else if (r.video_standard != 0 && address == r.video_standard && video_standard_hz(value) > 0) {
+    const std::lock_guard lock(mutex);
+    period_ns = gvsp_period_ns(video_standard_hz(value));
+  } else if (address == gev::stream_packet_size && (value & gev::fire_test_packet) != 0) {
+    registers.set(address, value & ~gev::fire_test_packet);
+    send_test_packet(value & gev::packet_size_mask);
+  }
+}
+
+void GvspCamera::State::update_payload_size() {
+  const ModelRegisters& r = description.registers;
+  const std::uint32_t bytes_per_pixel = registers.get(r.pixel_format) == pfnc_mono8 ? 1 : 2;
+  const auto image = bytes_per_pixel * static_cast<std::uint32_t>(config.width * config.height);
+  registers.set(r.payload_size, image + (registers.get(r.chunk_mode) != 0 ? chunk_bytes : 0));
+}
+
+void GvspCamera::State::on_control_lost() {
+  stop_acquisition();
+  registers.set(gev::stream_port, 0);
+  const std::lock_guard lock(mutex);
+  ++counts.controls_lost;
+}
+
+void GvspCamera::State::stop_acquisition() {
+  registers.unlock_transport();
+  const std::lock_guard lock(mutex);
+  acquiring = false;
+  changed.notify_all();
+}
+
+void GvspCamera::State::begin_correction(unsigned times) {
+  const std::lock_guard lock(mutex);
+  ++counts.corrections;
+  frozen_frames = times * static_cast<unsigned>(config.nuc_freeze_frames);
+}
+
+void GvspCamera::State::send_test_packet(std::uint32_t packet_bytes) {
+  const auto to = destination();
+  if (to.port == 0 || packet_bytes < gvsp_least_packet_bytes || link_is_down()) return;
+  const Bytes zeros(packet_bytes - gvsp_overhead_bytes);
+  GvspPacket packet;
+  packet.head_bytes = 8;
+  packet.data = zeros;
+  const std::lock_guard lock(sending);
+  stream.send({&packet, 1}, to, 0ns);
+}
+
+}  // namespace todbench

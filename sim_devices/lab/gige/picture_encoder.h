@@ -1,0 +1,53 @@
+// What a thermal camera makes of an exposure before it sends it: scale, processing, test pattern, bits and bytes.
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "acquisition/core/radiometric_scale.h"
+#include "sim_devices/lab/gige/big_endian.h"
+
+namespace todbench {
+
+/// Meaning of a count on the wire.
+enum class SignalKind {
+  linear,       ///< kelvin / `kelvin_per_signal`
+  radiometric,  ///< by the Planck-like formula
+  as_exposed,   ///< the exposure's own counts
+};
+
+struct EncoderSettings {
+  SignalKind signal = SignalKind::as_exposed;
+  double kelvin_per_signal = 0.04;
+  unsigned significant_bits = 14;  ///< larger values are cut off
+  unsigned bits_per_pixel = 16;    ///< 16, or 8: the highest eight of the significant bits
+  bool test_ramp = false;          ///< pixel x of a row has the count x, modulo the full scale, instead of the picture
+  bool averages = false;           ///< with the picture before, as noise reduction does
+  bool big_endian = false;
+  bool operator==(const EncoderSettings&) const = default;
+};
+
+/// Turns exposures into bytes. One thread at a time.
+class PictureEncoder {
+ public:
+  /// `kelvin_per_count`, `offset_k`: of the exposures.
+  PictureEncoder(double kelvin_per_count, double offset_k, PlanckScale radiometric)
+      : kelvin_per_count_(kelvin_per_count), offset_k_(offset_k), radiometric_(radiometric) {}
+
+  [[nodiscard]] Bytes encode(const cv::Mat1w& counts, const EncoderSettings& settings);
+
+ private:
+  void update_table(const EncoderSettings& settings);
+
+  double kelvin_per_count_, offset_k_;
+  PlanckScale radiometric_;
+  EncoderSettings table_settings_;
+  std::vector<std::uint16_t> table_;  ///< signal of every count; empty: not yet made
+  cv::Mat1w previous_;
+};
+
+/// Exchanges the bytes of every pair.
+void swap_bytes(Bytes& data);
+
+}  // namespace todbench

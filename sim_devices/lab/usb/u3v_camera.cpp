@@ -1,0 +1,370 @@
+#include "sim_devices/lab/usb/u3v_camera.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <cstring>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "sim_devices/lab/usb/u3v_protocol.h"
+
+namespace todbench {
+
+/// Generated from u3v_camera.xml.
+std::string_view u3v_camera_xml();
+
+namespace {
+
+using namespace u3v;
+using Clock = std::chrono::steady_clock;
+
+/// Answers that nobody fetched: a client that only asks does not make the camera grow.
+constexpr std::size_t most_answers = 8;
+
+class Camera final : public U3vCamera {
+ public:
+  Camera(U3vCameraConfig config, Exposure exposure);
+
+  [[nodiscard]] const UsbDescriptors& descriptors() const override { return descriptors_; }
+  /// Halts of the stream endpoint are cleared after a stop: what was being sent is dropped.
+  [[nodiscard]] std::optional<UsbBytes> control(const UsbSetup&, std::span<const std::uint8_t>) override { return {}; }
+  [[nodiscard]] bool bulk_out(std::uint8_t endpoint, std::span<const std::uint8_t> data) override;
+  [[nodiscard]] std::optional<UsbBytes> bulk_in(std::uint8_t endpoint, std::size_t length,
+                                                std::stop_token stop) override;
+
+  [[nodiscard]] std::uint64_t exposures() const override {
+    const std::lock_guard lock(mutex_);
+    return exposures_;
+  }
+  [[nodiscard]] std::uint64_t nonuniformity_corrections() const override {
+    const std::lock_guard lock(mutex_);
+    return corrections_;
+  }
+  void lose_exposures(unsigned count) override {
+    const std::lock_guard lock(mutex_);
+    to_lose_ += count;
+  }
+  void truncate_next_frame(std::size_t bytes) override {
+    const std::lock_guard lock(mutex_);
+    truncated_ = bytes;
+  }
+
+ private:
+  enum class Phase { idle, leader, payload, trailer };
+
+  void fill_bootstrap();
+  [[nodiscard]] UsbBytes answer(std::span<const std::uint8_t> command);
+  [[nodiscard]] std::uint16_t read(std::uint64_t address, std::size_t size, UsbBytes& into);
+  [[nodiscard]] std::uint16_t write(std::uint64_t address, std::span<const std::uint8_t> data);
+  [[nodiscard]] bool streaming() {
+    return (bootstrap_.u32(sirm + si_control) & 1U) != 0 && camera_.u32(camera_registers + reg_acquisition) != 0;
+  }
+  [[nodiscard]] std::chrono::microseconds period() {
+    return std::chrono::microseconds(std::clamp(camera_.u32(camera_registers + reg_period_us), 1000U, 10'000'000U));
+  }
+  [[nodiscard]] std::optional<UsbBytes> stream(std::unique_lock<std::mutex>& lock, std::size_t length,
+                                               const std::stop_token& stop);
+  [[nodiscard]] bool begin_frame(std::unique_lock<std::mutex>& lock, const std::stop_token& stop);
+  [[nodiscard]] cv::Mat1w next_picture(std::unique_lock<std::mutex>& lock, std::uint64_t index);
+  [[nodiscard]] UsbBytes leader();
+  [[nodiscard]] UsbBytes trailer() const;
+
+  const U3vCameraConfig config_;
+  const Exposure exposure_;
+  const UsbDescriptors descriptors_;
+  UsbBytes description_;
+
+  mutable std::mutex mutex_;  ///< guards what follows
+  std::condition_variable_any changed_;
+  Registers bootstrap_{0, bootstrap_size};
+  Registers camera_{camera_registers, camera_size};
+  std::deque<UsbBytes> answers_;
+  Phase phase_ = Phase::idle;
+  std::uint64_t stream_number_ = 0;  ///< counts stops, so that a frame of an ended stream is dropped
+  std::uint64_t exposures_ = 0, corrections_ = 0, clock_ns_ = 0, block_id_ = 0;
+  unsigned to_lose_ = 0;
+  int frozen_frames_ = 0;
+  std::optional<std::size_t> truncated_;
+  cv::Mat1w last_sent_;
+  UsbBytes payload_;
+  std::size_t sent_ = 0;
+  Clock::time_point next_exposure_ = Clock::now();
+};
+
+Camera::Camera(U3vCameraConfig config, Exposure exposure)
+    : config_(std::move(config)), exposure_(std::move(exposure)), descriptors_(descriptors_of(config_)) {
+  const std::string_view xml = u3v_camera_xml();
+  description_ =
+      config_.description == U3vDescription::zipped ? zipped("camera.xml", xml) : UsbBytes(xml.begin(), xml.end());
+  fill_bootstrap();
+}
+
+void Camera::fill_bootstrap() {
+  bootstrap_.set(0, std::uint32_t{0x00010000});
+  bootstrap_.set(abrm_vendor, config_.vendor);
+  bootstrap_.set(abrm_model, config_.model);
+  bootstrap_.set(abrm_family, std::string("thermal"));
+  bootstrap_.set(abrm_version, config_.firmware);
+  bootstrap_.set(abrm_serial, config_.serial);
+  bootstrap_.set(abrm_capability, std::uint64_t{0});
+  bootstrap_.set(abrm_response_time, std::uint32_t{500});
+  bootstrap_.set(abrm_manifest, manifest);
+  bootstrap_.set(abrm_sbrm, sbrm);
+  bootstrap_.set(abrm_tick, std::uint32_t{1});
+  bootstrap_.set(sbrm, std::uint32_t{0x00010000});
+  bootstrap_.set(sbrm + 0x14, static_cast<std::uint32_t>(longest_transfer));
+  bootstrap_.set(sbrm + 0x18, static_cast<std::uint32_t>(longest_transfer));
+  bootstrap_.set(sbrm + 0x1C, std::uint32_t{1});
+  bootstrap_.set(sbrm + 0x20, sirm);
+  bootstrap_.set(sbrm + 0x28, std::uint32_t{0x30});
+  bootstrap_.set(sbrm + 0x2C, eirm);
+  bootstrap_.set(sbrm + 0x34, std::uint32_t{0x0C});
+  bootstrap_.set(sbrm + 0x40, std::uint32_t{0x04});  // high speed
+  bootstrap_.set(sirm + si_info, std::uint32_t{0});  // payload transfers of any length
+  bootstrap_.set(sirm + si_payload, std::uint64_t{2} * static_cast<std::uint64_t>(config_.width * config_.height));
+  bootstrap_.set(sirm + si_leader, static_cast<std::uint32_t>(leader_size));
+  bootstrap_.set(sirm + si_trailer, static_cast<std::uint32_t>(trailer_size));
+  bootstrap_.set(manifest, std::uint64_t{1});
+  bootstrap_.set(manifest + 8, std::uint32_t{0x01000000});  // version of the file
+  // Schema 1.1; bit 10: zipped.
+  const bool zip = config_.description == U3vDescription::zipped;
+  bootstrap_.set(manifest + 12, std::uint32_t{0x01010000} | (zip ? std::uint32_t{1} << 10U : 0U));
+  bootstrap_.set(manifest + 16, description_address);
+  bootstrap_.set(manifest + 24, static_cast<std::uint64_t>(description_.size()));
+  const auto own = [&](std::uint64_t offset, auto value) { camera_.set(camera_registers + offset, value); };
+  own(reg_width, static_cast<std::uint32_t>(config_.width));
+  own(reg_height, static_cast<std::uint32_t>(config_.height));
+  own(reg_pixel_format, config_.significant_bits <= 14 ? mono14 : mono16);
+  own(reg_largest_count, (std::uint32_t{1} << static_cast<unsigned>(config_.significant_bits)) - 1);
+  own(reg_period_us, static_cast<std::uint32_t>(std::lround(1e6 / config_.frame_rate_hz)));
+  own(reg_ir_format, format_10mk);
+  own(reg_scale, std::bit_cast<std::uint64_t>(config_.kelvin_per_count));
+  own(reg_offset, std::bit_cast<std::uint64_t>(config_.offset_k));
+}
+
+// --- control ----------------------------------------------------------------------------------------------------
+
+bool Camera::bulk_out(std::uint8_t endpoint, std::span<const std::uint8_t> data) {
+  if (endpoint != control_out) return false;
+  const std::lock_guard lock(mutex_);
+  if (answers_.size() >= most_answers) answers_.pop_front();
+  if (auto reply = answer(data); !reply.empty()) answers_.push_back(std::move(reply));
+  changed_.notify_all();
+  return true;
+}
+
+/// Empty for what is no command.
+UsbBytes Camera::answer(std::span<const std::uint8_t> command) {
+  if (command.size() < header_size || get<std::uint32_t>(command, 0) != command_magic) return {};
+  const auto code = get<std::uint16_t>(command, 6);
+  const std::size_t length = get<std::uint16_t>(command, 8);
+  const auto content = command.subspan(header_size);
+  UsbBytes data;
+  std::uint16_t status = status_not_implemented;
+  if (length != content.size()) {
+    status = status_invalid_parameter;
+  } else if (code == read_memory) {
+    status = length == 12 ? read(get<std::uint64_t>(content, 0), get<std::uint16_t>(content, 10), data)
+                          : status_invalid_parameter;
+  } else if (code == write_memory) {
+    status = length > 8 ? write(get<std::uint64_t>(content, 0), content.subspan(8)) : status_invalid_parameter;
+    put(data, std::uint16_t{0});
+    put(data, static_cast<std::uint16_t>(status == status_ok ? length - 8 : 0));
+  }
+  UsbBytes reply;
+  put(reply, command_magic);
+  put(reply, status);
+  put(reply, static_cast<std::uint16_t>(code + 1));
+  put(reply, static_cast<std::uint16_t>(data.size()));
+  put(reply, get<std::uint16_t>(command, 10));
+  reply.insert(reply.end(), data.begin(), data.end());
+  return reply;
+}
+
+std::uint16_t Camera::read(std::uint64_t address, std::size_t size, UsbBytes& into) {
+  if (size > longest_transfer - header_size) return status_invalid_parameter;
+  if (bootstrap_.contains(address, size)) {
+    const auto found = bootstrap_.at(address, size);
+    into.assign(found.begin(), found.end());
+  } else if (camera_.contains(address, size)) {
+    const auto found = camera_.at(address, size);
+    into.assign(found.begin(), found.end());
+  } else if (address >= description_address && address - description_address < description_.size()) {
+    // A client may round the length up.
+    const auto from = description_.begin() + static_cast<std::ptrdiff_t>(address - description_address);
+    into.assign(from, from + std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(size), description_.end() - from));
+    into.resize(size);
+  } else {
+    return status_invalid_address;
+  }
+  return status_ok;
+}
+
+std::uint16_t Camera::write(std::uint64_t address, std::span<const std::uint8_t> data) {
+  const bool stream_register = address >= sirm && address + data.size() <= sirm + 0x30;
+  const bool own = camera_.contains(address, data.size()) && address >= camera_registers + reg_pixel_format &&
+                   address + data.size() <= camera_registers + reg_scale;
+  if (!stream_register && !own) {
+    return bootstrap_.contains(address, data.size()) || camera_.contains(address, data.size()) ? status_write_protected
+                                                                                               : status_invalid_address;
+  }
+  const bool was_streaming = streaming();
+  auto registers = stream_register ? bootstrap_.at(address, data.size()) : camera_.at(address, data.size());
+  std::copy(data.begin(), data.end(), registers.begin());
+  if (camera_.u32(camera_registers + reg_nuc) != 0) {
+    camera_.set(camera_registers + reg_nuc, std::uint32_t{0});
+    ++corrections_;
+    frozen_frames_ = config_.nuc_freeze_frames;
+  }
+  if (was_streaming != streaming()) {
+    // A frame that is being sent is sent to its end, unless the stream itself was switched off.
+    ++stream_number_;
+    if (stream_register) phase_ = Phase::idle;
+    if (streaming()) block_id_ = 0;
+    changed_.notify_all();
+  }
+  return status_ok;
+}
+
+// --- stream -----------------------------------------------------------------------------------------------------
+
+cv::Mat1w Camera::next_picture(std::unique_lock<std::mutex>& lock, std::uint64_t index) {
+  if (frozen_frames_ > 0 && !last_sent_.empty()) {
+    --frozen_frames_;
+    return last_sent_;
+  }
+  const bool coarse = camera_.u32(camera_registers + reg_ir_format) == format_100mk;
+  lock.unlock();
+  cv::Mat1w counts = exposure_(index);
+  CV_Assert(counts.rows == config_.height && counts.cols == config_.width);
+  if (coarse) {
+    counts = counts.clone();
+    for (auto& count : counts) count = static_cast<std::uint16_t>((count + 5) / 10);
+  }
+  lock.lock();
+  last_sent_ = counts;
+  return counts;
+}
+
+/// Waits for the time of the next exposure and exposes. False: stopped.
+bool Camera::begin_frame(std::unique_lock<std::mutex>& lock, const std::stop_token& stop) {
+  for (;;) {
+    if (!changed_.wait(lock, stop, [this] { return streaming(); })) return false;
+    const auto number = stream_number_;
+    changed_.wait_until(lock, stop, next_exposure_, [&] { return stream_number_ != number; });
+    if (stop.stop_requested()) return false;
+    if (stream_number_ != number) continue;
+    next_exposure_ = std::max(next_exposure_, Clock::now() - std::chrono::seconds(1)) + period();
+    for (; to_lose_ > 0; --to_lose_) {
+      ++exposures_;
+      ++block_id_;
+      clock_ns_ += static_cast<std::uint64_t>(std::chrono::nanoseconds(period()).count());
+    }
+    const std::uint64_t index = exposures_++;
+    clock_ns_ += static_cast<std::uint64_t>(std::chrono::nanoseconds(period()).count());
+    const cv::Mat1w picture = next_picture(lock, index);
+    if (stream_number_ != number) continue;  // stopped meanwhile: the exposure is lost
+    payload_.clear();
+    payload_.reserve(2 * picture.total());
+    for (const auto count : picture) put(payload_, static_cast<std::uint16_t>(count));
+    sent_ = 0;
+    phase_ = Phase::leader;
+    return true;
+  }
+}
+
+UsbBytes Camera::leader() {
+  UsbBytes bytes;
+  put(bytes, leader_magic);
+  put(bytes, std::uint16_t{0});
+  put(bytes, static_cast<std::uint16_t>(leader_size));
+  put(bytes, block_id_);
+  put(bytes, std::uint16_t{0});
+  put(bytes, std::uint16_t{1});  // image
+  put(bytes, clock_ns_);
+  put(bytes, camera_.u32(camera_registers + reg_pixel_format));
+  put(bytes, static_cast<std::uint32_t>(config_.width));
+  put(bytes, static_cast<std::uint32_t>(config_.height));
+  put(bytes, std::uint32_t{0});
+  put(bytes, std::uint32_t{0});
+  put(bytes, std::uint32_t{0});
+  return bytes;
+}
+
+UsbBytes Camera::trailer() const {
+  UsbBytes bytes;
+  put(bytes, trailer_magic);
+  put(bytes, std::uint16_t{0});
+  put(bytes, static_cast<std::uint16_t>(trailer_size));
+  put(bytes, block_id_);
+  put(bytes, std::uint32_t{0});  // status: success
+  put(bytes, static_cast<std::uint64_t>(payload_.size()));
+  put(bytes, static_cast<std::uint32_t>(config_.height));
+  return bytes;
+}
+
+std::optional<UsbBytes> Camera::stream(std::unique_lock<std::mutex>& lock, std::size_t length,
+                                       const std::stop_token& stop) {
+  if (phase_ == Phase::idle && !begin_frame(lock, stop)) return std::nullopt;
+  UsbBytes bytes;
+  switch (phase_) {
+    case Phase::leader:
+      bytes = leader();
+      phase_ = Phase::payload;
+      break;
+    case Phase::payload: {
+      const std::size_t wanted = std::min(length, payload_.size() - sent_);
+      std::size_t size = wanted;
+      // A frame that lost its end: transfers come short, down to none.
+      if (truncated_) size = std::min(size, *truncated_ - std::min(*truncated_, sent_));
+      const auto from = payload_.begin() + static_cast<std::ptrdiff_t>(sent_);
+      bytes.assign(from, from + static_cast<std::ptrdiff_t>(size));
+      sent_ += wanted;
+      if (sent_ == payload_.size()) phase_ = Phase::trailer;
+      break;
+    }
+    default:
+      bytes = trailer();
+      truncated_.reset();
+      ++block_id_;
+      phase_ = Phase::idle;
+  }
+  return bytes;
+}
+
+std::optional<UsbBytes> Camera::bulk_in(std::uint8_t endpoint, std::size_t length, std::stop_token stop) {
+  std::unique_lock lock(mutex_);
+  if (endpoint == stream_in) return stream(lock, length, stop);
+  if (endpoint != control_in) return std::nullopt;
+  if (!changed_.wait(lock, stop, [this] { return !answers_.empty(); })) return std::nullopt;
+  UsbBytes reply = std::move(answers_.front());
+  answers_.pop_front();
+  if (reply.size() > length) reply.resize(length);
+  return reply;
+}
+
+}  // namespace
+
+Result<std::shared_ptr<U3vCamera>> U3vCamera::create(U3vCameraConfig config, Exposure exposure) {
+  const auto bad = [](const std::string& what) {
+    return fail(ErrorCode::invalid_input, "emulated USB3 Vision camera: " + what);
+  };
+  if (config.width < 1 || config.height < 1 || config.width > 4096 || config.height > 4096) {
+    return bad("width and height must be 1 ... 4096");
+  }
+  if (config.significant_bits < 8 || config.significant_bits > 16) return bad("significant_bits must be 8 ... 16");
+  if (!(config.frame_rate_hz >= 0.1 && config.frame_rate_hz <= 1000)) return bad("frame rate is 0.1 ... 1000 Hz");
+  if (!(config.kelvin_per_count > 0) || !std::isfinite(config.offset_k)) return bad("kelvin_per_count is positive");
+  if (config.serial.empty() || config.vendor.empty()) return bad("vendor and serial are needed");
+  if (config.nuc_freeze_frames < 0) return bad("a correction cannot freeze less than 0 frames");
+  if (!exposure) return bad("there is nothing to expose");
+  return std::make_shared<Camera>(std::move(config), std::move(exposure));
+}
+
+}  // namespace todbench

@@ -1,0 +1,14 @@
+// How a scene moves before a camera.
+#pragma once
+
+namespace todbench {
+
+/// Angular velocity of the target in the picture, x right, y down. The camera's operator tracks it: the picture shows
+/// it where it is, smeared.
+struct SceneMotion {
+  double x_mrad_s = 0, y_mrad_s = 0;
+  bool operator==(const SceneMotion&) const = default;
+  [[nodiscard]] bool moving() const { return x_mrad_s != 0 || y_mrad_s != 0; }
+};
+
+}  // namespace todbench

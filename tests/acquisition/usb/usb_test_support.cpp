@@ -1,0 +1,58 @@
+#include "tests/acquisition/usb/usb_test_support.h"
+
+#include <gtest/gtest.h>
+
+#include "acquisition/usb/usb_backend.h"
+
+namespace todbench::testing_support {
+
+std::shared_ptr<MockSystem> shared_system() {
+  static const std::shared_ptr<MockSystem> system = MockSystem::create();
+  return system;
+}
+
+cv::Mat1w seek_picture(SeekModel model, std::uint64_t index) {
+  const cv::Size size = geometry(model).picture.size();
+  cv::Mat1w picture(size);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const auto value =
+          257U * static_cast<unsigned>(index) + 7U * static_cast<unsigned>(x) + 1031U * static_cast<unsigned>(y);
+      picture(y, x) = static_cast<ushort>(1 + value % 16381);
+    }
+  }
+  return picture;
+}
+
+SeekBench plug_seek(const SeekCameraConfig& config, SeekCamera::Exposure exposure) {
+  SeekBench bench{.system = shared_system(), .camera = nullptr, .port = nullptr};
+  if (!exposure) exposure = [model = config.model](std::uint64_t index) { return seek_picture(model, index); };
+  auto camera = SeekCamera::create(config, std::move(exposure));
+  if (!camera) {
+    ADD_FAILURE() << camera.error().message;
+    return bench;
+  }
+  bench.camera = *camera;
+  auto port = PluggedUsbDevice::plug(bench.system, bench.camera);
+  if (!port) {
+    ADD_FAILURE() << port.error().message;
+    return bench;
+  }
+  bench.port = std::move(*port);
+  return bench;
+}
+
+std::string seek_id(const SeekCameraConfig& config) {
+  return "usb:SEEK-" + std::string(to_string(config.model)) + "-" + config.serial;
+}
+
+std::unique_ptr<FrameSource> open_seek(const SeekCameraConfig& config) {
+  auto source = usb_backend()->open(seek_id(config));
+  if (!source) {
+    ADD_FAILURE() << source.error().message;
+    return nullptr;
+  }
+  return std::move(*source);
+}
+
+}  // namespace todbench::testing_support

@@ -1,0 +1,16 @@
+// main() of test programs with emulated video cameras: they run under umockdev's preload library.
+#include <gmock/gmock.h>
+
+#include <cstdio>
+
+#include "sim_devices/lab/device_nodes/mock_system.h"
+
+int main(int argc, char** argv) {
+  todbench::MockSystem::enter();
+  if (!todbench::MockSystem::is_preloaded()) {
+    std::fprintf(stderr, "umockdev's preload library cannot be loaded\n");
+    return 1;
+  }
+  testing::InitGoogleMock(&argc, argv);
+  return RUN_ALL_TESTS();
+}

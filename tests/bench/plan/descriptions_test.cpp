@@ -1,0 +1,174 @@
+#include "bench/plan/descriptions.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/support/temporary_folder.h"
+#include "tests/support/source_file.h"
+
+namespace todbench {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
+
+constexpr const char* small_plate = R"(name = "small"
+width_mm = 100
+height_mm = 80
+[[row]]
+size_mm = 10
+y_mm = -20
+x_mm = [-25, 25]
+apex = ["up", "left"]
+[[row]]
+size_mm = 5
+y_mm = 20
+x_mm = [0]
+apex = ["down"]
+names = ["the small one"]
+)";
+
+TEST(Resources, TheShippedDescriptionsAreCompiledIn) {
+  EXPECT_THAT(resource_names(ResourceKind::sensor), IsSupersetOf({"sc2000"}));
+  EXPECT_THAT(resource_names(ResourceKind::observer), IsSupersetOf({"hvs-1", "human-like-1"}));
+  EXPECT_THAT(resource_names(ResourceKind::plate), IsSupersetOf({"tcat-a", "tcat-b"}));
+  EXPECT_THAT(resource_names(ResourceKind::plan), IsSupersetOf({"demo"}));
+}
+
+TEST(Resources, ACompiledInFileIsTheFileByteForByte) {
+  const Result<Resource> resource = find_resource(ResourceKind::sensor, "sc2000");
+
+  ASSERT_TRUE(resource) << resource.error().message;
+  EXPECT_EQ(resource->text, testing::content_of(source_file("sim_devices/sensors/sc2000.toml")));
+}
+
+TEST(Resources, AnUnknownNameIsAnsweredWithTheNearestAndTheKnownOnes) {
+  const Result<Resource> resource = find_resource(ResourceKind::observer, "hsv-1");
+
+  ASSERT_FALSE(resource);
+  EXPECT_EQ(resource.error().code, ErrorCode::invalid_input);
+  EXPECT_THAT(resource.error().message, HasSubstr("unknown observer 'hsv-1', did you mean 'hvs-1'?"));
+  EXPECT_THAT(resource.error().message, HasSubstr("'human-like-1', 'hvs-1'"));
+}
+
+TEST(Resources, EveryShippedDescriptionReadsAndIsCalledAsItsFile) {
+  for (const std::string& name : resource_names(ResourceKind::sensor)) {
+    const auto sensor = load_sensor(name);
+    ASSERT_TRUE(sensor) << sensor.error().message;
+    EXPECT_EQ(sensor->name, name);
+  }
+  for (const std::string& name : resource_names(ResourceKind::observer)) {
+    const auto observer = load_observer(name);
+    ASSERT_TRUE(observer) << observer.error().message;
+    EXPECT_EQ(observer->name, name);
+  }
+  for (const std::string& name : resource_names(ResourceKind::plate)) {
+    const auto plate = load_plate(name);
+    ASSERT_TRUE(plate) << plate.error().message;
+    EXPECT_EQ(plate->name, name);
+  }
+}
+
+TEST(Sensor, Sc2000HasTheValuesOfTheEoVistaTable) {
+  const Result<SensorSpec> sensor = load_sensor("sc2000");
+
+  ASSERT_TRUE(sensor) << sensor.error().message;
+  EXPECT_EQ(sensor->width, 320);
+  EXPECT_EQ(sensor->height, 240);
+  EXPECT_EQ(sensor->pitch_um, 47.5);
+  EXPECT_EQ(sensor->detector_um, 42.5);
+  EXPECT_EQ(sensor->focal_length_mm, 36.3);
+  EXPECT_EQ(sensor->f_number, 1);
+  EXPECT_EQ(sensor->wavelength_min_um, 7.5);
+  EXPECT_EQ(sensor->wavelength_max_um, 13.0);
+  EXPECT_EQ(sensor->optics_transmission, 0.8);
+  EXPECT_EQ(sensor->frame_rate_hz, 50);
+  EXPECT_EQ(sensor->netd_k, 0.07);
+  EXPECT_NEAR(sensor->ifov_mrad(), 1.3085, 5e-5);  // the published figure has four decimals
+  EXPECT_EQ(sensor->microscan, 1);
+}
+
+TEST(Sensor, ADetectorLargerThanThePitchIsRefusedWithTheFile) {
+  std::string text(find_resource(ResourceKind::sensor, "sc2000")->text);
+  text.replace(text.find("42.5"), 4, "48.0");
+
+  const Result<SensorSpec> sensor = parse_sensor({"mine.toml", text});
+
+  ASSERT_FALSE(sensor);
+  EXPECT_EQ(sensor.error().code, ErrorCode::invalid_input);
+  EXPECT_THAT(sensor.error().message, HasSubstr("mine.toml: "));
+  EXPECT_THAT(sensor.error().message, HasSubstr("detector_um"));
+}
+
+TEST(Sensor, AMissingOrMisspeltParameterIsRefusedWithItsLine) {
+  const std::string text(find_resource(ResourceKind::sensor, "sc2000")->text);
+  std::string without = text;
+  without.erase(without.find("netd_k"), without.find('\n', without.find("netd_k")) - without.find("netd_k"));
+  std::string misspelt = text;
+  misspelt.replace(misspelt.find("netd_k"), 6, "ntd_k ");
+
+  EXPECT_THAT(parse_sensor({"s.toml", without}).error().message, HasSubstr("s.toml:1: missing key 'netd_k'"));
+  EXPECT_THAT(parse_sensor({"s.toml", misspelt}).error().message,
+              HasSubstr("unknown key 'ntd_k', did you mean 'netd_k'?"));
+}
+
+TEST(ObserverFile, Hvs1IsTheDefaultOfTheStruct) {
+  EXPECT_EQ(load_observer("hvs-1").value(), TemplateObserverSpec{});
+}
+
+TEST(ObserverFile, HumanLike1DiffersInBlurInternalNoiseAndSensorNoiseOnly) {
+  TemplateObserverSpec expected;
+  expected.name = "human-like-1";
+  expected.blur_sigma_samples = 0.5;
+  expected.internal_noise = 0.025;
+  expected.sensor_noise_factor = 1.75;
+
+  EXPECT_EQ(load_observer("human-like-1").value(), expected);
+}
+
+TEST(PlateFile, RowsBecomeTrianglesWithPlacesApexesAndNames) {
+  const Result<TargetPlate> plate = parse_plate({"small.toml", small_plate});
+
+  ASSERT_TRUE(plate) << plate.error().message;
+  EXPECT_EQ(plate->name, "small");
+  EXPECT_EQ(plate->width_mm, 100);
+  EXPECT_EQ(plate->height_mm, 80);
+  ASSERT_EQ(plate->triangles.size(), 3u);
+  EXPECT_EQ(plate->triangles[1].name, "row 1, triangle 2");
+  EXPECT_EQ(plate->triangles[1].position_mm, cv::Point2d(25, -20));
+  EXPECT_EQ(plate->triangles[1].size_mm, 10);
+  EXPECT_EQ(plate->triangles[1].apex, Apex::left);
+  EXPECT_EQ(plate->triangles[2].name, "the small one");
+  EXPECT_EQ(plate->triangles[2].apex, Apex::down);
+}
+
+TEST(PlateFile, MistakesAreNamedWithTheirLine) {
+  const auto with = [](std::string_view old, std::string_view replacement) {
+    std::string text = small_plate;
+    text.replace(text.find(old), old.size(), replacement);
+    const auto plate = parse_plate({"p.toml", text});
+    return plate ? std::string() : plate.error().message;
+  };
+
+  EXPECT_EQ(with("[\"up\", \"left\"]", "[\"up\", \"lfet\"]"),
+            "p.toml:8: key 'apex' in [row]: expected one of 'up', 'right', 'down', 'left', found \"lfet\", did you "
+            "mean 'left'?");
+  EXPECT_EQ(with("[\"up\", \"left\"]", "[\"up\"]"),
+            "p.toml:8: key 'apex' in [row]: expected as many as in x_mm, 2, found 1");
+  EXPECT_EQ(with("size_mm = 5", "size_mm = 0"),
+            "p.toml:10: key 'size_mm' in [row]: expected a number above 0, found 0");
+  EXPECT_THAT(with("x_mm = [-25, 25]", "x_mm = [-25, 47]"),
+              HasSubstr("p.toml: "));  // base 4.4 mm right of the centroid: leaves the plate
+}
+
+TEST(PlateFile, IsFoundByItsPath) {
+  const testing::TemporaryFolder folder;
+  const std::filesystem::path file = folder.write("small.toml", small_plate);
+
+  EXPECT_EQ(load_plate(file.string()).value().name, "small");
+  EXPECT_THAT(load_plate((folder.path() / "other.toml").string()).error().message,
+              HasSubstr("other.toml: no such file"));
+}
+
+}  // namespace
+}  // namespace todbench

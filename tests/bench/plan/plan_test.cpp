@@ -1,0 +1,279 @@
+#include "bench/plan/plan.h"
+
+#include <gmock/gmock.h>
+
+#include "bench/plan/plan_options.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/source_file.h"
+
+namespace todbench {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+Result<Plan> parse(const std::string& text) {
+  return parse_plan({"plan.toml", text}, "");
+}
+
+/// A plan in which nothing has its default.
+Plan unusual_plan() {
+  Plan plan;
+  plan.name = "acceptance \"A\"";
+  plan.description = "two\nlines, a \\ and a tab\t";
+  plan.operator_name = "Zoë";
+  plan.place = "hall 3";
+  plan.unit = "unit 17";
+  plan.notes = "\x01";
+  plan.seed = 9223372036854775807u;
+  plan.camera = {"gige:FLIR-48000123", 1.0 / 3, 120, 1.5, {{"IRFormat", "TemperatureLinear10mK"}, {"Odd Key.x", "1"}}};
+  plan.target.kind = TargetKind::scpi;
+  plan.target.black_body = "10.0.0.7:5025";
+  plan.target.stage = "[::1]:5026";
+  plan.target.distance_m = 2.0625;
+  plan.target.plates = {"tcat-b"};
+  plan.target.mountings = {Mounting::rotated_180, Mounting::identity};
+  plan.target.delta_t_k = {-5, 1e-3};
+  plan.target.phases = 7;
+  plan.target.settle_timeout_s = 90;
+  plan.target.plate_change_s = 1;
+  plan.target.mounting_change_s = 2;
+  plan.target.contrast_change_s = 3;
+  plan.target.shift_change_s = 0;
+  plan.observer = "human-like-1";
+  plan.simulation.accuracy = "draft";
+  plan.simulation.tolerance_percent = 2.5;
+  plan.simulation.microscan = 2;
+  plan.simulation.phases = 64;
+  plan.simulation.skip = {Effect::quantisation, Effect::aberration};
+  plan.simulation.force = {Effect::detector};
+  plan.schedule = {.kind = ScheduleKind::adaptive, .half_width_percent = 7.5, .max_presentations = 321};
+  plan.fit = {PsychometricForm::acuity, std::nullopt};
+  plan.limits.acuity = {{-5, 0.4}, {1e-3, 0.1}};
+  plan.limits.equivalence_margin_percent = 12.5;
+  plan.measurement = {8, 4, 3.5, 0, 0.25, 0.125, 500, 0.05, 5, 0.5};
+  plan.instruments = {{"black body", "BB-1", "C-77", "2027-02-28"}, {"ruler", "", "", ""}};
+  return plan;
+}
+
+TEST(Plan, WhatIsWrittenReadsBackEqual) {
+  for (const Plan& plan : {Plan{}, unusual_plan()}) {
+    const Result<Plan> back = parse(to_toml(plan));
+
+    ASSERT_TRUE(back) << back.error().message << "\n" << to_toml(plan);
+    EXPECT_EQ(*back, plan) << to_toml(plan);
+    EXPECT_EQ(to_toml(*back), to_toml(plan));
+  }
+}
+
+TEST(Plan, AnEmptyFileIsThePlanOfDefaults) {
+  const Result<Plan> plan = parse("");
+
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_EQ(*plan, Plan{});
+}
+
+TEST(Plan, TheShippedDemonstrationReadsAndShowsTheThreeContrastsOnBothPlates) {
+  const Result<Plan> plan = load_plan("demo");
+
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_THAT(plan->target.delta_t_k, ElementsAre(16.9, 1.93, 0.23));
+  EXPECT_THAT(plan->target.plates, ElementsAre("tcat-a", "tcat-b"));
+  EXPECT_EQ(plan->target.mountings.size(), 4u);
+  EXPECT_EQ(parse(to_toml(*plan)).value(), *plan);
+}
+
+TEST(Plan, TheTwinShowsAsManyPhasesAsTheTargetUnlessToldOtherwise) {
+  EXPECT_EQ(parse("[target]\ndistance_m = 2\nphases = 5\n").value().simulation.phases, 5);
+  EXPECT_EQ(parse("[target]\ndistance_m = 2\nphases = 5\n[simulation]\nphases = 50\n").value().simulation.phases, 50);
+}
+
+struct Mistake {
+  const char* name;
+  const char* toml;
+  const char* message;
+};
+
+void PrintTo(const Mistake& mistake, std::ostream* out) {
+  *out << mistake.name;
+}
+
+class PlanMistake : public ::testing::TestWithParam<Mistake> {};
+
+TEST_P(PlanMistake, IsRefusedInOneLineWithFileLineAndKey) {
+  const Result<Plan> plan = parse(GetParam().toml);
+
+  ASSERT_FALSE(plan);
+  EXPECT_EQ(plan.error().code, ErrorCode::invalid_input);
+  EXPECT_THAT(plan.error().message, HasSubstr(GetParam().message));
+  EXPECT_THAT(plan.error().message, Not(HasSubstr("\n")));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, PlanMistake,
+    ::testing::Values(
+        Mistake{"misspelt_key", "[target]\ndistance_m = 2\nphasse = 3\n",
+                "plan.toml:3: unknown key 'phasse' in [target], did you mean 'phases'?"},
+        Mistake{"no_distance", "\n[target]\nphases = 3\n", "plan.toml:2: missing key 'distance_m' in [target]"},
+        Mistake{"negative_distance", "[target]\ndistance_m = -1\n",
+                "plan.toml:2: key 'distance_m' in [target]: expected a number above 0"},
+        Mistake{"zero_contrast", "[target]\ndistance_m = 2\ndelta_t_k = [1,\n0]\n",
+                "plan.toml:4: key 'delta_t_k' in [target]: a contrast of 0 K"},
+        Mistake{"contrast_twice", "[target]\ndistance_m = 2\ndelta_t_k = [16.9, 16.95]\n",
+                "plan.toml:3: key 'delta_t_k' in [target]: 16.95 K is listed twice"},
+        Mistake{"no_contrast", "[target]\ndistance_m = 2\ndelta_t_k = []\n",
+                "plan.toml:3: key 'delta_t_k' in [target]: expected at least one"},
+        Mistake{"unknown_mounting", "[target]\ndistance_m = 2\nmountings = [\"identiti\"]\n",
+                "did you mean 'identity'?"},
+        Mistake{"mounting_twice", "[target]\ndistance_m = 2\nmountings = [\"identity\", \"identity\"]\n",
+                "plan.toml:3: key 'mountings' in [target]: 'identity' is listed twice"},
+        Mistake{"unknown_plate", "[target]\ndistance_m = 2\nplates = [\"tcat-c\"]\n",
+                "plan.toml:3: key 'plates' in [target]: unknown plate 'tcat-c', did you mean 'tcat-a'?"},
+        Mistake{"plate_twice", "[target]\ndistance_m = 2\nplates = [\"tcat-a\", \"tcat-a\"]\n",
+                "'tcat-a' is listed twice"},
+        Mistake{"missing_plate_file", "[target]\ndistance_m = 2\nplates = [\"./none.toml\"]\n",
+                "none.toml: no such file"},
+        Mistake{"unknown_kind", "[target]\ndistance_m = 2\nkind = \"scipi\"\n", "did you mean 'scpi'?"},
+        Mistake{"scpi_without_address", "[target]\ndistance_m = 2\nkind = \"scpi\"\n",
+                "key 'black_body' in [target]: needed for kind \"scpi\""},
+        Mistake{"address_without_port", "[target]\ndistance_m = 2\nblack_body = \"10.0.0.7\"\n",
+                "plan.toml:3: key 'black_body' in [target]: expected \"HOST:PORT\""},
+        Mistake{"port_out_of_range", "[target]\ndistance_m = 2\nstage = \"host:70000\"\n",
+                "plan.toml:3: key 'stage' in [target]: expected \"HOST:PORT\""},
+        Mistake{"no_phases", "[target]\ndistance_m = 2\nphases = 0\n",
+                "plan.toml:3: key 'phases' in [target]: expected a whole number"},
+        Mistake{"camera_without_ifov", "[camera]\nid = \"gige:A-1\"\n",
+                "plan.toml:1: missing key 'ifov_mrad' in [camera]"},
+        Mistake{"camera_without_scheme", "[camera]\nid = \"A-1\"\nifov_mrad = 1\n",
+                "plan.toml:2: key 'id' in [camera]: expected SCHEME:NAME"},
+        Mistake{"list_as_setting", "[camera.settings]\nA = [1]\n",
+                "plan.toml:2: key 'A' in [camera]: expected a text, a number"},
+        Mistake{"unknown_observer", "[observer]\nname = \"hvs1\"\n",
+                "plan.toml:2: key 'name' in [observer]: unknown observer 'hvs1', did you mean 'hvs-1'?"},
+        Mistake{"unknown_sensor", "[simulation]\nsensor = \"sc200\"\n",
+                "plan.toml:2: key 'sensor' in [simulation]: unknown sensor 'sc200', did you mean 'sc2000'?"},
+        Mistake{"unknown_effect", "[simulation]\nskip = [\"difraction\"]\n", "did you mean 'diffraction'?"},
+        Mistake{"skipped_and_forced", "[simulation]\nskip = [\"detector\"]\nforce = [\"detector\"]\n",
+                "plan.toml:3: key 'force' in [simulation]: 'detector' is also in skip"},
+        Mistake{"unknown_accuracy", "[simulation]\naccuracy = \"good\"\n",
+                "plan.toml:2: key 'accuracy' in [simulation]: expected one of 'draft', 'normal', 'reference'"},
+        Mistake{"no_tolerance", "[simulation]\ntolerance_percent = 0\n", "expected a number above 0 up to 50, found 0"},
+        Mistake{"lapse", "[fit]\nlapse = 0.2\n",
+                "plan.toml:2: key 'lapse' in [fit]: expected a number from 0 to 0.1 or \"free\", found 0.2"},
+        Mistake{"limit_without_contrast", "[[limits.acuity]]\ndelta_t_k = 5\nleast_acuity_per_mrad = 1\n",
+                "plan.toml:2: key 'delta_t_k' in [limits.acuity]: 5 K is not among the contrasts of [target]"},
+        Mistake{"limit_twice",
+                "[[limits.acuity]]\ndelta_t_k = 16.9\nleast_acuity_per_mrad = 1\n[[limits.acuity]]\ndelta_t_k = "
+                "16.9\nleast_acuity_per_mrad = 2\n",
+                "plan.toml:5: key 'delta_t_k' in [limits.acuity]: a second limit at 16.9 K"},
+        Mistake{"share", "[measurement]\nmax_rejected_share = 5\n",
+                "plan.toml:2: key 'max_rejected_share' in [measurement]: expected a number from 0 to 1, found 5"},
+        Mistake{"seed", "seed = -1\n", "plan.toml:1: key 'seed': expected a whole number of 0 or more, found -1"},
+        Mistake{"date", "[[instrument]]\nname = \"x\"\ncalibration_due = \"2027-02-29\"\n",
+                "plan.toml:3: key 'calibration_due' in [instrument]: expected a date"}),
+    [](const auto& row) { return std::string(row.param.name); });
+
+TEST(Plan, FilesNamedInAPlanAreRelativeToThePlan) {
+  const testing::TemporaryFolder folder;
+  folder.write("parts/mine.toml", testing::content_of(source_file("sim_devices/sensors/sc2000.toml")));
+  const std::filesystem::path file = folder.write("plan.toml", "[simulation]\nsensor = \"parts/mine.toml\"\n");
+
+  const Result<Plan> plan = load_plan(file.string());
+
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_EQ(plan->simulation.sensor, (folder.path() / "parts/mine.toml").string());
+  EXPECT_EQ(sensor_of(*plan).value().name, "sc2000");
+}
+
+TEST(Plan, TheMicroscanOfTheSensorHoldsUnlessThePlanSaysOtherwise) {
+  const testing::TemporaryFolder folder;
+  std::string sensor = testing::content_of(source_file("sim_devices/sensors/sc2000.toml"));
+  sensor.replace(sensor.find("microscan = 1"), 13, "microscan = 2");
+  folder.write("scan.toml", sensor);
+  const std::string plan = "[simulation]\nsensor = \"./scan.toml\"\n";
+
+  EXPECT_EQ(load_plan(folder.write("a.toml", plan).string()).value().simulation.microscan, 2);
+  EXPECT_EQ(load_plan(folder.write("b.toml", plan + "microscan = 1\n").string()).value().simulation.microscan, 1);
+}
+
+TEST(Plan, AMissingFileIsOneSentence) {
+  const Result<Plan> plan = load_plan("./there-is-no-such-plan.toml");
+
+  ASSERT_FALSE(plan);
+  EXPECT_EQ(plan.error().message, "./there-is-no-such-plan.toml: no such file");
+}
+
+TEST(Plan, AnInstrumentIsOverdueFromTheDayAfterItsDueDate) {
+  using namespace std::chrono_literals;
+  const Plan plan = unusual_plan();
+
+  EXPECT_TRUE(check_calibration(plan, 2027y / 2 / 28));
+  const Result<void> overdue = check_calibration(plan, 2027y / 3 / 1);
+
+  ASSERT_FALSE(overdue);
+  EXPECT_EQ(overdue.error().code, ErrorCode::calibration);
+  EXPECT_EQ(overdue.error().message, "calibration overdue: black body BB-1 (due 2027-02-28)");
+}
+
+TEST(PlanOptions, ReachThePartsThatUseThem) {
+  const Plan plan = unusual_plan();
+  const std::vector<TargetPlate> plates = plates_of(plan).value();
+
+  const MeasurementOptions measurement = measurement_options(plan, plates, 1.5);
+  const ConstantStimuliOptions measured = stimuli_options(plan, plates, 1.5, Side::measured);
+  const ConstantStimuliOptions simulated = stimuli_options(plan, plates, 1.5, Side::simulated);
+
+  EXPECT_EQ(measurement.distance_m, 2.0625);
+  EXPECT_EQ(measurement.nuc_interval_s, 120);
+  EXPECT_EQ(measurement.frame_timeout, std::chrono::milliseconds(500));
+  EXPECT_EQ(measurement.integrity.max_saturated_share, 0.125);
+  EXPECT_EQ(measurement.registration.max_residual_px, 0.5);
+  EXPECT_EQ(measurement.seed, 9223372036854775807u);
+  EXPECT_THAT(measured.plates, ElementsAre("tcat-b"));
+  EXPECT_DOUBLE_EQ(measured.pixel_mm, 1.5 * 2.0625);
+  EXPECT_EQ(measured.phases, 7);
+  EXPECT_EQ(simulated.phases, 64);
+  EXPECT_THAT(measured.change_cost_s, ElementsAre(1, 2, 3, 0));
+  EXPECT_EQ(fit_options(plan).fixed_lapse, std::nullopt);
+  EXPECT_EQ(comparison_options(plan).margin_percent, 12.5);
+  EXPECT_EQ(accuracy_of(plan).value().acuity_tolerance_percent, 2.5);
+  EXPECT_EQ(sensor_of(plan).value().microscan, 2);
+}
+
+TEST(PlanOptions, TwoPlatesOfOneNameAreRefused) {
+  const testing::TemporaryFolder folder;
+  Plan plan;
+  plan.target.plates = {"tcat-a",
+                        folder.write("copy.toml", testing::content_of(source_file("tod/plate/tcat-a.toml"))).string()};
+
+  const auto plates = plates_of(plan);
+
+  ASSERT_FALSE(plates);
+  EXPECT_THAT(plates.error().message, HasSubstr("a second plate with the name 'tcat-a'"));
+}
+
+TEST(Plan, AsksForConstantStimuliUnlessItsScheduleIsAdaptive) {
+  const auto silent = parse("[target]\ndistance_m = 2\n");
+  const auto adaptive = parse(
+      "[target]\ndistance_m = 2\n[schedule]\nkind = \"adaptive\"\nhalf_width_percent = 5\nmax_presentations = 64\n");
+
+  ASSERT_TRUE(silent) << silent.error().message;
+  ASSERT_TRUE(adaptive) << adaptive.error().message;
+  EXPECT_EQ(silent->schedule.kind, ScheduleKind::constant);
+  EXPECT_EQ(adaptive->schedule.kind, ScheduleKind::adaptive);
+  EXPECT_EQ(adaptive->schedule.half_width_percent, 5);
+  EXPECT_EQ(adaptive->schedule.max_presentations, 64);
+}
+
+TEST(Plan, RefusesAScheduleThatIsUnknownOrCanShowNothing) {
+  for (const char* text : {"kind = \"staircase\"", "half_width_percent = 0", "max_presentations = 0", "trials = 5"}) {
+    const auto plan = parse("[target]\ndistance_m = 2\n[schedule]\n" + std::string(text) + "\n");
+
+    ASSERT_FALSE(plan) << text;
+    EXPECT_EQ(plan.error().code, ErrorCode::invalid_input);
+  }
+}
+
+}  // namespace
+}  // namespace todbench

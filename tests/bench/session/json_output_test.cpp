@@ -1,0 +1,205 @@
+#include "bench/session/json_output.h"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "bench/session/fit_record.h"
+#include "tests/bench/session/trial_values.h"
+#include "tod/psychometric/acuity.h"
+
+namespace todbench {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Comparison full_comparison() {
+  ComparisonPoint point;
+  point.set_delta_t_k = 16.9;
+  point.delta_t_a_k = 16.8;
+  point.delta_t_b_k = 16.9;
+  point.ratio = 1.5;
+  point.ratio_ci95 = {1.25, 1.75};
+  point.ratio_ci90 = {1.3, 1.7};
+  point.p_difference = 0.5;
+  point.p_equivalence = 0.25;
+  point.margin_percent = 10;
+  point.verdict = ComparisonVerdict::different;
+  return {{point}, ComparisonVerdict::different};
+}
+
+TEST(FitJson, HasExactlyThePublishedKeys) {
+  PsychometricFit fit = testing::full_fit(2);
+  fit.slope = 3.5;
+  fit.log_likelihood = -14.25;
+  fit.ci95 = {1.5, 2.5};
+  fit.posterior = Posterior{2.25, 1.75, 2.75, false};
+
+  EXPECT_EQ(
+      to_line(fit_json(fit)),
+      R"({"verdict":"ok","threshold":2.0,"ci95":[1.5,2.5],"slope":3.5,"lapse":0.01,"log_likelihood":-14.25,"deviance":5.5,)"
+      R"("degrees_of_freedom":8,"posterior":{"median":2.25,"ci95":[1.75,2.75],"prior_bound":false}})");
+}
+
+TEST(FitJson, WhatDoesNotExistIsNull) {
+  PsychometricFit fit;
+  fit.verdict = FitVerdict::above_range;
+  fit.ci95.low = 1.5;
+
+  EXPECT_EQ(
+      to_line(fit_json(fit)),
+      R"({"verdict":"above_range","threshold":null,"ci95":[1.5,null],"slope":null,"lapse":0.0,"log_likelihood":null,)"
+      R"("deviance":null,"degrees_of_freedom":0,"posterior":null})");
+}
+
+TEST(CurveJson, HasExactlyThePublishedKeys) {
+  TodPoint point;
+  point.set_delta_t_k = 16.9;
+  point.fit = testing::full_fit(2);
+  point.fit.ci95 = {1.5, 2.5};
+  point.direct_s75_mrad = 2.125;
+  point.direct_s75_se_mrad = 0.25;
+  const TodCurve curve{"hvs-1", "sc2000", {point}};
+  const SensorPlan plan{
+      {{Effect::diffraction, Decision::skip, "said so", -1.5}, {Effect::detector, Decision::simulate, "never", {}}}};
+
+  EXPECT_EQ(
+      to_line(curve_json(curve, plan, {2.5, 100, {{"incomplete", 3}}})),
+      R"({"observer":"hvs-1","sensor":"sc2000","points":[{"delta_t_k":16.9,"s75_mrad":2.0,"s75_ci95_mrad":[1.5,2.5],)"
+      R"("s75_direct_mrad":2.125,"s75_direct_se_mrad":0.25,"acuity_per_mrad":0.5,"trials":640,"verdict":"ok"}],)"
+      R"("plan":[{"name":"diffraction","decision":"skip","reason":"said so","predicted_change_percent":-1.5},)"
+      R"({"name":"detector","decision":"simulate","reason":"never","predicted_change_percent":null}],)"
+      R"("wall_s":2.5,"frames":{"used":100,"rejected":{"incomplete":3}}})");
+}
+
+TEST(CurveJson, AMeasuredCurveHasNoDirectEstimateAndRejectedIsAnObject) {
+  TodPoint point;
+  point.set_delta_t_k = 0.5;
+  const Json json = curve_json({"hvs-1", "camera", {point}}, {}, {});
+
+  EXPECT_TRUE(json["points"][0]["s75_direct_mrad"].is_null());
+  EXPECT_TRUE(json["points"][0]["acuity_per_mrad"].is_null());
+  EXPECT_EQ(to_line(json["frames"]), R"({"used":0,"rejected":{}})");
+  EXPECT_EQ(to_line(json["plan"]), "[]");
+}
+
+TEST(ComparisonJson, HasExactlyThePublishedKeys) {
+  EXPECT_EQ(
+      to_line(comparison_json(full_comparison())),
+      R"({"points":[{"delta_t_k":16.9,"ratio":1.5,"ratio_ci95":[1.25,1.75],"p_difference":0.5,"p_equivalence":0.25,)"
+      R"("margin_percent":10.0,"verdict":"different"}],"verdict":"different"})");
+}
+
+TEST(PlanJson, HasExactlyThePublishedKeys) {
+  const SensorPlan plan{{{Effect::detector, Decision::simulate, "always", std::nullopt}}};
+
+  EXPECT_EQ(
+      to_line(plan_json(plan, {640, 4.5, std::nullopt})),
+      R"({"effects":[{"name":"detector","decision":"simulate","reason":"always","predicted_change_percent":null}],)"
+      R"("trials":640,"predicted_uncertainty_percent":4.5,"predicted_s":null})");
+}
+
+TEST(Json, NeverContainsNanOrInfinityWhateverTheValues) {
+  for (const double bad : {nan, infinity, -infinity}) {
+    PsychometricFit fit = testing::full_fit(bad);
+    fit.slope = fit.lapse = bad;
+    fit.log_likelihood = fit.deviance = fit.se_ln_threshold = bad;
+    fit.variance_inflation = bad;
+    TodPoint point = testing::full_point(bad, bad);
+    point.fit = fit;
+    point.fit.trials = 5;
+    const TodCurve curve{"o", "s", {point}};
+    Comparison comparison = full_comparison();
+    comparison.points[0].ratio = comparison.points[0].p_difference = comparison.points[0].p_equivalence = bad;
+    comparison.points[0].ratio_ci95 = {bad, bad};
+    comparison.points[0].margin_percent = bad;
+    const SensorPlan plan{{{Effect::detector, Decision::simulate, "", bad}}};
+
+    for (const Json& json : {fit_json(fit), curve_json(curve, plan, {bad, 0, {}}), comparison_json(comparison),
+                             plan_json(plan, {1, bad, bad}), curve_record(curve), comparison_record(comparison)}) {
+      const std::string text = to_line(json);
+      EXPECT_THAT(text, Not(HasSubstr("nan")));
+      EXPECT_THAT(text, Not(HasSubstr("inf\"")));
+      EXPECT_THAT(text, Not(HasSubstr("Infinity")));
+      EXPECT_FALSE(Json::parse(text, nullptr, false).is_discarded());
+    }
+  }
+}
+
+TEST(Json, TextThatIsNotUtf8DoesNotThrow) {
+  const TodCurve curve{"\xff\xfe", "s", {}};
+
+  EXPECT_THAT(to_line(curve_json(curve, {}, {})), HasSubstr("\"observer\":\"\xEF\xBF\xBD\xEF\xBF\xBD\""));
+}
+
+TEST(AcuityInterval, TurnsTheSidesRound) {
+  const Interval acuity = acuity_interval({2.0, 4.0});
+  EXPECT_EQ(acuity.low, 0.25);
+  EXPECT_EQ(acuity.high, 0.5);
+
+  const Interval open = acuity_interval({2.0, std::nullopt});
+  EXPECT_EQ(open.low, std::nullopt);
+  EXPECT_EQ(open.high, 0.5);
+  EXPECT_EQ(acuity_interval({0.0, 4.0}).high, std::nullopt);
+}
+
+TEST(CurveRecord, ComesBackWithEveryField) {
+  const TodCurve curve = testing::full_curve();
+
+  const Result<TodCurve> back = curve_from(Json::parse(to_page(curve_record(curve))));
+
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(to_line(curve_record(*back)), to_line(curve_record(curve)));
+  ASSERT_EQ(back->points.size(), 3u);
+  const TodPoint& point = back->points[2];
+  EXPECT_EQ(point.set_delta_t_k, 0.23);
+  EXPECT_EQ(point.fit.threshold, 3.447);
+  EXPECT_EQ(point.fit.ci90.high, 3.447 / 0.96);
+  EXPECT_EQ(point.fit.posterior->median, 3.447 * 1.001);
+  EXPECT_EQ(point.fit.variance_inflation, 1.25);
+  EXPECT_EQ(point.free_lapse_fit->threshold, 3.447 * 1.01);
+  EXPECT_TRUE(point.lapse_warning);
+  EXPECT_EQ(point.direct_s75_se_mrad, 0.004);
+  ASSERT_EQ(point.levels.size(), 2u);
+  EXPECT_EQ(point.levels[0].cluster, 3);
+  EXPECT_EQ(point.levels[0].correct, 10);
+}
+
+TEST(CurveRecord, AMissingKeyIsNamedWithItsPlace) {
+  Json json = curve_record(testing::full_curve());
+  json["points"][1]["fit"].erase("slope");
+
+  const Result<TodCurve> back = curve_from(json);
+
+  ASSERT_FALSE(back);
+  EXPECT_EQ(back.error().code, ErrorCode::invalid_input);
+  EXPECT_EQ(back.error().message, "missing key 'points[1].fit.slope'");
+}
+
+TEST(CurveRecord, AnotherTypeIsNamedWithItsPlace) {
+  Json json = curve_record(testing::full_curve());
+  json["points"][0]["fit"]["verdict"] = 3;
+
+  EXPECT_EQ(curve_from(json).error().message, "'points[0].fit.verdict': expected a text");
+  EXPECT_FALSE(curve_from(Json::array()));
+  EXPECT_FALSE(curve_from(Json(nullptr)));
+}
+
+TEST(ComparisonRecord, ComesBackWithEveryField) {
+  const Comparison comparison = full_comparison();
+
+  const Result<Comparison> back = comparison_from(comparison_record(comparison));
+
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(to_line(comparison_record(*back)), to_line(comparison_record(comparison)));
+  EXPECT_EQ(back->points.at(0).ratio_ci90.low, 1.3);
+  EXPECT_EQ(back->points.at(0).delta_t_a_k, 16.8);
+  EXPECT_EQ(back->verdict, ComparisonVerdict::different);
+}
+
+}  // namespace
+}  // namespace todbench

@@ -1,0 +1,62 @@
+// Published figures beside ours: gains from acuities, and the page.
+#include "bench/studies/eo_vista_figures.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace todbench {
+namespace {
+
+/// Acuity 0.5 at every contrast for every sensor and observer, times `factor` for one of them.
+std::vector<ReproducedThreshold> thresholds(const std::string& sensor, double factor) {
+  std::vector<ReproducedThreshold> all;
+  for (const char* s : {eo_vista::normal, eo_vista::microscan, eo_vista::still, eo_vista::dsr2, eo_vista::dsr2_exact}) {
+    for (const char* o : {eo_vista::hvs, eo_vista::human}) {
+      for (const double c : eo_vista_contrasts_k) {
+        const double acuity = 0.5 * (s == sensor ? factor : 1);
+        all.push_back({s, o, c, acuity, {acuity * std::exp(-0.03), acuity * std::exp(0.03)}, ""});
+      }
+    }
+  }
+  return all;
+}
+
+TEST(EoVistaFigures, GainsAreRatiosOfAcuitiesWithJoinedErrors) {
+  const auto all = thresholds(eo_vista::microscan, 1.55);
+
+  const auto figures = eo_vista_figures(all, {});
+
+  const auto& gain = figures.front();  // microscan, HVS, 16.9 K
+  EXPECT_NEAR(gain.value.value(), 55, 1e-9);
+  EXPECT_NEAR(gain.ci95.high.value(), 100 * (1.55 * std::exp(0.03 * std::sqrt(2.0)) - 1), 1e-9);
+  EXPECT_EQ(difference_in_words(gain), "0 points");
+  for (const auto& figure : figures) EXPECT_FALSE(figure.remark.empty()) << figure.quantity;
+}
+
+TEST(EoVistaFigures, WhatWasNotFoundIsMissingAndNotMadeUp) {
+  const auto figures = eo_vista_figures({}, {});
+
+  for (const auto& figure : figures) {
+    if (figure.quantity.starts_with("M75")) continue;
+    EXPECT_FALSE(figure.value.has_value()) << figure.quantity;
+    EXPECT_EQ(difference_in_words(figure), "");
+  }
+}
+
+TEST(ReproductionPage, ShowsEveryFigureAndEscapesTexts) {
+  Reproduction reproduction;
+  reproduction.title = "A < B";
+  reproduction.thresholds = thresholds(eo_vista::microscan, 1.5);
+  reproduction.figures = eo_vista_figures(reproduction.thresholds, {});
+
+  const std::string page = render_reproduction(reproduction);
+
+  EXPECT_NE(page.find("A &lt; B"), std::string::npos);
+  EXPECT_EQ(page.find("<script"), std::string::npos);
+  for (const auto& figure : reproduction.figures)
+    EXPECT_NE(page.find(escaped(figure.quantity).text), std::string::npos) << figure.quantity;
+}
+
+}  // namespace
+}  // namespace todbench

@@ -1,0 +1,154 @@
+#include "hvs/shape/polygon_image.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "hvs/shape/gauss_legendre.h"
+#include "tod/plate/test_pattern.h"
+
+namespace todbench {
+namespace {
+
+/// Fourier integral over a triangle by a tensor Gauss rule: an independent second method.
+std::complex<double> by_quadrature(const Polygon& t, double u, double w) {
+  const auto rule = gauss_legendre(40);
+  const double doubled = std::abs((t[1] - t[0]).cross(t[2] - t[0]));
+  std::complex<double> sum = 0;
+  for (const auto& [x, wx] : rule) {
+    for (const auto& [y, wy] : rule) {
+      // Duffy's map of the unit square onto the triangle.
+      const double a = (1 + x) / 2;
+      const double b = (1 + y) / 2 * a;
+      const cv::Point2d p = t[0] + (t[1] - t[0]) * a + (t[2] - t[1]) * b;
+      const double angle = -2 * std::numbers::pi * (u * p.x + w * p.y);
+      sum += wx * wy / 4 * a * doubled * std::complex<double>(std::cos(angle), std::sin(angle));
+    }
+  }
+  return sum;
+}
+
+TEST(PolygonSpectrum, AgreesWithQuadratureOfTheFourierIntegral) {
+  const Polygon shape = triangle(1.7, Apex::right, {0.3, -0.4});
+
+  for (const double u : {0.0, 1e-9, 1e-4, 0.02, 0.37, 1.5}) {
+    for (const double w : {0.0, -1e-7, 0.05, -0.8, 2.1}) {
+      const auto exact = polygon_spectrum(shape, u, w);
+
+      EXPECT_NEAR(std::abs(exact - by_quadrature(shape, u, w)), 0, 2e-14 * area(shape)) << u << " " << w;
+    }
+  }
+}
+
+TEST(PolygonSpectrum, IsFiniteAndContinuousForWaveVectorsPerpendicularToAnEdge) {
+  const Polygon shape = triangle(2.0, Apex::up);
+  // The base is horizontal: waves along y are perpendicular to it, 0/0 in the quotient of the textbook formula.
+  for (const double w : {0.25, 1.0, 4.0}) {
+    const auto at = polygon_spectrum(shape, 0.0, w);
+
+    const auto beside = polygon_spectrum(shape, 1e-9, w);
+
+    EXPECT_NEAR(std::abs(at - beside), 0, 1e-7);
+    EXPECT_NEAR(std::abs(at - by_quadrature(shape, 0, w)), 0, 1e-13);
+  }
+}
+
+TEST(PolygonSpectrum, DoesNotDependOnTheSenseOfRotation) {
+  const Polygon shape = triangle(1.3, Apex::left, {1, 2});
+  const Polygon reversed(shape.rbegin(), shape.rend());
+
+  EXPECT_NEAR(std::abs(polygon_spectrum(shape, 0.3, 0.7) - polygon_spectrum(reversed, 0.3, 0.7)), 0, 1e-15);
+}
+
+TEST(PolygonSpectrum, KeepsItsRelativeAccuracyFromTinyToHugeShapes) {
+  for (const double size : {0.01, 1.0, 500.0}) {
+    const Polygon shape = triangle(size, Apex::down);
+    // Scaling: F of a shape s times as large at frequency u / s is s^2 times F.
+    const Polygon unit = triangle(1, Apex::down);
+    for (const double u : {1e-6, 1e-3, 0.11, 0.9}) {
+      const auto scaled = polygon_spectrum(shape, u / size, 0.4 / size);
+
+      EXPECT_NEAR(std::abs(scaled / (size * size) - polygon_spectrum(unit, u, 0.4)), 0, 1e-14) << size << " " << u;
+    }
+  }
+}
+
+TEST(PolygonSpectrum, TableEqualsTheSingleFrequencyForm) {
+  for (const Apex apex : all_apexes) {
+    const Polygon shape = triangle(1.6, apex, {0.25, -0.125});
+    const FrequencyLattice lattice{.period = 24, .band = 60};
+
+    const auto table = polygon_spectrum(shape, lattice);
+
+    double largest = 0;
+    for (int r = 0; r < table.rows; ++r) {
+      for (int m = 0; m < table.cols; ++m) {
+        const auto exact = polygon_spectrum(shape, m / 24.0, (r - lattice.band) / 24.0);
+        largest = std::max(largest, std::abs(table(r, m) - exact));
+      }
+    }
+    EXPECT_LT(largest, 1e-13 * area(shape)) << to_string(apex);
+  }
+}
+
+/// A Gaussian blur wide enough to be band-limited on the test lattice.
+TransferFunction gaussian(double sigma) {
+  return [sigma](double u, double w) { return std::exp(-2 * std::pow(std::numbers::pi * sigma, 2) * (u * u + w * w)); };
+}
+
+TEST(PolygonImage, OfASquareBlurredByAGaussianIsAProductOfErrorFunctions) {
+  const double sigma = 0.4;
+  const Polygon square{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+  const FilterTable filter({.period = 16, .band = 60}, gaussian(sigma));
+
+  const PolygonImage image(square, filter);
+
+  const cv::Mat1d values = image.sample({-2.3, 0.45}, 0.5, {9, 3});
+  const auto edge = [sigma](double x) {
+    return (std::erf((1 - x) / sigma / std::numbers::sqrt2) + std::erf((1 + x) / sigma / std::numbers::sqrt2)) / 2;
+  };
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < 9; ++i) EXPECT_NEAR(values(j, i), edge(-2.3 + 0.5 * i) * edge(0.45 + 0.5 * j), 1e-12);
+  }
+}
+
+TEST(PolygonImage, FineImageHoldsEveryPhaseThatSampleComputesSingly) {
+  const FilterTable filter({.period = 16, .band = 60}, gaussian(0.35));
+  const PolygonImage image(triangle(1.6, Apex::right, {0.1, 0.2}), filter);
+
+  const cv::Mat1d fine = image.fine_image(16);
+  const cv::Mat1d values = image.sample({-3 + 5 / 16.0, -3 + 11 / 16.0}, 1, {7, 7});
+
+  for (int j = 0; j < 7; ++j) {
+    for (int i = 0; i < 7; ++i) {
+      const int y = (((-3 + j) * 16 + 11) + 256) % 256;
+      const int x = (((-3 + i) * 16 + 5) + 256) % 256;
+      EXPECT_NEAR(values(j, i), fine(y, x), 1e-14);
+    }
+  }
+}
+
+TEST(PolygonImage, ConservesTheAreaOfTheShape) {
+  const FilterTable filter({.period = 12, .band = 40}, gaussian(0.5));
+  const PolygonImage image(triangle(2, Apex::down), filter);
+
+  const cv::Mat1d fine = image.fine_image(8);
+
+  EXPECT_NEAR(cv::sum(fine)[0] / 64, 4, 1e-12);
+}
+
+TEST(GaussLegendre, IntegratesPolynomialsUpToTwiceItsOrderExactly) {
+  for (const int n : {1, 2, 5, 16, 192}) {
+    const auto rule = gauss_legendre(n);
+    const int degree = std::min(2 * n - 2, 40);
+
+    double sum = 0;
+    for (const auto& [x, weight] : rule) sum += weight * std::pow(x, degree);
+
+    EXPECT_NEAR(sum, 2.0 / (degree + 1), 1e-14) << n;
+  }
+}
+
+}  // namespace
+}  // namespace todbench

@@ -1,0 +1,25 @@
+// Each fault of the way from a camera on USB at 5 %, and all of them at three rates, in a short measurement.
+#include "tests/sim_devices/lab/driver_fault_cameras.h"
+
+namespace todbench {
+namespace {
+
+using namespace test;
+
+constexpr int presentations = 4;
+
+class DriverFaultMatrix : public testing::TestWithParam<DriverCell> {};
+
+TEST_P(DriverFaultMatrix, LeavesTheAnswersAsTheyAreWithoutTheFault) {
+  const DriverCell& cell = GetParam();
+
+  expect_the_answers_without(cell.camera, cell.faults, cell.rate, presentations);
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, DriverFaultMatrix, testing::ValuesIn(every_fault({0.05})),
+                         [](const auto& cell) { return name_of(cell); });
+INSTANTIATE_TEST_SUITE_P(AllAtOnce, DriverFaultMatrix, testing::ValuesIn(all_faults_at_once({0.001, 0.01, 0.05})),
+                         [](const auto& cell) { return name_of(cell); });
+
+}  // namespace
+}  // namespace todbench

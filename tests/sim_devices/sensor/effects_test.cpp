@@ -1,0 +1,261 @@
+// The stages behind optics, detector and temporal noise; and the same stages in the estimate without frames.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "sim_devices/prediction/direct_estimate.h"
+#include "sim_devices/sensor/picture_stages.h"
+#include "sim_devices/sensor/sensor_model.h"
+#include "sim_devices/sensor/super_resolution.h"
+#include "sim_devices/sensor/transfer_functions.h"
+#include "tests/sim_devices/prediction/effect_grid.h"
+
+namespace todbench {
+namespace {
+
+SensorSpec small(int microscan = 1) {
+  SensorSpec spec = test::sensor_with_everything(3, microscan);
+  spec.width = 64;
+  spec.height = 48;
+  return spec;
+}
+
+PlateScene scene(double delta_t_k = 3) {
+  PlateScene out;
+  out.plate.name = "one";
+  out.plate.triangles = {{.name = "only", .position_mm = {10, -8}, .size_mm = 9, .apex = Apex::right}};
+  out.delta_t_k = delta_t_k;
+  out.motion = {.x_mrad_s = 60, .y_mrad_s = -20};
+  return out;
+}
+
+cv::Mat1f picture(const SensorSpec& spec, const std::vector<Effect>& skip, const std::vector<Effect>& force = {},
+                  std::uint64_t index = 5) {
+  return SensorModel(spec, full_plan(spec, skip, force, scene().motion), Accuracy::normal(), 1).picture(scene(), index);
+}
+
+bool same(const cv::Mat1f& a, const cv::Mat1f& b) {
+  return a.size() == b.size() && cv::norm(a, b, cv::NORM_INF) == 0;
+}
+
+SensorSpec neutralised(SensorSpec spec, Effect effect) {
+  switch (effect) {
+    case Effect::aberration:
+      spec.aberration_sigma_pitch = 0;
+      break;
+    case Effect::motion:
+      spec.time_constant_ms = 0;
+      break;
+    case Effect::microscan:
+      spec.microscan = 1;
+      break;
+    case Effect::temporal_noise:
+      spec.netd_k = 0;
+      break;
+    case Effect::fixed_pattern:
+      spec.fixed_pattern_k = 0;
+      break;
+    case Effect::row_column_noise:
+      spec.row_noise_k = spec.column_noise_k = 0;
+      break;
+    case Effect::dead_pixels:
+      spec.dead_pixel_share = 0;
+      break;
+    case Effect::frame_averaging:
+      spec.frames_averaged = 1;
+      break;
+    case Effect::super_resolution:
+      spec.super_resolution_frames = 0;
+      break;
+    case Effect::display:
+      spec.display_blur_samples = 0;
+      break;
+    default:
+      break;
+  }
+  return spec;
+}
+
+TEST(Effects, EveryOneSkippedEqualsItsNeutralValueSimulated) {
+  SensorSpec super = small();
+  super.super_resolution_frames = 8;
+  for (const SensorSpec& spec : {small(1), small(2), super}) {
+    for (const Effect effect : all_effects) {
+      if (effect == Effect::diffraction || effect == Effect::spectral_band || effect == Effect::detector ||
+          effect == Effect::quantisation) {
+        continue;  // without a parameter that has a neutral value
+      }
+      EXPECT_TRUE(same(picture(spec, {effect}), picture(neutralised(spec, effect), {}, {effect}))) << to_string(effect);
+    }
+  }
+}
+
+TEST(Effects, EveryOneChangesThePicture) {
+  const SensorSpec spec = small(2);
+  for (const Effect effect : all_effects) {
+    if (is_neutral(spec, effect, scene().motion)) continue;
+    // Counts would hide what is far below their step.
+    std::vector<Effect> others;
+    if (effect != Effect::quantisation) others.push_back(Effect::quantisation);
+    std::vector<Effect> skipped = others;
+    skipped.push_back(effect);
+    EXPECT_FALSE(same(picture(spec, skipped), picture(spec, others))) << to_string(effect);
+  }
+}
+
+TEST(Effects, LeavingOneOutLeavesTheNoiseOfTheOthers) {
+  // What is linear and additive: the difference to the picture without another noise is that noise alone.
+  SensorSpec spec = small();
+  const std::vector<Effect> plain{Effect::quantisation, Effect::dead_pixels, Effect::display};
+  for (const Effect out : {Effect::temporal_noise, Effect::fixed_pattern, Effect::row_column_noise}) {
+    for (const Effect other : {Effect::temporal_noise, Effect::fixed_pattern, Effect::row_column_noise}) {
+      if (out == other) continue;
+      const auto skipping = [&](std::vector<Effect> effects) {
+        for (const Effect effect : plain) effects.push_back(effect);
+        return picture(spec, effects);
+      };
+      const cv::Mat1f with = skipping({}) - skipping({other});
+      const cv::Mat1f without = skipping({out}) - skipping({other, out});
+      EXPECT_LT(cv::norm(with, without, cv::NORM_INF), 2e-6) << to_string(out);  // rounding of sums near 3 K
+    }
+  }
+}
+
+TEST(Effects, FramesEqualTheRoundedPictureWithAllStages) {
+  const SensorSpec spec = small(2);
+  const SensorModel model(spec, full_plan(spec, {}, {}, scene().motion), Accuracy::draft(), 1);
+
+  const cv::Mat1w counts = model.expose(scene(), 5);
+  const cv::Mat1f kelvin = model.picture(scene(), 5);
+
+  for (int row = 0; row < counts.rows; ++row) {
+    for (int column = 0; column < counts.cols; ++column)
+      EXPECT_NEAR(spec.offset_k + spec.kelvin_per_count * counts(row, column) - 300,
+                  static_cast<double>(kelvin(row, column)), 1e-4);
+  }
+}
+
+TEST(Effects, AveragingDividesTemporalAndLineNoiseByTheRootOfTheFrames) {
+  SensorSpec spec = test::sc2000();
+  spec.row_noise_k = 0.05;
+  spec.frames_averaged = 4;
+  PlateScene still = scene(0);
+  still.motion = {};
+  const SensorModel model(spec, full_plan(spec, {Effect::quantisation}, {}), Accuracy::draft(), 1);
+
+  const cv::Mat1f out = model.picture(still, 0);
+
+  cv::Mat1f rows;
+  cv::reduce(out, rows, 1, cv::REDUCE_AVG);
+  cv::Scalar mean, sd_all, sd_rows;
+  cv::meanStdDev(out, mean, sd_all);
+  cv::meanStdDev(rows, mean, sd_rows);
+  // 240 rows: sd known to 1 / sqrt(480) = 4.6 %; 76 800 samples beside the rows' part.
+  EXPECT_NEAR(sd_rows[0], 0.025, 4 * 0.046 * 0.025);
+  EXPECT_NEAR(sd_all[0] * sd_all[0] - sd_rows[0] * sd_rows[0], 0.035 * 0.035, 4 * 0.0051 * 0.035 * 0.035);
+}
+
+TEST(Effects, DeadDetectorsShowTheMeanOfTheirLiveNeighbours) {
+  cv::Mat1f values(3, 3);
+  for (int i = 0; i < 9; ++i) values(i / 3, i % 3) = static_cast<float>(i * i);
+  cv::Mat1b dead = cv::Mat1b::zeros(3, 3);
+  dead(1, 1) = dead(0, 1) = 1;
+
+  replace_dead(values, dead, 1);
+
+  EXPECT_EQ(values(1, 1), (9.0F + 25.0F + 49.0F) / 3);  // left, right, below: above is dead
+  EXPECT_EQ(values(0, 1), (0.0F + 4.0F) / 2);
+}
+
+TEST(Effects, TheShareOfDeadDetectorsIsTheStatedOne) {
+  const cv::Mat1b dead = dead_detectors({320, 240}, 0.01, RandomStream(3, "dead"));
+  // 768 expected, binomial sd 27.6.
+  EXPECT_NEAR(cv::countNonZero(dead), 768, 4 * 27.6);
+}
+
+TEST(Effects, TheDisplayFilterHasTheStatedResponse) {
+  SensorSpec spec = test::sc2000();
+  spec.display = DisplayReconstruction::bilinear;
+  spec.display_blur_samples = 0.3;
+  const auto taps = taps_of([&](double f) { return display_response(spec, f); });
+  for (const double f : {0.0, 0.1, 0.25, 0.4}) {
+    double response = 0;
+    for (std::size_t k = 0; k < taps.size(); ++k)
+      response += taps[k] * std::cos(2 * std::numbers::pi * f * (static_cast<double>(k) - 8));
+    // Cut after eight samples, where taps have fallen to the slope at the band's end over 2 pi^2 k^2: 2e-3 each.
+    EXPECT_NEAR(response, display_response(spec, f), 4e-3) << f;
+  }
+}
+
+TEST(Effects, MotionSmearsAlongItsWayAndLeavesTheCentroid) {
+  // exp(-t) behind the target, its mean taken out: variance of the smear squared along the way, none across.
+  const double s = 0.7, f = 1e-3;
+  const auto h = motion_transfer(f, 0, {s, 0});
+  EXPECT_NEAR(std::arg(h), 0, 1e-7);  // third cumulant: 2 (2 pi f s)^3 / 6
+  EXPECT_NEAR(std::abs(h), 1 - 2 * std::pow(std::numbers::pi * f * s, 2), 1e-9);
+  EXPECT_EQ(motion_transfer(0, f, {s, 0}), std::complex<double>(1, 0));
+}
+
+TEST(Effects, SuperResolutionOfShiftedExposuresIsTheSimulatedPicture) {
+  // Four frames displaced by half a pitch, put together by the free function, against the stage of the model.
+  SensorSpec spec = test::sc2000();
+  spec.width = 64;
+  spec.height = 48;
+  SensorSpec super = spec;
+  super.super_resolution_frames = 4;
+  PlateScene still = scene();
+  still.motion = {};
+  std::vector<cv::Mat1f> frames;
+  std::vector<cv::Point2d> shifts;
+  const SensorModel plain(spec, full_plan(spec, {}, {}), Accuracy::reference(), 1);
+  for (const cv::Point2d shift :
+       {cv::Point2d(0.25, 0.25), cv::Point2d(-0.25, 0.25), cv::Point2d(0.25, -0.25), cv::Point2d(-0.25, -0.25)}) {
+    PlateScene moved = still;
+    moved.centre_px += shift;
+    frames.push_back(*plain.unit_signal(moved));
+    shifts.push_back(shift);
+  }
+
+  const auto put_together = super_resolve(frames, shifts);
+  PlateScene fine = still;
+  fine.centre_px = 2 * still.centre_px;
+  const auto stage = SensorModel(super, full_plan(super, {}, {}), Accuracy::reference(), 1).unit_signal(fine);
+
+  ASSERT_TRUE(put_together.has_value());
+  ASSERT_EQ(put_together->picture.size(), stage->size());
+  const cv::Rect inside(4, 4, 120, 88);
+  // Wrap tolerance 1.7e-6 and single precision.
+  EXPECT_LT(cv::norm(put_together->picture(inside), (*stage)(inside), cv::NORM_INF), 5e-6);
+}
+
+TEST(Effects, TheEstimateWithoutFramesSeesThemInTheirDirection) {
+  const SensorSpec plain = test::sc2000();
+  TemplateObserver observer({}, triangle_alternatives());
+  DirectEstimateOptions options;
+  options.accuracy = Accuracy::draft();
+  const auto s75 = [&](const SensorSpec& spec, double contrast, SceneMotion motion = {}) {
+    options.motion = motion;
+    return direct_estimate(spec, full_plan(spec, {}, {}, motion), observer, {contrast}, options).value()[0].s75_pitch;
+  };
+  SensorSpec averaged = plain, pattern = plain, blurred = plain, moving = plain, super = plain, scanned = plain;
+  averaged.frames_averaged = 16;
+  pattern.fixed_pattern_k = 0.07;
+  blurred.aberration_sigma_pitch = 0.25;
+  moving.time_constant_ms = 10;
+  super.super_resolution_frames = 64;
+  scanned.microscan = 2;
+  const double low = s75(plain, 0.23);
+
+  // Published changes of acuity at 0.23 K, read with the same noise: 49.8, -22.2, -8.1 and -10.6 %; here within 5 %.
+  EXPECT_NEAR(100 * (low / s75(averaged, 0.23) - 1), 49.8, 5);
+  EXPECT_NEAR(100 * (low / s75(pattern, 0.23) - 1), -22.2, 5);
+  EXPECT_NEAR(100 * (low / s75(blurred, 0.23) - 1), -8.1, 5);
+  const SceneMotion half_a_pitch{.x_mrad_s = 0.5 * plain.ifov_mrad() / 0.01, .y_mrad_s = 0};
+  EXPECT_NEAR(100 * (low / s75(moving, 0.23, half_a_pitch) - 1), -10.6, 5);
+  // Super-resolution samples as microscan does, and averages sixteen exposures in each sample.
+  EXPECT_NEAR(s75(super, 16.9) / s75(scanned, 16.9), 1, 0.02);
+  EXPECT_LT(s75(super, 0.23), 0.8 * s75(scanned, 0.23));
+}
+
+}  // namespace
+}  // namespace todbench

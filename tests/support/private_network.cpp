@@ -1,0 +1,66 @@
+#include "tests/support/private_network.h"
+
+#include <net/if.h>
+#include <netinet/in.h>
+#include <sched.h>
+#include <sys/ioctl.h>
+#include <sys/mount.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <string>
+
+namespace todbench::testing_support {
+namespace {
+
+void write_file(const char* path, const std::string& text) {
+  std::ofstream(path) << text;
+}
+
+bool raise_loopback() {
+  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (fd < 0) return false;
+  ifreq request{};
+  std::strncpy(request.ifr_name, "lo", IFNAMSIZ - 1);
+  request.ifr_flags = IFF_UP | IFF_RUNNING;
+  const bool raised = ::ioctl(fd, SIOCSIFFLAGS, &request) == 0;
+  ::close(fd);
+  return raised;
+}
+
+enum class Mounts { shared, own };
+
+void enter(Mounts mounts) {
+  const auto user = getuid();
+  const auto group = getgid();
+  if (::unshare(CLONE_NEWUSER | CLONE_NEWNET | (mounts == Mounts::own ? CLONE_NEWNS : 0)) != 0) {
+    std::fprintf(stderr, "Sharing the host's loopback%s: %s\n", mounts == Mounts::own ? " and mounts" : "",
+                 std::strerror(errno));
+    return;
+  }
+  write_file("/proc/self/setgroups", "deny");
+  write_file("/proc/self/uid_map", std::to_string(user) + " " + std::to_string(user) + " 1");
+  write_file("/proc/self/gid_map", std::to_string(group) + " " + std::to_string(group) + " 1");
+  if (mounts == Mounts::own) ::mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr);
+  if (!raise_loopback()) {
+    std::fprintf(stderr, "The loopback of a private network cannot be raised: %s\n", std::strerror(errno));
+    std::exit(EXIT_FAILURE);
+  }
+}
+
+}  // namespace
+
+void enter_private_network() {
+  enter(Mounts::shared);
+}
+
+void enter_private_network_and_mounts() {
+  enter(Mounts::own);
+}
+
+}  // namespace todbench::testing_support

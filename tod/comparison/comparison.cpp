@@ -1,0 +1,205 @@
+#include "tod/comparison/comparison.h"
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <limits>
+
+#include "tod/psychometric/threshold_pair.h"
+
+namespace todbench {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+// Probability above `x` of the standard normal, or of Student's t where the degrees of freedom are finite.
+double upper_tail(double x, double degrees_of_freedom) {
+  namespace bm = boost::math;
+  if (!std::isfinite(degrees_of_freedom)) return bm::cdf(bm::complement(bm::normal(), x));
+  return bm::cdf(bm::complement(bm::students_t(degrees_of_freedom), x));
+}
+
+// Where upper_tail() is `probability`.
+double upper_quantile(double probability, double degrees_of_freedom) {
+  namespace bm = boost::math;
+  if (!std::isfinite(degrees_of_freedom)) return bm::quantile(bm::complement(bm::normal(), probability));
+  return bm::quantile(bm::complement(bm::students_t(degrees_of_freedom), probability));
+}
+
+// Largest of the two one-sided probabilities that a ratio at or beyond the margin gives this estimate (Schuirmann
+// 1987).
+double wald_equivalence_probability(double ln_ratio, double se, double margin_percent) {
+  return upper_tail((std::log1p(margin_percent / 100) - std::abs(ln_ratio)) / se, infinite);
+}
+
+// A threshold that a ratio may be made of. A slope at its lower bound or a ridge has a number but not a meaning.
+std::optional<double> ln_threshold(const PsychometricFit& fit) {
+  const bool meaningful =
+      fit.verdict == FitVerdict::ok || fit.verdict == FitVerdict::extrapolated || fit.verdict == FitVerdict::step;
+  if (!meaningful || !fit.threshold) return std::nullopt;
+  return std::log(*fit.threshold);
+}
+
+// Interval of exp(tb - ta) from the intervals of both, asymmetric on the log scale (method of variance estimates
+// recovery, Zou and Donner 2008). A side needs the two sides it is made of.
+Interval ratio_interval(double ta, const Interval& a, double tb, const Interval& b) {
+  Interval ratio;
+  const double d = tb - ta;
+  if (b.low && a.high) ratio.low = std::exp(d - std::hypot(tb - std::log(*b.low), std::log(*a.high) - ta));
+  if (b.high && a.low) ratio.high = std::exp(d + std::hypot(std::log(*b.high) - tb, ta - std::log(*a.low)));
+  return ratio;
+}
+
+// What clustering does to the difference of two ln thresholds.
+struct DifferenceSpread {
+  double inflation = 1;                  // of the variance of the difference
+  double degrees_of_freedom = infinite;  // Welch and Satterthwaite; infinite without clusters
+};
+
+DifferenceSpread spread_of(const PsychometricFit& a, const PsychometricFit& b) {
+  DifferenceSpread spread;
+  const auto freedom = [](const PsychometricFit& fit) {
+    return fit.clusters > 0 ? std::max(fit.clusters - 1, 1.0) : infinite;
+  };
+  if (!a.se_ln_threshold || !b.se_ln_threshold) {
+    spread.inflation = std::max(a.variance_inflation, b.variance_inflation);
+    spread.degrees_of_freedom = std::min(freedom(a), freedom(b));
+    return spread;
+  }
+  const double plain_a = *a.se_ln_threshold * *a.se_ln_threshold, plain_b = *b.se_ln_threshold * *b.se_ln_threshold;
+  const double va = a.variance_inflation * plain_a, vb = b.variance_inflation * plain_b;
+  spread.inflation = (va + vb) / (plain_a + plain_b);
+  const double rest = va * va / freedom(a) + vb * vb / freedom(b);
+  if (rest > 0) spread.degrees_of_freedom = (va + vb) * (va + vb) / rest;
+  return spread;
+}
+
+// The same from the interval: on each side the log ratio is taken as normal (or t) with the spread that the side of the
+// 90 % interval has, so that 0.05 is where the interval touches the margin.
+std::optional<double> equivalence_probability(double ln_ratio, const Interval& ci90, double margin_percent,
+                                              double degrees_of_freedom) {
+  if (!ci90.low || !ci90.high) return std::nullopt;
+  const double below = ln_ratio - std::log(*ci90.low), above = std::log(*ci90.high) - ln_ratio;
+  if (!(below > 0 && above > 0)) return std::nullopt;
+  const double margin = std::log1p(margin_percent / 100);
+  const double quantile = upper_quantile(0.05, degrees_of_freedom);
+  return std::max(upper_tail(quantile * (margin - ln_ratio) / above, degrees_of_freedom),
+                  upper_tail(quantile * (margin + ln_ratio) / below, degrees_of_freedom));
+}
+
+ComparisonVerdict verdict_of(const ComparisonPoint& point) {
+  const double margin = 1 + point.margin_percent / 100;
+  const Interval& ci = point.ratio_ci90;
+  if (!point.ratio || !ci.low || !ci.high || !point.ratio_ci95.low || !point.ratio_ci95.high)
+    return ComparisonVerdict::inconclusive;
+  if (*ci.low >= 1 / margin && *ci.high <= margin) return ComparisonVerdict::equivalent;
+  return point.p_difference && *point.p_difference < 0.05 ? ComparisonVerdict::different
+                                                          : ComparisonVerdict::inconclusive;
+}
+
+Result<ComparisonPoint> compare_points(const TodPoint& a, const TodPoint& b, const ComparisonOptions& options) {
+  ComparisonPoint point;
+  point.set_delta_t_k = a.set_delta_t_k;
+  point.delta_t_a_k = a.delta_t_k;
+  point.delta_t_b_k = b.delta_t_k;
+  point.margin_percent = options.margin_percent;
+  const auto ta = ln_threshold(a.fit), tb = ln_threshold(b.fit);
+  if (!ta || !tb) return point;
+  point.ratio = std::exp(*tb - *ta);
+  point.ratio_ci95 = ratio_interval(*ta, a.fit.ci95, *tb, b.fit.ci95);
+  point.ratio_ci90 = ratio_interval(*ta, a.fit.ci90, *tb, b.fit.ci90);
+  const auto test = test_thresholds(a.levels, b.levels, SlopeModel::separate, options.margin_percent, options.fit);
+  if (!test) return tl::unexpected(test.error());
+  const DifferenceSpread spread = spread_of(a.fit, b.fit);
+  point.p_difference = std::min(1.0, 2 * upper_tail(std::sqrt(test->lr / spread.inflation), spread.degrees_of_freedom));
+  point.p_equivalence =
+      equivalence_probability(*tb - *ta, point.ratio_ci90, options.margin_percent, spread.degrees_of_freedom);
+  point.verdict = verdict_of(point);
+  return point;
+}
+
+ComparisonVerdict overall(const std::vector<ComparisonPoint>& points) {
+  const auto any = [&points](ComparisonVerdict v) {
+    return std::any_of(points.begin(), points.end(), [v](const ComparisonPoint& p) { return p.verdict == v; });
+  };
+  if (any(ComparisonVerdict::different)) return ComparisonVerdict::different;
+  return any(ComparisonVerdict::inconclusive) ? ComparisonVerdict::inconclusive : ComparisonVerdict::equivalent;
+}
+
+// The point of `candidates` at the contrast of `point`, within 0.5 %.
+const TodPoint* partner(const TodPoint& point, const std::vector<TodPoint>& candidates) {
+  constexpr double tolerance = 0.005;
+  const TodPoint* best = nullptr;
+  double nearest = tolerance * std::abs(point.set_delta_t_k);
+  for (const TodPoint& candidate : candidates) {
+    const double distance = std::abs(candidate.set_delta_t_k - point.set_delta_t_k);
+    if (distance > nearest) continue;
+    nearest = distance;
+    best = &candidate;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::string_view to_string(ComparisonVerdict verdict) {
+  switch (verdict) {
+    case ComparisonVerdict::equivalent:
+      return "equivalent";
+    case ComparisonVerdict::different:
+      return "different";
+    case ComparisonVerdict::inconclusive:
+      return "inconclusive";
+  }
+  return "unknown";
+}
+
+Result<ThresholdTest> test_thresholds(std::span<const Level> a, std::span<const Level> b, SlopeModel slopes,
+                                      double margin_percent, const FitOptions& options) {
+  if (!(margin_percent > 0) || !std::isfinite(margin_percent))
+    return fail(ErrorCode::invalid_input, "equivalence margin must be positive");
+  FitOptions single = options;
+  single.with_posterior = false;
+  const auto fit_a = fit_psychometric(a, single);
+  if (!fit_a) return fail("data set A", fit_a.error());
+  const auto fit_b = fit_psychometric(b, single);
+  if (!fit_b) return fail("data set B", fit_b.error());
+  for (const auto& [fit, name] : {std::pair(&*fit_a, "A"), std::pair(&*fit_b, "B")})
+    if (!fit->threshold)
+      return fail(ErrorCode::invalid_input,
+                  std::string("data set ") + name + " has no threshold: " + std::string(to_string(fit->verdict)));
+
+  const ThresholdPair pair(a, b, options);
+  const PairMaxima maxima = slopes == SlopeModel::shared ? pair.shared_slope() : pair.separate_slopes();
+  ThresholdTest test;
+  test.ll_separate = std::max(maxima.ll_separate, maxima.ll_common);
+  test.ll_common = maxima.ll_common;
+  test.lr = 2 * (test.ll_separate - test.ll_common);
+  test.p_difference = std::min(1.0, 2 * upper_tail(std::sqrt(test.lr), infinite));
+  test.ln_ratio = maxima.ln_ratio;
+  test.se_ln_ratio = maxima.se_ln_ratio.value_or(0.0);
+  if (maxima.se_ln_ratio)
+    test.p_equivalence = wald_equivalence_probability(test.ln_ratio, *maxima.se_ln_ratio, margin_percent);
+  return test;
+}
+
+Result<Comparison> compare(const TodCurve& a, const TodCurve& b, const ComparisonOptions& options) {
+  if (!(options.margin_percent > 0) || !std::isfinite(options.margin_percent))
+    return fail(ErrorCode::invalid_input, "equivalence margin must be positive");
+  if (a.observer != b.observer)
+    return fail(ErrorCode::invalid_input, "the curves have different observers: " + a.observer + " and " + b.observer);
+  Comparison comparison;
+  for (const TodPoint& point : a.points) {
+    const TodPoint* other = partner(point, b.points);
+    if (other == nullptr) continue;
+    auto compared = compare_points(point, *other, options);
+    if (!compared) return fail("comparing at " + std::to_string(point.set_delta_t_k) + " K", compared.error());
+    comparison.points.push_back(*compared);
+  }
+  if (comparison.points.empty()) return fail(ErrorCode::invalid_input, "no contrast was measured in both curves");
+  comparison.verdict = overall(comparison.points);
+  return comparison;
+}
+
+}  // namespace todbench

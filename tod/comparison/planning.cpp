@@ -1,0 +1,114 @@
+#include "tod/comparison/planning.h"
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cassert>
+#include <cmath>
+#include <string>
+
+#include "tod/psychometric/psychometric_model.h"
+
+namespace todbench {
+namespace {
+
+const boost::math::normal standard_normal;
+
+double normal_cdf(double z) {
+  return boost::math::cdf(standard_normal, z);
+}
+double normal_quantile(double p) {
+  return boost::math::quantile(standard_normal, p);
+}
+
+constexpr double one_sided_level = 0.05;
+
+double power_of(std::span<const PlannedComparison> contrasts, double margin_percent, double factor) {
+  double power = 1;
+  for (const PlannedComparison& contrast : contrasts)
+    power *= equivalence_power(contrast.se_ln_ratio() / std::sqrt(factor), margin_percent, 0);
+  return power;
+}
+
+}  // namespace
+
+Result<ExpectedFit> expected_fit(std::span<const PlannedLevel> design, const FitOptions& options) {
+  // Counts have to be whole: a million times as many trials round to 1e-6 of one.
+  constexpr double many = 1e6;
+  std::vector<Level> levels;
+  double trials = 0;
+  for (const PlannedLevel& level : design) {
+    const bool possible = level.size > 0 && std::isfinite(level.size) && level.trials >= 0 &&
+                          std::isfinite(level.trials) && level.proportion_correct >= 0 && level.proportion_correct <= 1;
+    if (!possible) return fail(ErrorCode::invalid_input, "a planned level is out of range");
+    const double total = std::round(level.trials * many);
+    levels.push_back({level.size, std::min(std::round(level.trials * level.proportion_correct * many), total), total});
+    trials += level.trials;
+  }
+  FitOptions plain = options;
+  plain.with_posterior = false;
+  auto fit = fit_psychometric(levels, plain);
+  if (!fit) return tl::unexpected(fit.error());
+  if (!fit->threshold || !fit->se_ln_threshold || !(*fit->se_ln_threshold > 0) ||
+      fit->verdict == FitVerdict::flat_or_decreasing || fit->verdict == FitVerdict::underdetermined) {
+    return fail(ErrorCode::invalid_input,
+                "no threshold can be expected from these sizes (" + std::string(to_string(fit->verdict)) + ")");
+  }
+  return ExpectedFit{*fit->threshold, fit->slope.value_or(max_slope), trials, *fit->se_ln_threshold * std::sqrt(many)};
+}
+
+std::vector<PlannedLevel> design_at(std::span<const Level> totals, PsychometricForm form, double threshold,
+                                    double slope, double lapse) {
+  std::vector<PlannedLevel> design;
+  for (const Level& level : totals)
+    design.push_back({level.size, level.total, psychometric(form, level.size, threshold, slope, lapse)});
+  return design;
+}
+
+double least_se_ln_threshold(double trials, double slope) {
+  assert(trials > 0 && slope > 0);
+  // d psi / d ln x = (1-g) kappa e^-kappa b at the threshold, kappa = ln 3; the information of a trial is its square
+  // over psi (1 - psi).
+  const double derivative = slope * 0.25 * std::log(3.0);
+  return std::sqrt(0.75 * 0.25 / trials) / derivative;
+}
+
+double equivalence_power(double se_ln_ratio, double margin_percent, double true_ln_ratio) {
+  assert(se_ln_ratio > 0 && margin_percent > 0);
+  const double margin = std::log1p(margin_percent / 100);
+  const double z = normal_quantile(1 - one_sided_level);
+  const double upper = (margin - true_ln_ratio) / se_ln_ratio - z;
+  const double lower = (-margin - true_ln_ratio) / se_ln_ratio + z;
+  return upper > lower ? normal_cdf(upper) - normal_cdf(lower) : 0;
+}
+
+double se_for_equivalence(double margin_percent, double power) {
+  assert(margin_percent > 0 && power >= 0.05 && power <= 0.999);
+  return std::log1p(margin_percent / 100) / (normal_quantile(1 - one_sided_level) + normal_quantile((1 + power) / 2));
+}
+
+double PlannedComparison::se_ln_ratio() const {
+  return std::hypot(se_ln_a, se_ln_b);
+}
+
+ComparisonOutlook comparison_outlook(std::span<const PlannedComparison> contrasts, double margin_percent) {
+  assert(!contrasts.empty());
+  constexpr double wanted = 0.8;
+  ComparisonOutlook outlook;
+  outlook.margin_percent = margin_percent;
+  outlook.power = power_of(contrasts, margin_percent, 1);
+  // Power grows with the factor from 0 to 1: bracket, then refine.
+  double low = 1, high = 1;
+  while (power_of(contrasts, margin_percent, high) < wanted) high *= 2;
+  while (power_of(contrasts, margin_percent, low) >= wanted) low /= 2;
+  std::uintmax_t rounds = 100;
+  const auto missing = [&](double factor) { return power_of(contrasts, margin_percent, factor) - wanted; };
+  outlook.trials_factor =
+      boost::math::tools::toms748_solve(missing, low, high, boost::math::tools::eps_tolerance<double>(30), rounds)
+          .second;
+  for (const PlannedComparison& contrast : contrasts)
+    outlook.trials_needed_a = std::max(outlook.trials_needed_a, std::ceil(contrast.trials_a * outlook.trials_factor));
+  return outlook;
+}
+
+}  // namespace todbench

@@ -1,0 +1,192 @@
+#include "tod/measurement/frame_taker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace todbench {
+namespace {
+
+/// The share of rejected frames means nothing before this many.
+constexpr std::uint64_t frames_before_share_counts = 100;
+
+}  // namespace
+
+FrameTaker::FrameTaker(FrameSource& source, FrameTakerOptions options)
+    : source_(source), options_(std::move(options)), gate_(options_.integrity) {}
+
+void FrameTaker::scene_changed() {
+  valid_from_ns_ = options_.now_ns();
+  watch_.scene_changed();
+  to_discard_ = options_.frames_after_change;
+}
+
+Result<void> FrameTaker::correct_nonuniformity() {
+  auto done = source_.correct_nonuniformity();
+  if (!done) return fail("correcting the camera's non-uniformity", done.error());
+  nuc_ns_ = known_nuc_ns_ = options_.now_ns();
+  watch_.scene_changed();
+  return {};
+}
+
+double FrameTaker::since_nuc_s(const Frame& frame) const {
+  return nuc_ns_ ? static_cast<double>(frame.host_time_ns - *nuc_ns_) * 1e-9 : -1;
+}
+
+Result<void> FrameTaker::check_share() const {
+  // Frames kept out because of a correction are nobody's fault; exposures that never came are. A frame behind a gap is
+  // kept out once for all that are missing before it.
+  std::uint64_t bad = gate_.lost();
+  std::string reasons = gate_.lost() > 0 ? std::to_string(gate_.lost()) + " lost" : "";
+  for (const auto& [reason, count] : gate_.rejected_by_reason()) {
+    if (reason == Rejection::nonuniformity_correction || reason == Rejection::gapped) continue;
+    bad += count;
+    reasons += (reasons.empty() ? "" : ", ") + std::to_string(count) + " " + std::string(to_string(reason));
+  }
+  bad -= excused_;
+  const std::uint64_t all = seen_ + gate_.lost();
+  if (all < frames_before_share_counts ||
+      static_cast<double>(bad) <= options_.max_rejected_share * static_cast<double>(all))
+    return {};
+  return fail(ErrorCode::integrity,
+              std::to_string(bad) + " of " + std::to_string(all) + " frames are unusable (" + reasons + ")");
+}
+
+void FrameTaker::note_told_correction(const Frame& frame) {
+  told_of_corrections_ = told_of_corrections_ || frame.correction != CorrectionState::unknown;
+  if (frame.correction == CorrectionState::running) nuc_ns_ = known_nuc_ns_ = frame.host_time_ns;
+  if (frame.since_correction_s < 0) return;
+  const std::int64_t told = frame.host_time_ns - static_cast<std::int64_t>(frame.since_correction_s * 1e9);
+  nuc_ns_ = std::max(nuc_ns_.value_or(told), told);
+  known_nuc_ns_ = std::max(known_nuc_ns_.value_or(told), told);
+}
+
+std::optional<CorrectionSign> FrameTaker::see_correction(const Frame& frame, std::optional<Rejection> rejection,
+                                                         Scene scene) {
+  // A camera that says when it corrects is believed; frames without noise tell nothing.
+  if (!options_.integrity.reject_frozen || frame.correction != CorrectionState::unknown) return std::nullopt;
+  if (rejection == Rejection::frozen) return watch_.see_frozen();
+  if (rejection && rejection != Rejection::gapped) return std::nullopt;
+  if (scene == Scene::moving || frame.host_time_ns < valid_from_ns_ || to_discard_ > 0) return std::nullopt;
+  return watch_.see(frame);
+}
+
+std::optional<RejectedFrame> FrameTaker::judge(const Frame& frame, Scene scene) {
+  const auto rejection = gate_.judge(frame);
+  note_told_correction(frame);
+  const auto seen = see_correction(frame, rejection, scene);
+  if (seen) nuc_ns_ = frame.host_time_ns;
+  if (rejection == Rejection::frozen && known_nuc_ns_ &&
+      static_cast<double>(frame.host_time_ns - *known_nuc_ns_) * 1e-9 < options_.nuc_wait_s) {
+    // Cameras repeat their last picture while the shutter is closed: half a second after a command is no fault.
+    gate_.recount(Rejection::frozen, Rejection::nonuniformity_correction);
+    return RejectedFrame{.sequence = frame.sequence, .reason = Rejection::nonuniformity_correction, .seen = seen};
+  }
+  if (rejection) return RejectedFrame{.sequence = frame.sequence, .reason = *rejection, .seen = seen};
+  const bool settling = nuc_ns_ && since_nuc_s(frame) < options_.nuc_wait_s;
+  if (!settling && !seen && frame.correction != CorrectionState::running) return std::nullopt;
+  gate_.reject_accepted(Rejection::nonuniformity_correction);
+  return RejectedFrame{.sequence = frame.sequence, .reason = Rejection::nonuniformity_correction, .seen = seen};
+}
+
+Result<bool> FrameTaker::accept(const Frame& frame, Scene scene) {
+  ++seen_;
+  const auto rejected = judge(frame, scene);
+  if (rejected && options_.on_rejected) options_.on_rejected(*rejected);
+  // A black body on its way may fill the picture; what the transport does wrong is wrong at any time.
+  const auto of_the_picture = {Rejection::saturated, Rejection::byte_swapped, Rejection::frozen};
+  const bool excused =
+      scene == Scene::moving && rejected &&
+      std::find(of_the_picture.begin(), of_the_picture.end(), rejected->reason) != of_the_picture.end();
+  excused_ += excused ? 1 : 0;
+  if (auto healthy = check_share(); !healthy) return tl::unexpected(healthy.error());
+  return !rejected;
+}
+
+Result<void> FrameTaker::take_while_presenting(const std::function<bool(std::int64_t calls)>& enough) {
+  // How long the end of a change may be noticed too late when no frame comes.
+  constexpr std::chrono::milliseconds look_every{100};
+  for (std::int64_t calls = 0; !enough(calls); ++calls) {
+    const auto frame = source_.next(std::min(look_every, options_.frame_timeout));
+    if (!frame && frame.error().code == ErrorCode::timeout) continue;
+    if (!frame) return tl::unexpected(frame.error());
+    if (auto accepted = accept(*frame, Scene::moving); !accepted) return tl::unexpected(accepted.error());
+  }
+  return {};
+}
+
+Result<Frame> FrameTaker::next(std::stop_token stop) {
+  while (true) {
+    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+    auto frame = source_.next(options_.frame_timeout);
+    if (!frame) {
+      if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+      if (frame.error().code == ErrorCode::timeout) {
+        return fail(ErrorCode::disconnected, "camera " + source_.info().id + " sent no frame for " +
+                                                 std::to_string(options_.frame_timeout.count()) + " ms");
+      }
+      return frame;
+    }
+    const auto accepted = accept(*frame, Scene::still);
+    if (!accepted) return tl::unexpected(accepted.error());
+    if (!*accepted || frame->host_time_ns < valid_from_ns_) continue;
+    if (to_discard_ > 0) {
+      --to_discard_;
+      continue;
+    }
+    ++used_;
+    return frame;
+  }
+}
+
+Result<void> FrameTaker::discard(std::stop_token stop) {
+  auto frame = next(std::move(stop));
+  if (!frame) return tl::unexpected(frame.error());
+  --used_;
+  return {};
+}
+
+Result<AveragedPicture> FrameTaker::average(int count, std::stop_token stop) {
+  AveragedPicture out;
+  cv::Mat1d previous;
+  double squares = 0;
+  for (int i = 0; i < count; ++i) {
+    auto frame = next(stop);
+    if (!frame) return tl::unexpected(frame.error());
+    auto kelvin = to_kelvin(*frame);
+    if (!kelvin) return tl::unexpected(kelvin.error());
+    if (out.kelvin.empty()) out.kelvin = cv::Mat1d::zeros(kelvin->size());
+    out.kelvin += *kelvin;
+    if (!previous.empty()) {
+      const cv::Mat1d difference = *kelvin - previous;
+      cv::Scalar mean, sd;
+      cv::meanStdDev(difference, mean, sd);
+      squares += sd[0] * sd[0] / 2;
+    }
+    previous = *kelvin;
+  }
+  out.kelvin /= count;
+  if (count > 1) out.temporal_noise_k = std::sqrt(squares / (count - 1));
+  return out;
+}
+
+std::map<std::string, std::uint64_t> FrameTaker::rejected() const {
+  std::map<std::string, std::uint64_t> out;
+  for (const auto& [reason, count] : gate_.rejected_by_reason()) out[std::string(to_string(reason))] = count;
+  return out;
+}
+
+Result<cv::Mat1d> window_kelvin(const Frame& frame, const cv::Rect& window) {
+  cv::Mat1d out(window.size());
+  for (int row = 0; row < window.height; ++row) {
+    for (int column = 0; column < window.width; ++column) {
+      const auto kelvin = frame.scale->kelvin(frame.counts(window.y + row, window.x + column));
+      if (!kelvin)
+        return fail(ErrorCode::calibration, "a pixel has no temperature on the scale " + frame.scale->describe());
+      out(row, column) = *kelvin;
+    }
+  }
+  return out;
+}
+
+}  // namespace todbench

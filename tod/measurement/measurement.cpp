@@ -1,0 +1,435 @@
+#include "tod/measurement/measurement.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <span>
+#include <thread>
+#include <tuple>
+
+#include "tod/measurement/frame_taker.h"
+#include "tod/registration/patch_windows.h"
+
+namespace todbench {
+namespace {
+
+/// A plate of the plan with the observer prepared for each of its triangles.
+struct PreparedPlate {
+  TargetPlate plate;                                               ///< identity mounting
+  std::vector<std::shared_ptr<const PreparedObserver>> observers;  ///< per triangle; empty until the scale is known
+  std::vector<double> size_px;                                     ///< per triangle
+  [[nodiscard]] std::vector<int> sides() const {
+    std::vector<int> out;
+    for (const auto& o : observers) out.push_back(o->window_samples());
+    return out;
+  }
+};
+
+Result<void> prepare(PreparedPlate& plate, Observer& observer, double scale_px_per_mm, int samples_per_pitch) {
+  plate.observers.clear();
+  plate.size_px.clear();
+  for (const auto& t : plate.plate.triangles) {
+    const double size_px = t.size_mm * scale_px_per_mm;
+    auto prepared = observer.prepare(size_px, samples_per_pitch);
+    if (!prepared) return fail("plate " + plate.plate.name + ", " + t.name, prepared.error());
+    plate.observers.push_back(*prepared);
+    plate.size_px.push_back(size_px);
+  }
+  return {};
+}
+
+std::string joined(const std::vector<WindowProblem>& problems) {
+  std::string text;
+  for (const auto& p : problems) text += (text.empty() ? "" : "; ") + p.triangle + ": " + p.reason;
+  return text;
+}
+
+class Run {
+ public:
+  Run(FrameSource& source, Target& target, Observer& observer, TrialSchedule& schedule,
+      const MeasurementOptions& options, const MeasurementListener& listener, std::stop_token stop)
+      : source_(source),
+        target_(target),
+        observer_(observer),
+        schedule_(schedule),
+        options_(options),
+        listener_(listener),
+        stop_(std::move(stop)),
+        taker_(source, taker_options(options, listener, source.info())),
+        answers_(options.seed, "observer") {
+    options_.registration.expected_scale_px_per_mm = 1 / (options.distance_m * options.ifov_mrad);
+    for (const auto& plate : options.plates) plates_.push_back({plate, {}, {}});
+  }
+
+  Result<MeasurementResult> operator()() {
+    if (!source_.info().scale.calibrated()) {
+      return fail(ErrorCode::calibration,
+                  "camera " + source_.info().id + " has no temperature scale: contrasts in kelvin cannot be measured");
+    }
+    const std::stop_callback wake(stop_, [this] { source_.stop(); });
+    if (auto started = source_.start(); !started) return tl::unexpected(started.error());
+    if (auto corrected = correct_when_due(); !corrected) return tl::unexpected(corrected.error());
+    std::optional<Error> ended_by;
+    while (const auto state = schedule_.next()) {
+      const std::size_t before = result_.trials.size();
+      auto shown = show(*state);
+      while (!shown && camera_lost(shown.error()) && listener_.on_lost) {
+        const std::int64_t lost_ns = options_.now_ns();
+        const Error why = shown.error();
+        note("the camera was lost in presentation " + std::to_string(presentation_) + ": " + why.message);
+        shown = listener_.on_lost(why, stop_);
+        if (!shown) break;
+        shown = resume(*state, why, lost_ns);
+      }
+      if (!shown) {
+        ended_by = shown.error();
+        break;
+      }
+      schedule_.observe(std::span(result_.trials).subspan(before));
+      if (listener_.on_progress) listener_.on_progress(static_cast<std::size_t>(presentation_), schedule_.planned());
+    }
+    source_.stop();
+    if (ended_by && result_.trials.empty()) return tl::unexpected(*ended_by);
+    result_.ended_by = ended_by;
+    result_.frames_used = taker_.used();
+    result_.frames_rejected = taker_.rejected();
+    result_.frames_lost = taker_.lost();
+    return std::move(result_);
+  }
+
+ private:
+  using SetUp = std::tuple<std::string, Mounting>;
+
+  static FrameTakerOptions taker_options(const MeasurementOptions& options, const MeasurementListener& listener,
+                                         const SourceInfo& info) {
+    FrameTakerOptions out{.integrity = options.integrity,
+                          .frames_after_change = options.frames_after_change,
+                          .nuc_wait_s = options.nuc_wait_s,
+                          .max_rejected_share = options.max_rejected_share,
+                          .frame_timeout = options.frame_timeout,
+                          .now_ns = options.now_ns,
+                          .on_rejected = listener.on_rejected};
+    out.integrity.width = info.width;
+    out.integrity.height = info.height;
+    return out;
+  }
+
+  void note(const std::string& sentence) {
+    result_.notes.push_back(sentence);
+    if (listener_.on_note) listener_.on_note(sentence);
+  }
+
+  Result<void> correct_when_due() {
+    if (options_.nuc_interval_s <= 0) return {};
+    const std::int64_t now_ns = options_.now_ns();
+    if (last_nuc_ns_ && static_cast<double>(now_ns - *last_nuc_ns_) * 1e-9 < options_.nuc_interval_s) return {};
+    last_nuc_ns_ = now_ns;
+    auto corrected = taker_.correct_nonuniformity();
+    if (corrected || corrected.error().code != ErrorCode::invalid_input) return corrected;
+    return rely_on_what_the_camera_tells(corrected.error());
+  }
+
+  /// A camera that takes no command is still measured when its frames say that they are corrections.
+  Result<void> rely_on_what_the_camera_tells(const Error& refused) {
+    if (auto looked = taker_.discard(stop_); !looked) return looked;
+    if (!taker_.camera_tells_of_corrections()) return tl::unexpected(refused);
+    options_.nuc_interval_s = 0;
+    note("corrections are left to the camera, which tells of them: " + refused.message);
+    return {};
+  }
+
+  /// Instruments that are lost say so with the same code; they come back by themselves or end the run.
+  [[nodiscard]] bool camera_lost(const Error& error) const {
+    return error.code == ErrorCode::disconnected && !target_failed_;
+  }
+
+  /// The camera that was lost in this presentation is back: it is made again.
+  Result<void> resume(const TargetState& state, const Error& why, std::int64_t lost_ns) {
+    const std::optional<cv::Point2d> before =
+        current_set_up_ ? std::optional(base_.pixel({0, 0})) : std::optional<cv::Point2d>();
+    // Everything that was measured with the old connection is measured again; what is registered is looked for where it
+    // was.
+    current_set_up_.reset();
+    current_contrast_.reset();
+    last_nuc_ns_.reset();
+    const std::int64_t presentation = presentation_;
+    if (auto shown = show(state); !shown) return shown;
+    Interruption interruption{.presentation = presentation,
+                              .away_s = static_cast<double>(options_.now_ns() - lost_ns) * 1e-9,
+                              .moved_px = before ? cv::norm(base_.pixel({0, 0}) - *before) : 0,
+                              .reason = why.message};
+    char text[120];
+    std::snprintf(text, sizeof text, "the camera is back after %.1f s; the plate is %.2f pixels from where it was",
+                  interruption.away_s, interruption.moved_px);
+    note(text);
+    result_.interruptions.push_back(std::move(interruption));
+    if (listener_.on_resumed) listener_.on_resumed();
+    return {};
+  }
+
+  /// A free-running camera whose frames nobody takes would lose them.
+  Result<void> wait_while_paused() {
+    while (listener_.paused && !stop_.stop_requested() && listener_.paused()) {
+      if (!options_.free_running) continue;
+      if (auto passed = taker_.discard(stop_); !passed) return passed;
+    }
+    return {};
+  }
+
+  /// Changes the target; the camera goes on meanwhile.
+  Result<void> present(const TargetState& state) {
+    if (options_.frames_while_presenting == FramesMeanwhile::take) return present_and_take(state);
+    Result<void> taken;
+    if (options_.frames_while_presenting == FramesMeanwhile::repeat) {
+      const std::int64_t calls = listener_.asked_while_presenting ? listener_.asked_while_presenting(0) : 0;
+      taken = taker_.take_while_presenting([calls](std::int64_t asked) { return asked >= calls; });
+    }
+    const auto presented = target_.present(state, stop_);
+    target_failed_ = !presented;
+    if (!presented) return fail("presenting the target", presented.error());
+    return taken;
+  }
+
+  /// Changes the target while a second thread takes the frames. A camera that fails ends the wait for the target: a
+  /// black body may need minutes, and what it would settle for has to be presented again anyway.
+  Result<void> present_and_take(const TargetState& state) {
+    Result<void> taken;
+    Result<PresentedTarget> presented;
+    std::atomic<bool> there = false;
+    std::int64_t calls = 0;
+    {
+      std::stop_source give_up;
+      const std::stop_callback stopped(stop_, [&give_up] { give_up.request_stop(); });
+      const std::jthread frames([&] {
+        taken = taker_.take_while_presenting([&](std::int64_t asked) {
+          calls = asked;
+          return there.load();
+        });
+        if (!taken) give_up.request_stop();
+      });
+      presented = target_.present(state, give_up.get_token());
+      there = true;
+    }
+    // The call that failed counts too.
+    if (listener_.asked_while_presenting) (void)listener_.asked_while_presenting(taken ? calls : calls + 1);
+    const bool given_up =
+        !taken && !presented && presented.error().code == ErrorCode::interrupted && !stop_.stop_requested();
+    target_failed_ = !presented && !given_up;
+    if (target_failed_) return fail("presenting the target", presented.error());
+    return taken;
+  }
+
+  /// One presentation: target, frame, answers.
+  Result<void> show(const TargetState& state) {
+    if (auto resumed = wait_while_paused(); !resumed) return resumed;
+    if (stop_.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+    const auto plate = std::find_if(plates_.begin(), plates_.end(),
+                                    [&](const PreparedPlate& p) { return p.plate.name == state.plate; });
+    if (plate == plates_.end())
+      return fail(ErrorCode::invalid_input,
+                  "the schedule names a plate '" + state.plate + "' that the plan does not have");
+    if (auto corrected = correct_when_due(); !corrected) return corrected;
+    if (auto presented = present(state); !presented) return presented;
+    taker_.scene_changed();
+    const TargetPlate mounted_plate = mounted(plate->plate, state.mounting);
+    const SetUp set_up{state.plate, state.mounting};
+    const bool new_set_up = !current_set_up_ || *current_set_up_ != set_up;
+    const bool new_contrast = new_set_up || *current_contrast_ != state.delta_t_k;
+    if (new_set_up) {
+      if (auto located = locate(*plate, mounted_plate, state); !located) return located;
+    }
+    if (!new_set_up && !target_.capabilities().sets_shift) {
+      if (auto followed = follow(mounted_plate); !followed) return followed;
+    }
+    const Registration registration = target_.capabilities().sets_shift ? base_.shifted(state.shift_mm) : base_;
+    if (new_contrast) {
+      if (auto measured = measure_contrast(mounted_plate, registration, state); !measured) return measured;
+    }
+    current_set_up_ = set_up;
+    current_contrast_ = state.delta_t_k;
+    const auto problems = windows_out_of_picture(mounted_plate, registration, plate->sides(),
+                                                 {source_.info().width, source_.info().height});
+    if (!problems.empty())
+      return fail(ErrorCode::calibration, "the plate is too near the edge of the picture: " + joined(problems));
+    auto frame = taker_.next(stop_);
+    if (!frame) return tl::unexpected(frame.error());
+    if (auto answered = answer(*plate, mounted_plate, registration, state, *frame); !answered) return answered;
+    ++presentation_;
+    return {};
+  }
+
+  /// Finds the plate of a set-up: by registration the first time, by its shift when it comes back.
+  Result<void> locate(PreparedPlate& plate, const TargetPlate& mounted_plate, const TargetState& state) {
+    const std::string where = "plate " + state.plate + " mounted " + std::string(to_string(state.mounting));
+    auto picture = taker_.average(options_.registration_frames, stop_);
+    if (!picture) return tl::unexpected(picture.error());
+    if (result_.temporal_noise_k == 0) result_.temporal_noise_k = picture->temporal_noise_k;
+    const cv::Point2d shift_mm = target_.capabilities().sets_shift ? state.shift_mm : cv::Point2d(0, 0);
+    const auto known = registered_.find({state.plate, state.mounting});
+    if (known != registered_.end()) {
+      auto moved = measure_shift(picture->kelvin, mounted_plate, known->second.shifted(shift_mm), options_.registration,
+                                 search_px);
+      if (!moved) return fail("finding " + where + " again", moved.error());
+      base_ = known->second.moved(*moved);
+    } else {
+      auto registration = register_plate(picture->kelvin, mounted_plate, options_.registration);
+      if (!registration) return fail("registering " + where, registration.error());
+      if ((registration->contrast_sign > 0) != (state.delta_t_k > 0)) {
+        return fail(ErrorCode::calibration,
+                    "the triangles of " + where + " have the opposite polarity of the contrast asked for");
+      }
+      result_.set_ups.push_back({state.plate, state.mounting, *registration});
+      if (listener_.on_set_up) listener_.on_set_up(result_.set_ups.back());
+      base_ = registration->shifted(-shift_mm);
+    }
+    registered_[{state.plate, state.mounting}] = base_;
+    if (scale_px_per_mm_ == 0) scale_px_per_mm_ = base_.scale_px_per_mm;
+    if (plate.observers.empty()) {
+      if (auto prepared = prepare(plate, observer_, scale_px_per_mm_, options_.samples_per_pitch); !prepared)
+        return prepared;
+    }
+    return {};
+  }
+
+  /// A hand moved the plate: where is it now?
+  Result<void> follow(const TargetPlate& mounted_plate) {
+    auto picture = taker_.average(options_.contrast_frames, stop_);
+    if (!picture) return tl::unexpected(picture.error());
+    auto moved = measure_shift(picture->kelvin, mounted_plate, base_, options_.registration, search_px);
+    if (!moved) return fail("following the plate", moved.error());
+    base_ = base_.moved(*moved);
+    return {};
+  }
+
+  Result<void> measure_contrast(const TargetPlate& mounted_plate, const Registration& registration,
+                                const TargetState& state) {
+    auto picture = taker_.average(options_.contrast_frames, stop_);
+    if (!picture) return tl::unexpected(picture.error());
+    auto contrast = effective_contrast(picture->kelvin, mounted_plate, registration, options_.min_reference_px);
+    if (!contrast) return fail("measuring the effective contrast", contrast.error());
+    if (!(contrast->value * state.delta_t_k > 0)) {
+      char text[160];
+      std::snprintf(text, sizeof text, "the target was set to %+.3f K but the camera sees %+.3f K +- %.3f K",
+                    state.delta_t_k, contrast->value, contrast->standard_error);
+      return fail(ErrorCode::calibration, text);
+    }
+    const auto response = options_.contrast_response.find(state.plate);
+    contrast_k_ = contrast->value / (response == options_.contrast_response.end() ? 1.0 : response->second);
+    const double deviation = contrast_k_ / state.delta_t_k - 1;
+    if (std::abs(deviation) > 0.2 && std::abs(contrast_k_ - state.delta_t_k) > 3 * contrast->standard_error) {
+      char text[200];
+      std::snprintf(text, sizeof text, "plate %s, mounting %s: the camera sees %.3f K where %.3f K were set (%+.0f %%)",
+                    state.plate.c_str(), std::string(to_string(state.mounting)).c_str(), contrast_k_, state.delta_t_k,
+                    100 * deviation);
+      note(text);
+    }
+    return {};
+  }
+
+  /// Every triangle of the frame is a trial.
+  Result<void> answer(const PreparedPlate& plate, const TargetPlate& mounted_plate, const Registration& registration,
+                      const TargetState& state, const Frame& frame) {
+    const RandomStream presentation_noise = answers_.sub(static_cast<std::uint64_t>(presentation_));
+    for (std::size_t i = 0; i < mounted_plate.triangles.size(); ++i) {
+      const auto& t = mounted_plate.triangles[i];
+      const auto window = patch_window(registration.pixel(t.position_mm), plate.observers[i]->window_samples());
+      auto kelvin = window_kelvin(frame, window.pixels);
+      if (!kelvin) return tl::unexpected(kelvin.error());
+      const Patch patch{.kelvin = *kelvin, .phase = window.phase, .noise_k = result_.temporal_noise_k};
+      const Choice choice = plate.observers[i]->choose(patch, contrast_k_, presentation_noise.sub(i));
+      Trial trial;
+      trial.presentation = presentation_;
+      trial.plate = state.plate;
+      trial.mounting = state.mounting;
+      trial.triangle = t.name;
+      trial.set_delta_t_k = state.delta_t_k;
+      trial.delta_t_k = contrast_k_;
+      trial.size_mm = t.size_mm;
+      trial.size_mrad = t.size_mm / options_.distance_m;
+      trial.size_px = plate.size_px[i];
+      trial.truth = t.apex;
+      trial.answer = static_cast<Apex>(choice.alternative);
+      for (std::size_t o = 0; o < trial.scores.size(); ++o) trial.scores[o] = choice.scores[o];
+      trial.phase_x_px = window.phase.x;
+      trial.phase_y_px = window.phase.y;
+      trial.frame = frame.sequence;
+      trial.device_time_ns = frame.device_time_ns;
+      trial.host_time_ns = frame.host_time_ns;
+      trial.since_nuc_s = taker_.since_nuc_s(frame);
+      result_.trials.push_back(trial);
+      if (listener_.on_trial) listener_.on_trial(trial);
+      if (listener_.on_patch) listener_.on_patch(trial, patch);
+    }
+    return {};
+  }
+
+  static constexpr double search_px = 6;  ///< how far a hand may move the plate between two presentations
+
+  FrameSource& source_;
+  Target& target_;
+  Observer& observer_;
+  TrialSchedule& schedule_;
+  MeasurementOptions options_;
+  const MeasurementListener& listener_;
+  std::stop_token stop_;
+  FrameTaker taker_;
+  RandomStream answers_;
+  std::vector<PreparedPlate> plates_;
+  std::map<SetUp, Registration> registered_;  ///< at shift 0
+  std::optional<SetUp> current_set_up_;
+  std::optional<double> current_contrast_;
+  Registration base_;                        ///< of the current set-up, at shift 0
+  double contrast_k_ = 0;                    ///< of the current set-up and set-point
+  double scale_px_per_mm_ = 0;               ///< of the first registration: one scale for the whole run
+  std::optional<std::int64_t> last_nuc_ns_;  ///< when the last one was commanded
+  std::int64_t presentation_ = 0;
+  bool target_failed_ = false;  ///< the error of this presentation is the target's
+  MeasurementResult result_;
+};
+
+}  // namespace
+
+Result<std::vector<std::string>> sizes_that_do_not_fit(const MeasurementOptions& options, Observer& observer,
+                                                       int frame_width, int frame_height) {
+  if (!(options.distance_m > 0) || !(options.ifov_mrad > 0)) {
+    return fail(ErrorCode::invalid_input, "distance and IFOV must be positive");
+  }
+  const double scale = 1 / (options.distance_m * options.ifov_mrad);
+  std::vector<std::string> out;
+  for (const auto& plate : options.plates) {
+    PreparedPlate prepared{plate, {}, {}};
+    if (auto ready = prepare(prepared, observer, scale, options.samples_per_pitch); !ready)
+      return tl::unexpected(ready.error());
+    const auto sides = prepared.sides();
+    const double search = prepared.observers.empty() ? 0 : prepared.observers.front()->search_samples();
+    for (const auto& problem : touching_windows(plate, scale, sides, search)) {
+      out.push_back("plate " + plate.name + ", " + problem.triangle + ": " + problem.reason);
+    }
+    if (plate.width_mm * scale > frame_width || plate.height_mm * scale > frame_height) {
+      char text[200];
+      std::snprintf(text, sizeof text,
+                    "plate %s: its %.0f x %.0f mm are %.0f x %.0f pixels at %.2f m, the picture has %d x %d",
+                    plate.name.c_str(), plate.width_mm, plate.height_mm, plate.width_mm * scale,
+                    plate.height_mm * scale, options.distance_m, frame_width, frame_height);
+      out.emplace_back(text);
+    }
+  }
+  return out;
+}
+
+Result<MeasurementResult> measure(FrameSource& source, Target& target, Observer& observer, TrialSchedule& schedule,
+                                  const MeasurementOptions& options, const MeasurementListener& listener,
+                                  std::stop_token stop) {
+  auto misfits = sizes_that_do_not_fit(options, observer, source.info().width, source.info().height);
+  if (!misfits) return tl::unexpected(misfits.error());
+  if (!misfits->empty()) {
+    std::string text;
+    for (const auto& misfit : *misfits) text += (text.empty() ? "" : "; ") + misfit;
+    return fail(ErrorCode::invalid_input, "not measurable at this distance: " + text);
+  }
+  return Run(source, target, observer, schedule, options, listener, std::move(stop))();
+}
+
+}  // namespace todbench

@@ -1,0 +1,124 @@
+// The measurement: frame source, target and observer in, trials out. The laboratory and the simulator differ only in
+// these objects.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "acquisition/core/frame_source.h"
+#include "acquisition/core/integrity_gate.h"
+#include "hvs/observer/observer.h"
+#include "tod/measurement/frame_taker.h"
+#include "tod/registration/registration.h"
+#include "tod/schedule/schedule.h"
+#include "tod/presentation/target.h"
+#include "tod/presentation/trial.h"
+
+namespace todbench {
+
+/// What becomes of the frames that a camera sends while the target changes.
+enum class FramesMeanwhile {
+  leave,  ///< nobody asks for them: a camera that exposes only when it is asked
+  take,   ///< taken as they come, on a thread of their own, so that no queue has to hold the minutes in which a black
+          ///< body settles, and no correction in them is missed
+  repeat  ///< taken as often as MeasurementListener::asked_while_presenting says: a replay
+};
+
+struct MeasurementOptions {
+  double ifov_mrad = 0;             ///< of one pixel, from the plan
+  double distance_m = 0;            ///< entrance pupil to plate
+  std::vector<TargetPlate> plates;  ///< in identity mounting
+  int registration_frames = 32;     ///< averaged at the highest contrast
+  int contrast_frames = 16;         ///< averaged for the effective contrast, once per plate, mounting and contrast
+  double min_reference_px = 4;      ///< triangles from this size measure the effective contrast
+  int samples_per_pitch = 1;  ///< displayed samples per detector pitch (2: 2x2 microscan); the IFOV is that of a sample
+  /// By plate name: what effective_contrast() reads of a contrast of 1 K, blur included, from a simulated picture; 1
+  /// where it is not known. Measured contrasts are divided by it.
+  std::map<std::string, double> contrast_response;
+  int frames_after_change = 2;       ///< exposures discarded after the target moved (frames in flight)
+  double nuc_interval_s = 0;         ///< correct the camera's non-uniformity this often; 0: never commanded
+  double nuc_wait_s = 1;             ///< frames within this time after a correction are not measured
+  double max_rejected_share = 0.05;  ///< beyond it, after 100 frames, the run ends with `integrity`
+  std::chrono::milliseconds frame_timeout{2000};
+  /// The clock of Frame::host_time_ns; a recorded measurement brings its own.
+  std::function<std::int64_t()> now_ns = monotonic_ns;
+  IntegrityOptions integrity;
+  RegistrationOptions registration;  ///< expected scale is filled in from distance and IFOV
+  std::uint64_t seed = 1;
+  FramesMeanwhile frames_while_presenting = FramesMeanwhile::leave;
+  bool free_running = true;  ///< the camera exposes whether its frames are taken or not: they are taken in a pause too
+};
+
+/// A loss of the camera that the run survived. Begins a new segment.
+struct Interruption {
+  std::int64_t presentation = 0;  ///< the first one of the new segment
+  double away_s = 0;              ///< from the error to the answers of that presentation
+  double moved_px = 0;            ///< where the plate was found again, from where it had been
+  std::string reason;
+  bool operator==(const Interruption&) const = default;
+};
+
+struct SetUpRecord;
+
+/// What the run says while it goes on. Called from the measuring thread, but on_rejected also from the one that takes
+/// frames while the measuring thread waits for the target: never two at once. A slow listener slows the measurement, it
+/// never loses trials.
+struct MeasurementListener {
+  std::function<void(const Trial&)> on_trial;
+  /// After on_trial: what the observer saw; lent for the call.
+  std::function<void(const Trial&, const Patch&)> on_patch{};
+  std::function<void(const SetUpRecord&)> on_set_up{};
+  /// Asked before every presentation and again while it says true; may take a tenth of a second to answer.
+  std::function<bool()> paused{};
+  /// Told how often a frame was asked for while the target changed, says how often it was: a recording remembers; a
+  /// replay is told 0.
+  std::function<std::int64_t(std::int64_t calls)> asked_while_presenting{};
+  std::function<void(std::size_t done, std::size_t planned)> on_progress;
+  std::function<void(const std::string& sentence)> on_note;
+  std::function<void(const RejectedFrame&)> on_rejected{};  ///< every frame that was not used, with the reason
+  /// The camera was lost. Brings the same source back to deliver frames, started and set as before, and returns
+  /// success; then the plate is looked for again and the presentation is repeated. Empty, or an error: the run ends.
+  std::function<Result<void>(const Error& why, std::stop_token stop)> on_lost{};
+  /// The plate was found again after a loss, and the presentation was made.
+  std::function<void()> on_resumed{};
+};
+
+/// Registration and contrast of one set-up (plate and mounting), for the report.
+struct SetUpRecord {
+  std::string plate;
+  Mounting mounting = Mounting::identity;
+  Registration registration;
+};
+
+struct MeasurementResult {
+  std::vector<Trial> trials;
+  std::vector<SetUpRecord> set_ups;
+  std::uint64_t frames_used = 0;
+  std::map<std::string, std::uint64_t> frames_rejected;  ///< by reason
+  std::uint64_t frames_lost = 0;                         ///< gaps in the sequence
+  double temporal_noise_k =
+      0;  ///< per pixel, from differences of successive frames of the same presentation; 0: not measured
+  std::vector<std::string> notes;
+  std::vector<Interruption> interruptions;
+  std::optional<Error> ended_by;  ///< why it stopped early; the trials so far are valid
+};
+
+/// Sizes (name of triangle, reason) that cannot be measured with this geometry: a window with its search margin that
+/// touches a neighbour or leaves the frame. Empty: all fit.
+[[nodiscard]] Result<std::vector<std::string>> sizes_that_do_not_fit(const MeasurementOptions& options,
+                                                                     Observer& observer, int frame_width,
+                                                                     int frame_height);
+
+/// Runs a schedule. Fails only when nothing could be measured (plate not found, uncalibrated camera, sizes that do not
+/// fit); a run that ended early returns its trials with `ended_by`.
+[[nodiscard]] Result<MeasurementResult> measure(FrameSource& source, Target& target, Observer& observer,
+                                                TrialSchedule& schedule, const MeasurementOptions& options,
+                                                const MeasurementListener& listener, std::stop_token stop);
+
+}  // namespace todbench

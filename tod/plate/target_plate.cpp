@@ -1,0 +1,158 @@
+#include "tod/plate/target_plate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <sstream>
+
+namespace todbench {
+namespace {
+
+/// Largest gap between two convex polygons over the directions perpendicular to their edges (separating axis theorem):
+/// > 0 exactly when they are apart.
+double separation(const Polygon& a, const Polygon& b) {
+  double best = -std::numeric_limits<double>::infinity();
+  for (const Polygon* owner : {&a, &b}) {
+    for (std::size_t i = 0; i < owner->size(); ++i) {
+      const cv::Point2d edge = (*owner)[(i + 1) % owner->size()] - (*owner)[i];
+      const cv::Point2d axis = cv::Point2d(edge.y, -edge.x) / std::hypot(edge.x, edge.y);
+      const auto along = [&](const cv::Point2d& p, const cv::Point2d& q) { return p.dot(axis) < q.dot(axis); };
+      const auto [a_low, a_high] = std::ranges::minmax_element(a, along);
+      const auto [b_low, b_high] = std::ranges::minmax_element(b, along);
+      best = std::max({best, b_low->dot(axis) - a_high->dot(axis), a_low->dot(axis) - b_high->dot(axis)});
+    }
+  }
+  return best;
+}
+
+bool inside(const Polygon& polygon, double half_width, double half_height) {
+  return std::ranges::all_of(
+      polygon, [&](const cv::Point2d& p) { return std::abs(p.x) <= half_width && std::abs(p.y) <= half_height; });
+}
+
+bool positive(double value) {
+  return std::isfinite(value) && value > 0;
+}
+
+Error refusal(const TargetPlate& plate, const std::string& what) {
+  return {ErrorCode::invalid_input, "plate \"" + plate.name + "\": " + what};
+}
+
+std::string number(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+/// Whether a mounting turns x and y over: {x, y}. Every mounting is its own inverse, and two of them make the mounting
+/// that turns over what exactly one of them does (the Klein four-group).
+struct Flips {
+  bool x, y;
+};
+
+Flips flips(Mounting mounting) {
+  switch (mounting) {
+    case Mounting::identity:
+      return {false, false};
+    case Mounting::rotated_180:
+      return {true, true};
+    case Mounting::mirrored_horizontally:
+      return {true, false};
+    case Mounting::mirrored_vertically:
+      return {false, true};
+  }
+  return {false, false};
+}
+
+}  // namespace
+
+std::string_view to_string(Mounting mounting) {
+  switch (mounting) {
+    case Mounting::identity:
+      return "identity";
+    case Mounting::rotated_180:
+      return "rotated_180";
+    case Mounting::mirrored_horizontally:
+      return "mirrored_horizontally";
+    case Mounting::mirrored_vertically:
+      return "mirrored_vertically";
+  }
+  return "unknown";
+}
+
+std::optional<Mounting> mounting_from(std::string_view name) {
+  for (const Mounting mounting : all_mountings) {
+    if (to_string(mounting) == name) return mounting;
+  }
+  return std::nullopt;
+}
+
+Result<void> validate(const TargetPlate& plate) {
+  if (!positive(plate.width_mm) || !positive(plate.height_mm)) {
+    return tl::unexpected(refusal(plate, "width_mm and height_mm must be positive, they are " + number(plate.width_mm) +
+                                             " and " + number(plate.height_mm)));
+  }
+  if (plate.triangles.empty()) return tl::unexpected(refusal(plate, "it has no triangles"));
+  std::set<std::string> names;
+  std::vector<Polygon> outlines;
+  for (const PlateTriangle& t : plate.triangles) {
+    if (!names.insert(t.name).second)
+      return tl::unexpected(refusal(plate, "two triangles are named \"" + t.name + "\""));
+    if (!positive(t.size_mm)) {
+      return tl::unexpected(refusal(plate, t.name + ": size_mm must be positive, it is " + number(t.size_mm)));
+    }
+    outlines.push_back(triangle(t.size_mm, t.apex, t.position_mm));
+    if (!inside(outlines.back(), plate.width_mm / 2, plate.height_mm / 2)) {
+      return tl::unexpected(refusal(plate, t.name + " at (" + number(t.position_mm.x) + ", " + number(t.position_mm.y) +
+                                               ") mm leaves the plate of " + number(plate.width_mm) + " x " +
+                                               number(plate.height_mm) + " mm"));
+    }
+    for (std::size_t i = 0; i + 1 < outlines.size(); ++i) {
+      if (!(separation(outlines[i], outlines.back()) > 0)) {
+        return tl::unexpected(refusal(plate, t.name + " touches " + plate.triangles[i].name));
+      }
+    }
+  }
+  return {};
+}
+
+Apex mounted(Apex apex, Mounting mounting) {
+  const Flips f = flips(mounting);
+  switch (apex) {
+    case Apex::up:
+      return f.y ? Apex::down : Apex::up;
+    case Apex::down:
+      return f.y ? Apex::up : Apex::down;
+    case Apex::right:
+      return f.x ? Apex::left : Apex::right;
+    case Apex::left:
+      return f.x ? Apex::right : Apex::left;
+  }
+  return apex;
+}
+
+Mounting combined(Mounting first, Mounting second) {
+  const Flips a = flips(first);
+  const Flips b = flips(second);
+  const bool x = a.x != b.x;
+  const bool y = a.y != b.y;
+  if (x && y) return Mounting::rotated_180;
+  if (x) return Mounting::mirrored_horizontally;
+  return y ? Mounting::mirrored_vertically : Mounting::identity;
+}
+
+TargetPlate mounted(const TargetPlate& plate, Mounting mounting) {
+  const Flips f = flips(mounting);
+  TargetPlate result = plate;
+  for (PlateTriangle& t : result.triangles) {
+    // 0 - x instead of -x: a triangle in the middle stays at +0 and compares and prints like before.
+    if (f.x) t.position_mm.x = 0 - t.position_mm.x;
+    if (f.y) t.position_mm.y = 0 - t.position_mm.y;
+    t.apex = mounted(t.apex, mounting);
+  }
+  result.mounting = combined(plate.mounting, mounting);
+  return result;
+}
+
+}  // namespace todbench

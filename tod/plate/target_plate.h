@@ -1,0 +1,50 @@
+// The plate of triangles in front of the camera (T-CAT: Valeton, Bijl, Agterhuis and Kriekaard 2000).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "acquisition/core/result.h"
+#include "tod/plate/test_pattern.h"
+
+namespace todbench {
+
+/// One cut-out.
+struct PlateTriangle {
+  std::string name;         ///< unique on the plate, e.g. "row 2, triangle 3"
+  cv::Point2d position_mm;  ///< centroid, from the middle of the plate, x right, y down, as seen by the camera in
+                            ///< identity mounting
+  double size_mm = 0;       ///< square root of area
+  Apex apex = Apex::up;
+};
+
+/// How the plate is held. A mounting permutes places *and* apex labels; it is how a bench defeats memory and asymmetry.
+enum class Mounting { identity, rotated_180, mirrored_horizontally, mirrored_vertically };
+inline constexpr std::array all_mountings{Mounting::identity, Mounting::rotated_180, Mounting::mirrored_horizontally,
+                                          Mounting::mirrored_vertically};
+[[nodiscard]] std::string_view to_string(Mounting mounting);
+[[nodiscard]] std::optional<Mounting> mounting_from(std::string_view name);
+
+/// A plate as its drawing states it. The truth about every triangle comes from here, never from the image.
+struct TargetPlate {
+  std::string name;
+  std::string description;
+  double width_mm = 0, height_mm = 0;
+  std::vector<PlateTriangle> triangles;
+  Mounting mounting = Mounting::identity;  ///< in which places and apexes are stated; set by mounted(), never by a file
+};
+
+/// `invalid_input` for an empty plate, a size that is not positive, a repeated name, or a triangle that leaves the
+/// plate or touches another.
+[[nodiscard]] Result<void> validate(const TargetPlate& plate);
+
+/// The mounting that results from both, in either order (the Klein four-group: each is its own inverse).
+[[nodiscard]] Mounting combined(Mounting first, Mounting second);
+
+/// The plate as the camera sees it in a mounting: places and apexes transformed, names kept, `mounting` combined.
+[[nodiscard]] TargetPlate mounted(const TargetPlate& plate, Mounting mounting);
+[[nodiscard]] Apex mounted(Apex apex, Mounting mounting);
+
+}  // namespace todbench

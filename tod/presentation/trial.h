@@ -1,0 +1,34 @@
+// One question, one answer, and everything needed to judge or repeat it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "tod/plate/target_plate.h"
+
+namespace todbench {
+
+struct Trial {
+  std::int64_t presentation = 0;  ///< counts states shown; trials of one presentation share frame and phase
+  std::string plate;
+  Mounting mounting = Mounting::identity;
+  std::string triangle;      ///< name on the plate
+  double set_delta_t_k = 0;  ///< what the target was told
+  double delta_t_k = 0;      ///< effective contrast measured by the camera
+  double size_mm = 0;
+  double size_mrad = 0;  ///< square root of area over distance: the abscissa of the psychometric function
+  double size_px = 0;    ///< what the observer was told
+  Apex truth = Apex::up;
+  Apex answer = Apex::up;
+  std::array<double, 4> scores{};
+  double phase_x_px = 0, phase_y_px = 0;  ///< centroid minus window centre, in [-0.5, 0.5)
+  std::uint64_t frame = 0;                ///< sequence number
+  std::int64_t device_time_ns = 0;
+  std::int64_t host_time_ns = 0;
+  double since_nuc_s = -1;  ///< since the last non-uniformity correction that the program knows of; < 0: none known
+
+  [[nodiscard]] bool correct() const { return truth == answer; }
+};
+
+}  // namespace todbench

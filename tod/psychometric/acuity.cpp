@@ -1,0 +1,24 @@
+#include "tod/psychometric/acuity.h"
+
+#include <cmath>
+
+namespace todbench {
+
+namespace {
+
+std::optional<double> reciprocal(const std::optional<double>& size_mrad) {
+  if (!size_mrad || !std::isfinite(*size_mrad) || *size_mrad <= 0) return std::nullopt;
+  return 1 / *size_mrad;
+}
+
+}  // namespace
+
+std::optional<double> acuity_per_mrad(const PsychometricFit& fit) {
+  return reciprocal(fit.threshold);
+}
+
+Interval acuity_interval(const Interval& s75_mrad) {
+  return {reciprocal(s75_mrad.high), reciprocal(s75_mrad.low)};
+}
+
+}  // namespace todbench

@@ -1,0 +1,28 @@
+// How much trials that share a phase, a frame or a fixed pattern inflate the variance of the threshold.
+#pragma once
+
+#include <span>
+
+#include "tod/psychometric/psychometric_likelihood.h"
+
+namespace todbench {
+
+/// What clustering does to an interval.
+struct ClusterEffect {
+  double clusters = 0;   ///< G; 0: no row names a cluster, trials are independent
+  double inflation = 1;  ///< of the variance of ln threshold, >= 1
+};
+
+/// Cluster-robust variance (Liang and Zeger 1986): inverse information times the sum over clusters of squared scores
+/// times inverse information, times G/(G-1), over the model variance. Rows without a cluster in a set that has clusters
+/// are one cluster per trial. Where the fit has no information (step, one-sided data) the design effect of the counts
+/// about their level means (Rao and Scott 1992) takes its place.
+[[nodiscard]] ClusterEffect cluster_effect(std::span<const Level> levels, const PooledCounts& counts,
+                                           PsychometricForm form, const Maximum<3>& maximum,
+                                           std::optional<double> se_t);
+
+/// 2 (llmax - ll) at a two-sided confidence limit: chi-square with one degree of freedom, or with clusters the inflated
+/// square of Student's t with G - 1 degrees of freedom; infinite for one cluster. `confidence` e.g. 0.95.
+[[nodiscard]] double confidence_drop(const ClusterEffect& effect, double confidence);
+
+}  // namespace todbench

@@ -1,0 +1,79 @@
+// The likelihood of pooled counts: value, derivatives and its closed-form limits.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "acquisition/core/result.h"
+#include "tod/psychometric/bounded_newton.h"
+#include "tod/psychometric/psychometric_model.h"
+
+namespace todbench {
+
+/// Counts at one positive size after pooling.
+struct PooledLevel {
+  double ln_size = 0;  ///< ln(size / reference size)
+  double right = 0, wrong = 0;
+
+  [[nodiscard]] double total() const { return right + wrong; }
+};
+
+/// All that the likelihood needs: equal sizes pooled, sorted, sizes relative to a size in their middle so that units
+/// drop out.
+struct PooledCounts {
+  std::vector<PooledLevel> levels;          ///< positive sizes, increasing, total > 0
+  double blank_right = 0, blank_wrong = 0;  ///< size 0: nothing to see, psi = chance
+  double reference_size = 1;
+
+  [[nodiscard]] double trials() const;
+  [[nodiscard]] double first() const { return levels.front().ln_size; }
+  [[nodiscard]] double last() const { return levels.back().ln_size; }
+  /// ln(size / reference size).
+  [[nodiscard]] double relative(double size) const;
+  /// The size at a relative logarithm; nothing where a double cannot hold it.
+  [[nodiscard]] std::optional<double> size_at(double ln_size) const;
+};
+
+/// Rows of size 0 or above with whole counts, correct <= total; `invalid_input` names the first row that is not.
+[[nodiscard]] Result<void> validate(std::span<const Level> levels);
+
+/// Pools validated rows. Sizes closer than 1e-12 (relative) are one level.
+[[nodiscard]] PooledCounts pool(std::span<const Level> levels);
+/// The two sets together, sizes relative to the reference of the first.
+[[nodiscard]] PooledCounts pool(const PooledCounts& a, const PooledCounts& b);
+
+/// Model parameters as they are searched: t = ln(threshold / reference size), q = ln slope, lapse.
+using PsychometricPlace = std::array<double, 3>;
+inline constexpr std::size_t place_t = 0, place_q = 1, place_lapse = 2;
+
+/// ln likelihood without binomial coefficients.
+[[nodiscard]] double log_likelihood(const PooledCounts& counts, PsychometricForm form, const PsychometricPlace& place);
+/// With first and second derivatives in (t, q, lapse).
+[[nodiscard]] Expansion<3> expand_likelihood(const PooledCounts& counts, PsychometricForm form,
+                                             const PsychometricPlace& place);
+/// Gradient of ln psi (for one right answer) and of ln(1 - psi) (one wrong answer) in (t, q, lapse) at a relative ln
+/// size.
+struct Scores {
+  std::array<double, 3> right{}, wrong{};
+};
+[[nodiscard]] Scores scores_at(PsychometricForm form, const PsychometricPlace& place, double ln_size);
+
+/// Deviance of the model against one free probability per level, summed level by level so that large counts do not
+/// cancel.
+[[nodiscard]] double deviance(const PooledCounts& counts, PsychometricForm form, const PsychometricPlace& place);
+/// ln likelihood with one free probability per level (the blank level included).
+[[nodiscard]] double saturated(const PooledCounts& counts);
+
+/// Where the likelihood goes at the edges of the model (Prins 2019): the supremum may be one of these and no maximum
+/// exist.
+struct LikelihoodLimits {
+  double chance = 0;   ///< threshold -> infinity: psi = g everywhere
+  double ceiling = 0;  ///< threshold -> 0: psi = 1 - lapse at every positive size; -infinity with an error at lapse 0
+  double ceiling_lapse = 0;  ///< the lapse there
+  double step = 0;           ///< slope -> infinity: chance below, 1 - lapse above, anything between at one level
+};
+/// `lapse` fixed, or free in [0, 0.1] when not given.
+[[nodiscard]] LikelihoodLimits likelihood_limits(const PooledCounts& counts, std::optional<double> lapse);
+
+}  // namespace todbench

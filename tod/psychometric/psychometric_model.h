@@ -1,0 +1,48 @@
+// The psychometric function itself: stable logarithms of psi and 1 - psi, and their derivatives.
+#pragma once
+
+#include "tod/psychometric/psychometric_fit.h"
+
+namespace todbench {
+
+inline constexpr double chance_level = 0.25;  ///< four alternatives
+inline constexpr double min_slope = 0.1;      ///< domain of the slope b
+inline constexpr double max_slope = 50;
+inline constexpr double max_free_lapse = 0.1;  ///< domain of a free lapse
+
+/// A form at one lapse. psi = g + A H and 1 - psi = l + A (1 - H) with g = chance level, A = 1 - g - l and
+/// H = 1 - exp(-z) (size form) or exp(-z) (acuity form), z = kappa exp(u), u = +-b (ln x - ln x75); kappa(l) makes
+/// psi(x75) = 0.75.
+struct Link {
+  PsychometricForm form = PsychometricForm::size;
+  double lapse = 0;
+  double amplitude = 0.75;  ///< A
+  double kappa = 0;         ///< z at the threshold
+  double ln_kappa = 0;
+  double d_ln_kappa = 0;   ///< first derivative of ln kappa with respect to the lapse
+  double d2_ln_kappa = 0;  ///< second derivative
+  double sign = 1;         ///< of u: +1 size, -1 acuity
+};
+/// `lapse` in [0, 0.1].
+[[nodiscard]] Link make_link(PsychometricForm form, double lapse);
+
+/// ln psi and ln(1 - psi).
+struct LogProbabilities {
+  double right = 0, wrong = 0;
+};
+/// At u. Never through a psi rounded to 1: ln(1 - psi) is exact down to the largest double. Arguments beyond 700 are
+/// cut to 700.
+[[nodiscard]] LogProbabilities log_probabilities(const Link& link, double u);
+
+/// Value and partial derivatives of ln psi or ln(1 - psi) in w = ln z and in the lapse at constant w.
+struct LogTerm {
+  double value = 0, w = 0, ww = 0, l = 0, ll = 0, wl = 0;
+};
+/// What a right answer (ln psi) and a wrong one (ln(1 - psi)) contribute.
+struct AnswerTerms {
+  LogTerm right, wrong;
+};
+/// At u; beyond 300 as at 300, so that second derivatives times counts never overflow.
+[[nodiscard]] AnswerTerms answer_terms(const Link& link, double u);
+
+}  // namespace todbench

@@ -1,0 +1,35 @@
+// Profile-likelihood limits of the threshold.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "tod/psychometric/psychometric_search.h"
+
+namespace todbench {
+
+/// Where to start and how far to go.
+struct ProfileRequest {
+  double start_t = 0;          ///< the maximum, or any place of the supremum region
+  double supremum = 0;         ///< of the log-likelihood
+  std::optional<double> se_t;  ///< standard error of t, for the first steps
+  LikelihoodLimits limits;     ///< say in advance whether a side closes
+  double wide_drop = 0;        ///< 2 (supremum - profile) at the outer crossing
+  double narrow_drop = 0;      ///< at the inner one, <= wide_drop
+};
+
+/// Crossings in t, nearest to the start on each side; nothing where the likelihood never falls that far.
+struct ProfileCrossings {
+  struct Side {
+    std::optional<double> wide, narrow;
+  };
+  Side below, above;
+  std::optional<Maximum<3>>
+      better;  ///< a place above the supremum, should the march meet one: maximise again from there
+};
+
+[[nodiscard]] ProfileCrossings profile_crossings(const PooledCounts& counts, PsychometricForm form,
+                                                 const ScanGrid& grid, std::optional<double> lapse,
+                                                 const ProfileRequest& request);
+
+}  // namespace todbench

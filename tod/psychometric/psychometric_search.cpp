@@ -1,0 +1,231 @@
+#include "tod/psychometric/psychometric_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "acquisition/core/multiversion.h"
+
+namespace todbench {
+namespace {
+
+constexpr double first_u = -30;  // below it z < 2e-13
+constexpr double last_u = 5.5;   // above it z > 60: exp(-z) is below rounding
+constexpr double step_u = 1.0 / 16;
+
+// Quintic through values, first and second derivatives at both ends of a cell.
+std::array<double, 6> hermite(const LogTerm& a, const LogTerm& b) {
+  const double d0 = a.w * step_u, d1 = b.w * step_u, c0 = a.ww * step_u * step_u / 2, c1 = b.ww * step_u * step_u / 2;
+  const double rise = b.value - a.value;
+  return {a.value,
+          d0,
+          c0,
+          10 * rise - 6 * d0 - 4 * d1 - 3 * c0 + c1,
+          -15 * rise + 8 * d0 + 7 * d1 + 3 * c0 - 2 * c1,
+          6 * rise - 3 * (d0 + d1) - c0 + c1};
+}
+
+double quintic(const double* c, double s) {
+  return c[0] + s * (c[1] + s * (c[2] + s * (c[3] + s * (c[4] + s * c[5]))));
+}
+
+constexpr std::size_t powers = 6;
+
+// Adds to each sum the quintic of the cell in which factor (ln_size - t) + shift lies.
+TODBENCH_MULTIVERSION
+void add_quintics(const double* c, double factor, double ln_size, double shift, const double* ts, std::size_t count,
+                  double* __restrict sums) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double position = factor * (ln_size - ts[i]) + shift;
+    const auto cell = static_cast<std::int32_t>(position);
+    sums[i] += quintic(c + static_cast<std::int32_t>(powers) * cell, position - cell);
+  }
+}
+
+// right * a + wrong * b, element by element.
+TODBENCH_MULTIVERSION
+void mix(double right, const double* a, double wrong, const double* b, std::size_t count, double* __restrict out) {
+  for (std::size_t i = 0; i < count; ++i) out[i] = right * a[i] + wrong * b[i];
+}
+
+// Thresholds to try at one slope: around every level at fixed heights of the function, in the middle of every gap.
+std::vector<double> thresholds(const PooledCounts& counts, double slope) {
+  constexpr std::array offsets{-6.0, -2.5, -1.2, -0.4, 0.0, 0.4, 1.2, 2.5, 6.0};
+  constexpr double spacing = 0.25;  // of u: a quarter of the width of the function
+  std::vector<double> t;
+  for (std::size_t i = 0; i < counts.levels.size(); ++i) {
+    for (const double offset : offsets) t.push_back(counts.levels[i].ln_size + offset / slope);
+    if (i > 0) t.push_back((counts.levels[i - 1].ln_size + counts.levels[i].ln_size) / 2);
+  }
+  std::sort(t.begin(), t.end());
+  std::vector<double> thinned;
+  for (const double x : t)
+    if (thinned.empty() || x - thinned.back() >= spacing / slope) thinned.push_back(x);
+  return thinned;
+}
+
+// Indices of local maxima; of a plateau the first.
+std::vector<std::size_t> local_maxima(const std::vector<ScanNode>& nodes) {
+  std::vector<std::size_t> peaks;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const bool left = i == 0 || nodes[i].value > nodes[i - 1].value;
+    const bool right = i + 1 == nodes.size() || nodes[i].value >= nodes[i + 1].value;
+    if (left && right) peaks.push_back(i);
+  }
+  return peaks;
+}
+
+}  // namespace
+
+LinkTable::LinkTable(const Link& link)
+    : link_(link), low_(log_probabilities(link, first_u)), high_(log_probabilities(link, last_u)) {
+  cells_ = static_cast<std::size_t>((last_u - first_u) / step_u);
+  right_.reserve(powers * cells_);
+  wrong_.reserve(powers * cells_);
+  AnswerTerms here = answer_terms(link, first_u);
+  for (std::size_t i = 0; i < cells_; ++i) {
+    // ln z = ln kappa + u: derivatives in w are derivatives in u.
+    const AnswerTerms next = answer_terms(link, first_u + static_cast<double>(i + 1) * step_u);
+    const auto right = hermite(here.right, next.right), wrong = hermite(here.wrong, next.wrong);
+    right_.insert(right_.end(), right.begin(), right.end());
+    wrong_.insert(wrong_.end(), wrong.begin(), wrong.end());
+    here = next;
+  }
+}
+
+double LinkTable::log_likelihood(const PooledCounts& counts, double t, double slope) const {
+  double sum = 0;
+  const double factor = link_.sign * slope / step_u, shift = -first_u / step_u;
+  const auto end = static_cast<double>(cells_);
+  for (const PooledLevel& level : counts.levels) {
+    const double position = factor * (level.ln_size - t) + shift;
+    if (position >= 0 && position < end) {
+      const auto index = static_cast<std::size_t>(position);
+      const double s = position - static_cast<double>(index);
+      const std::size_t at = powers * index;
+      sum += level.right * quintic(&right_[at], s) + level.wrong * quintic(&wrong_[at], s);
+    } else {
+      sum += outside(level, (position - shift) * step_u);
+    }
+  }
+  return sum;
+}
+
+CountsTable::CountsTable(const LinkTable& table, const PooledCounts& counts) : table_(table), counts_(counts) {
+  const std::size_t count = powers * table.cells_;
+  coefficients_ = std::make_unique_for_overwrite<double[]>(counts.levels.size() * count);
+  double* out = coefficients_.get();
+  for (const PooledLevel& level : counts.levels) {
+    mix(level.right, table.right_.data(), level.wrong, table.wrong_.data(), count, out);
+    out += count;
+  }
+}
+
+std::vector<double> CountsTable::log_likelihoods(std::span<const double> ts, double slope) const {
+  std::vector<double> sums(ts.size());
+  const double factor = table_.link_.sign * slope / step_u, shift = -first_u / step_u;
+  const double* coefficients = coefficients_.get();
+  const auto end = static_cast<double>(table_.cells_);
+  for (const PooledLevel& level : counts_.levels) {
+    const auto position = [&](std::size_t i) { return factor * (level.ln_size - ts[i]) + shift; };
+    const auto inside = [&](std::size_t i) { return position(i) >= 0 && position(i) < end; };
+    const auto outside = [&](std::size_t i) { return table_.outside(level, (position(i) - shift) * step_u); };
+    // Positions are monotonic in t: those inside the table are one run.
+    std::size_t first = 0, last = ts.size();
+    for (; first < last && !inside(first); ++first) sums[first] += outside(first);
+    for (; last > first && !inside(last - 1); --last) sums[last - 1] += outside(last - 1);
+    add_quintics(coefficients, factor, level.ln_size, shift, ts.data() + first, last - first, sums.data() + first);
+    coefficients += powers * table_.cells_;
+  }
+  return sums;
+}
+
+// Constants on both sides, but for errors at lapse 0 near psi = 1, whose logarithm falls without end.
+double LinkTable::outside(const PooledLevel& level, double u) const {
+  const LogProbabilities& p = u < 0 ? low_ : high_;
+  const bool near_one = (u > 0) == (link_.sign > 0);
+  double sum = level.right * p.right;
+  if (level.wrong > 0)
+    sum += level.wrong * (link_.lapse == 0 && near_one ? log_probabilities(link_, u).wrong : p.wrong);
+  return sum;
+}
+
+Box<3> search_box(std::optional<double> lapse) {
+  constexpr double far = 2000;  // in ln threshold: beyond every number a double can hold
+  return {{-far, std::log(min_slope), lapse.value_or(0.0)}, {far, std::log(max_slope), lapse.value_or(max_free_lapse)}};
+}
+
+ScanGrid scan_grid(PsychometricForm form, std::optional<double> lapse) {
+  constexpr int slopes = 32;  // ratio 1.22
+  ScanGrid grid;
+  const double first = std::log(min_slope), last = std::log(max_slope);
+  for (int i = 0; i < slopes; ++i) grid.q.push_back(i + 1 == slopes ? last : first + (last - first) * i / (slopes - 1));
+  if (lapse) {
+    grid.tables.emplace_back(make_link(form, *lapse));
+  } else {
+    for (const double l : {0.0, 1e-3, 0.01, 0.03, max_free_lapse}) grid.tables.emplace_back(make_link(form, l));
+  }
+  return grid;
+}
+
+std::vector<ScanNode> best_per_slope(const PooledCounts& counts, const ScanGrid& grid) {
+  std::vector<ScanNode> best;
+  for (const double q : grid.q) {
+    const double slope = std::exp(q);
+    ScanNode node{{0, q, 0}, -std::numeric_limits<double>::infinity()};
+    for (const double t : thresholds(counts, slope)) {
+      for (const LinkTable& table : grid.tables) {
+        const double value = table.log_likelihood(counts, t, slope);
+        if (value > node.value) node = {{t, q, table.link().lapse}, value};
+      }
+    }
+    best.push_back(node);
+  }
+  return best;
+}
+
+Maximum<3> global_maximum(const PooledCounts& counts, PsychometricForm form, const std::vector<ScanNode>& nodes,
+                          std::optional<double> lapse) {
+  const Box<3> box = search_box(lapse);
+  const auto likelihood = [&](const PsychometricPlace& place) { return expand_likelihood(counts, form, place); };
+  std::optional<Maximum<3>> best;
+  const auto consider = [&best](const Maximum<3>& m) {
+    if (!best || m.expansion.value > best->expansion.value) best = m;
+  };
+  for (const std::size_t i : local_maxima(nodes)) consider(climb<3>(likelihood, nodes[i].place, box));
+  // On a ridge that rises for ever more slowly towards a slope limit Newton steps end before it: the limits are climbed
+  // on their own.
+  for (const bool upper : {false, true}) {
+    Box<3> edge = box;
+    edge.lower[place_q] = edge.upper[place_q] = upper ? box.upper[place_q] : box.lower[place_q];
+    const ScanNode& start = upper ? nodes.back() : nodes.front();
+    consider(climb<3>(likelihood, climb<3>(likelihood, start.place, edge).place, box));
+  }
+  return *best;
+}
+
+Maximum<3> profile_maximum(const PooledCounts& counts, PsychometricForm form, const ScanGrid& grid,
+                           std::optional<double> lapse, double t) {
+  Box<3> box = search_box(lapse);
+  box.lower[place_t] = box.upper[place_t] = t;
+  const auto likelihood = [&](const PsychometricPlace& place) { return expand_likelihood(counts, form, place); };
+  std::vector<ScanNode> nodes;
+  for (const double q : grid.q) {
+    const double slope = std::exp(q);
+    ScanNode node{{t, q, 0}, -std::numeric_limits<double>::infinity()};
+    for (const LinkTable& table : grid.tables) {
+      const double value = table.log_likelihood(counts, t, slope);
+      if (value > node.value) node = {{t, q, table.link().lapse}, value};
+    }
+    nodes.push_back(node);
+  }
+  std::optional<Maximum<3>> best;
+  for (const std::size_t i : local_maxima(nodes)) {
+    const Maximum<3> m = climb<3>(likelihood, nodes[i].place, box);
+    if (!best || m.expansion.value > best->expansion.value) best = m;
+  }
+  return *best;
+}
+
+}  // namespace todbench

@@ -1,0 +1,76 @@
+// The global maximum of the likelihood: a scan of the whole domain, then Newton steps from every promising place.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tod/psychometric/psychometric_likelihood.h"
+
+namespace todbench {
+
+/// ln psi and ln(1 - psi) of one link as piecewise quintics in u (Hermite, step 1/16): good to 1e-7, several times
+/// faster than the functions themselves. For scans and integrals, never for a reported likelihood.
+class LinkTable {
+ public:
+  explicit LinkTable(const Link& link);
+  [[nodiscard]] const Link& link() const { return link_; }
+  /// ln likelihood of the positive levels (blank trials add a constant).
+  [[nodiscard]] double log_likelihood(const PooledCounts& counts, double t, double slope) const;
+
+ private:
+  [[nodiscard]] double outside(const PooledLevel& level, double u) const;
+
+  Link link_;
+  LogProbabilities low_, high_;  ///< beyond the table
+  std::size_t cells_;
+  std::vector<double> right_, wrong_;  ///< six coefficients of (u - left edge) / step for each cell
+
+  friend class CountsTable;
+};
+
+/// The ln likelihood of one set of counts under one link, right and wrong answers of a level in one polynomial: a third
+/// of the work of LinkTable for each value, worth its making (1 us for each level) from some hundred values.
+/// Refers to both arguments, which must live longer.
+class CountsTable {
+ public:
+  CountsTable(const LinkTable& table, const PooledCounts& counts);
+  /// Of the positive levels, as LinkTable::log_likelihood, at increasing thresholds `ts` and one slope.
+  [[nodiscard]] std::vector<double> log_likelihoods(std::span<const double> ts, double slope) const;
+
+ private:
+  const LinkTable& table_;
+  const PooledCounts& counts_;
+  std::unique_ptr<double[]> coefficients_;  ///< [level][cell][power]
+};
+
+/// Search range in (t, q, lapse). A fixed lapse has equal limits.
+[[nodiscard]] Box<3> search_box(std::optional<double> lapse);
+
+/// Slopes and lapses at which scans are made.
+struct ScanGrid {
+  std::vector<double> q;
+  std::vector<LinkTable> tables;  ///< one for each lapse
+};
+[[nodiscard]] ScanGrid scan_grid(PsychometricForm form, std::optional<double> lapse);
+
+/// A scanned place with its tabulated likelihood.
+struct ScanNode {
+  PsychometricPlace place{};
+  double value = 0;
+};
+/// For each slope of the grid the best node over threshold and lapse. Thresholds are spaced by the width of the
+/// function at that slope and lie around every level and in every gap, so that no step between two levels is missed.
+[[nodiscard]] std::vector<ScanNode> best_per_slope(const PooledCounts& counts, const ScanGrid& grid);
+
+/// The maximum over the domain, from the result of best_per_slope. Where the likelihood rises towards a slope limit the
+/// place is at that limit.
+[[nodiscard]] Maximum<3> global_maximum(const PooledCounts& counts, PsychometricForm form,
+                                        const std::vector<ScanNode>& nodes, std::optional<double> lapse);
+
+/// max over slope and lapse at one threshold, from a scan over both and Newton steps from each local maximum.
+[[nodiscard]] Maximum<3> profile_maximum(const PooledCounts& counts, PsychometricForm form, const ScanGrid& grid,
+                                         std::optional<double> lapse, double t);
+
+}  // namespace todbench

@@ -1,0 +1,36 @@
+// Two data sets fitted together: with a common threshold and with separate ones.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "tod/psychometric/psychometric_search.h"
+
+namespace todbench {
+
+/// Maxima of the summed ln likelihood and the difference of thresholds at the separate one.
+struct PairMaxima {
+  double ll_separate = 0, ll_common = 0;
+  double ln_ratio = 0;                ///< ln(threshold A / threshold B)
+  std::optional<double> se_ln_ratio;  ///< from the observed information; nothing where it is singular
+};
+
+/// A free lapse is free in each set. Levels are valid and each set has a positive size.
+class ThresholdPair {
+ public:
+  ThresholdPair(std::span<const Level> a, std::span<const Level> b, const FitOptions& options);
+
+  /// One slope for both sets, with and without one threshold.
+  [[nodiscard]] PairMaxima shared_slope() const;
+  /// A slope for each set, with and without one threshold.
+  [[nodiscard]] PairMaxima separate_slopes() const;
+
+ private:
+  PooledCounts a_, b_;  ///< sizes relative to the same reference
+  PsychometricForm form_;
+  std::optional<double> lapse_;
+  ScanGrid grid_;
+  std::vector<ScanNode> nodes_a_, nodes_b_;
+};
+
+}  // namespace todbench

@@ -1,0 +1,136 @@
+#include "tod/psychometric/tod_curve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "tod/psychometric/psychometric_clusters.h"
+
+namespace todbench {
+namespace {
+
+using TrialGroup = std::vector<const Trial*>;
+
+// Trials of one presentation share frame, phase and set-up.
+std::int64_t presentation_of(const Trial& trial) {
+  return trial.presentation;
+}
+
+// Trials of one place share the detectors that see it, hence their fixed pattern.
+using Place = std::tuple<std::string, Mounting, std::string>;
+Place place_of(const Trial& trial) {
+  return {trial.plate, trial.mounting, trial.triangle};
+}
+
+// One row per size and cluster.
+template <typename Key>
+std::vector<Level> count(const TrialGroup& trials, Key (*key_of)(const Trial&)) {
+  std::map<Key, int> numbers;
+  std::map<std::pair<double, int>, Level> rows;
+  for (const Trial* trial : trials) {
+    const int number = numbers.emplace(key_of(*trial), static_cast<int>(numbers.size())).first->second;
+    Level& row = rows[{trial->size_mrad, number}];
+    row.size = trial->size_mrad;
+    row.cluster = number;
+    row.total += 1;
+    row.correct += trial->correct() ? 1 : 0;
+  }
+  std::vector<Level> levels;
+  for (const auto& [key, row] : rows) levels.push_back(row);
+  return levels;
+}
+
+struct Candidate {
+  std::vector<Level> levels;
+  PsychometricFit fit;
+
+  // How far the likelihood must fall for a 95 % limit: inflation times the square of Student's t.
+  [[nodiscard]] double drop() const { return confidence_drop({fit.clusters, fit.variance_inflation}, 0.95); }
+};
+
+Result<Candidate> candidate(std::vector<Level> levels, const FitOptions& options) {
+  auto fit = fit_psychometric(levels, options);
+  if (!fit) return tl::unexpected(fit.error());
+  return Candidate{std::move(levels), *fit};
+}
+
+// The clustering that widens the intervals more. One cluster says nothing about its variance, so it is chosen only if
+// both have one.
+Result<Candidate> widest(const TrialGroup& trials, FitOptions options) {
+  options.with_posterior = false;
+  auto by_presentation = candidate(count<std::int64_t>(trials, presentation_of), options);
+  if (!by_presentation) return by_presentation;
+  auto by_place = candidate(count<Place>(trials, place_of), options);
+  if (!by_place) return by_place;
+  if (by_place->fit.clusters < 2) return by_presentation;
+  if (by_presentation->fit.clusters < 2) return by_place;
+  return by_place->drop() > by_presentation->drop() ? by_place : by_presentation;
+}
+
+// Effective contrast: mean over trials, standard error over the measurements of it. The camera measures a contrast once
+// per set-up and set-point; all presentations until the next change carry the same value.
+void add_contrast(TodPoint& point, const TrialGroup& trials) {
+  std::set<std::tuple<std::string, Mounting, double>> measurements;
+  double sum = 0;
+  for (const Trial* trial : trials) {
+    sum += trial->delta_t_k;
+    measurements.emplace(trial->plate, trial->mounting, trial->delta_t_k);
+  }
+  point.delta_t_k = sum / static_cast<double>(trials.size());
+  const auto n = static_cast<double>(measurements.size());
+  if (n < 2) return;
+  double mean = 0, square = 0;
+  for (const auto& measurement : measurements) mean += std::get<double>(measurement) / n;
+  for (const auto& measurement : measurements) square += std::pow(std::get<double>(measurement) - mean, 2);
+  point.delta_t_se_k = std::sqrt(square / (n - 1) / n);
+}
+
+Result<TodPoint> tod_point(double set_delta_t_k, const TrialGroup& trials, const FitOptions& options) {
+  TodPoint point;
+  point.set_delta_t_k = set_delta_t_k;
+  add_contrast(point, trials);
+  auto chosen = widest(trials, options);
+  if (!chosen) return tl::unexpected(chosen.error());
+  point.levels = std::move(chosen->levels);
+  auto fit = fit_psychometric(point.levels, options);
+  if (!fit) return tl::unexpected(fit.error());
+  point.fit = *fit;
+  if (!options.fixed_lapse) return point;
+  FitOptions free = options;
+  free.fixed_lapse.reset();
+  free.with_posterior = false;
+  auto free_fit = fit_psychometric(point.levels, free);
+  if (!free_fit) return tl::unexpected(free_fit.error());
+  point.free_lapse_fit = *free_fit;
+  constexpr double boundary_drop =
+      2.705543454095404;  // 5 % where the parameter is at its bound under the null hypothesis
+  if (point.fit.log_likelihood && free_fit->log_likelihood)
+    point.lapse_warning = 2 * (*free_fit->log_likelihood - *point.fit.log_likelihood) > boundary_drop;
+  return point;
+}
+
+}  // namespace
+
+Result<TodCurve> tod_curve(std::span<const Trial> trials, const FitOptions& options) {
+  if (trials.empty()) return fail(ErrorCode::invalid_input, "TOD curve: no trials");
+  const auto strongest_first = [](double a, double b) { return std::pair(std::abs(a), a) > std::pair(std::abs(b), b); };
+  std::map<double, TrialGroup, decltype(strongest_first)> groups(strongest_first);
+  for (const Trial& trial : trials) {
+    if (!std::isfinite(trial.set_delta_t_k)) return fail(ErrorCode::invalid_input, "TOD curve: contrast is not finite");
+    groups[trial.set_delta_t_k].push_back(&trial);
+  }
+  TodCurve curve;
+  for (const auto& [contrast, group] : groups) {
+    auto point = tod_point(contrast, group, options);
+    if (!point) return fail("fitting contrast " + std::to_string(contrast) + " K", point.error());
+    curve.points.push_back(std::move(*point));
+  }
+  return curve;
+}
+
+}  // namespace todbench

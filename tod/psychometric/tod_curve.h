@@ -1,0 +1,37 @@
+// Thresholds over contrast.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tod/psychometric/psychometric_fit.h"
+#include "tod/presentation/trial.h"
+
+namespace todbench {
+
+/// One contrast of a TOD curve.
+struct TodPoint {
+  double set_delta_t_k = 0;  ///< what the target was told: the name by which points are paired
+  double delta_t_k = 0;      ///< effective contrast measured by the camera (mean over trials)
+  double delta_t_se_k = 0;  ///< standard error of that mean, over the measurements of it (one per set-up and set-point)
+  std::vector<Level> levels;                      ///< counts per size, one row per size and cluster: what the fit saw
+  PsychometricFit fit;                            ///< in mrad
+  std::optional<PsychometricFit> free_lapse_fit;  ///< the same with a free lapse, as a check
+  bool lapse_warning = false;             ///< the free lapse explains the data significantly better (2 ln LR > 2.71)
+  std::optional<double> direct_s75_mrad;  ///< simulated sensors only: no psychometric form assumed
+  std::optional<double> direct_s75_se_mrad;
+};
+
+/// A measured or simulated TOD curve. Acuity is 1 / S75.
+struct TodCurve {
+  std::string observer, sensor;
+  std::vector<TodPoint> points;  ///< contrast decreasing
+};
+
+/// Groups trials by set contrast, counts them per size and presentation, and fits each group. Intervals are clustered
+/// by presentation and by place on the plate (which shares fixed pattern); the wider one is reported.
+[[nodiscard]] Result<TodCurve> tod_curve(std::span<const Trial> trials, const FitOptions& options);
+
+}  // namespace todbench

@@ -1,0 +1,271 @@
+#include "tod/range/range_prediction.h"
+#include "tod/psychometric/acuity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <limits>
+
+namespace todbench {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Ratio V75 / V50 of the target transfer probability function: the x at which x^E = 3, E = 1.51 + 0.24 x.
+constexpr double v75_over_v50 = 1.7650293160712442;
+constexpr int pieces = 256;  ///< in which a crossing is looked for before it is bisected
+
+std::string text(const char* format, double a, double b = 0, double c = 0) {
+  char line[320];
+  std::snprintf(line, sizeof line, format, a, b, c);
+  return line;
+}
+
+/// ln acuity at a contrast with the reach of its 95 % interval on both sides; infinite where a side is open.
+struct LogAcuity {
+  double value = 0, below = 0, above = 0;
+};
+
+struct Node {
+  double ln_contrast = 0;
+  LogAcuity acuity;
+};
+
+Node node_of(const TodThreshold& threshold) {
+  const double value = -std::log(threshold.s75_mrad);
+  const auto& [low, high] = threshold.s75_ci95_mrad;
+  return {std::log(threshold.delta_t_k),
+          {value, high ? std::max(0.0, std::log(*high) + value) : infinity,
+           low && *low > 0 ? std::max(0.0, -value - std::log(*low)) : infinity}};
+}
+
+/// Of two independent errors with weights; a weight of 0 takes an open side out.
+double joined(double weight_a, double a, double weight_b, double b) {
+  return std::hypot(weight_a > 0 ? weight_a * a : 0, weight_b > 0 ? weight_b * b : 0);
+}
+
+std::optional<LogAcuity> at(const std::vector<Node>& nodes, double ln_contrast) {
+  if (ln_contrast < nodes.front().ln_contrast) return std::nullopt;
+  if (ln_contrast >= nodes.back().ln_contrast) return nodes.back().acuity;
+  const auto above = std::upper_bound(nodes.begin(), nodes.end(), ln_contrast,
+                                      [](double x, const Node& node) { return x < node.ln_contrast; });
+  const Node& b = *above;
+  const Node& a = *std::prev(above);
+  const double w = (ln_contrast - a.ln_contrast) / (b.ln_contrast - a.ln_contrast);
+  return LogAcuity{a.acuity.value + w * (b.acuity.value - a.acuity.value),
+                   joined(1 - w, a.acuity.below, w, b.acuity.below), joined(1 - w, a.acuity.above, w, b.acuity.above)};
+}
+
+std::vector<Node> nodes_of(std::span<const TodThreshold> sorted) {
+  std::vector<Node> nodes;
+  for (const auto& threshold : sorted) nodes.push_back(node_of(threshold));
+  return nodes;
+}
+
+/// Which of the three curves: the estimate, or a side of its band.
+enum class Side { estimate, low, high };
+
+double side_of(const LogAcuity& acuity, Side side) {
+  if (side == Side::low) return acuity.value - acuity.below;
+  if (side == Side::high) return acuity.value + acuity.above;
+  return acuity.value;
+}
+
+/// The target line against one TOD curve, everything in natural logarithms of metres, 1/mrad and kelvin.
+class TargetLine {
+ public:
+  TargetLine(const std::vector<Node>& nodes, const RangeTask& task) : nodes_(nodes), task_(task) {}
+
+  [[nodiscard]] double ln_contrast(double range_m) const {
+    return std::log(std::abs(task_.delta_t_k)) - task_.extinction_per_km * range_m / 1000;
+  }
+  /// ln(M / M75): the angle in mrad is 1000 size / range.
+  [[nodiscard]] std::optional<double> ln_m_over_m75(double range_m, Side side) const {
+    const auto acuity = at(nodes_, ln_contrast(range_m));
+    if (!acuity) return std::nullopt;
+    return std::log(1000 * task_.size_m / task_.m75) - std::log(range_m) + side_of(*acuity, side);
+  }
+  /// Where the apparent contrast leaves the TOD curve at its low end; infinite without extinction.
+  [[nodiscard]] double end_m() const {
+    if (task_.extinction_per_km <= 0) return infinity;
+    return 1000 * (std::log(std::abs(task_.delta_t_k)) - nodes_.front().ln_contrast) / task_.extinction_per_km;
+  }
+  /// The range at which a TOD curve of constant acuity would be met.
+  [[nodiscard]] double range_of(double ln_acuity) const {
+    return 1000 * task_.size_m / task_.m75 * std::exp(ln_acuity);
+  }
+  /// The smallest range at which M falls to M75; nothing when it does not before the curve ends.
+  [[nodiscard]] std::optional<double> crossing(Side side) const;
+
+ private:
+  [[nodiscard]] double bisected(double inside, double outside, Side side) const;
+  const std::vector<Node>& nodes_;
+  RangeTask task_;
+};
+
+double TargetLine::bisected(double inside, double outside, Side side) const {
+  for (int i = 0; i < 200 && inside < outside; ++i) {
+    const double middle = std::sqrt(inside) * std::sqrt(outside);
+    if (!(middle > inside && middle < outside)) break;
+    const auto m = ln_m_over_m75(middle, side);
+    (m && *m > 0 ? inside : outside) = middle;
+  }
+  return std::sqrt(inside) * std::sqrt(outside);
+}
+
+std::optional<double> TargetLine::crossing(Side side) const {
+  double lowest = infinity, highest = -infinity;
+  for (const auto& node : nodes_) {
+    // An open side reaches nowhere in particular: the crossing is then unknown, unless other points decide it.
+    if (std::isfinite(side_of(node.acuity, side))) {
+      lowest = std::min(lowest, side_of(node.acuity, side));
+      highest = std::max(highest, side_of(node.acuity, side));
+    }
+  }
+  if (!(lowest <= highest)) return std::nullopt;
+  // A band lies nowhere outside the outermost ends of its points, joined errors being smaller than single ones.
+  const double first = range_of(lowest) * 0.99;
+  const double last = std::min(end_m(), range_of(highest) * 1.01);
+  double inside = std::min(first, last);
+  if (inside <= 0) return std::nullopt;
+  const auto start = ln_m_over_m75(inside, side);
+  if (!start || !std::isfinite(*start)) return std::nullopt;
+  if (*start <= 0) return bisected(inside * 1e-3, inside, side);
+  const double step = std::pow(last / inside, 1.0 / pieces);
+  for (int i = 0; i < pieces && last > inside; ++i) {
+    const double next = i + 1 == pieces ? last : inside * step;
+    const auto m = ln_m_over_m75(next, side);
+    if (!m || std::isinf(*m)) return std::nullopt;
+    if (*m <= 0) return bisected(inside, next, side);
+    inside = next;
+  }
+  return std::nullopt;
+}
+
+Result<void> check(std::span<const TodThreshold> thresholds, const RangeTask& task) {
+  const auto positive = [](double value) { return std::isfinite(value) && value > 0; };
+  if (!positive(task.size_m)) return fail(ErrorCode::invalid_input, "the target's size must be above 0 m");
+  if (!positive(std::abs(task.delta_t_k))) return fail(ErrorCode::invalid_input, "the target has no contrast");
+  if (!positive(task.m75)) return fail(ErrorCode::invalid_input, "M75 must be above 0");
+  if (!std::isfinite(task.extinction_per_km) || task.extinction_per_km < 0)
+    return fail(ErrorCode::invalid_input, "the extinction must be 0 or more per km");
+  if (thresholds.empty()) return fail(ErrorCode::invalid_input, "the TOD curve has no threshold");
+  for (std::size_t i = 0; i < thresholds.size(); ++i) {
+    const auto& t = thresholds[i];
+    if (!positive(t.delta_t_k) || !positive(t.s75_mrad))
+      return fail(ErrorCode::invalid_input, "a point of the TOD curve is not positive");
+    if (i > 0 && !(t.delta_t_k > thresholds[i - 1].delta_t_k))
+      return fail(ErrorCode::invalid_input, text("the TOD curve has two points at %g K", t.delta_t_k));
+  }
+  return {};
+}
+
+/// 1, 2 or 5 times a power of ten, at most `value`.
+double round_step(double value) {
+  const double power = std::pow(10, std::floor(std::log10(value)));
+  for (const double factor : {5.0, 2.0}) {
+    if (factor * power <= value * (1 + 1e-12)) return factor * power;
+  }
+  return power;
+}
+
+std::optional<double> probability(std::optional<double> ln_m) {
+  if (!ln_m || !std::isfinite(*ln_m)) return std::nullopt;
+  return identification_probability(std::exp(*ln_m));
+}
+
+std::vector<RangePoint> probabilities(const TargetLine& line, double up_to_m) {
+  const double step = round_step(up_to_m / 60);
+  std::vector<RangePoint> curve;
+  for (int i = 1; i * step <= up_to_m * (1 + 1e-12); ++i) {
+    RangePoint point;
+    point.range_m = i * step;
+    point.apparent_delta_t_k = std::exp(line.ln_contrast(point.range_m));
+    point.probability = probability(line.ln_m_over_m75(point.range_m, Side::estimate));
+    point.probability_ci95 = {probability(line.ln_m_over_m75(point.range_m, Side::low)),
+                              probability(line.ln_m_over_m75(point.range_m, Side::high))};
+    curve.push_back(point);
+  }
+  return curve;
+}
+
+std::string why_not(const TargetLine& line, const RangeTask& task, double lowest_k) {
+  if (line.end_m() < 0 || line.ln_contrast(0) < std::log(lowest_k)) {
+    return text("the target's contrast of %g K lies below the lowest contrast of the TOD curve, %g K",
+                std::abs(task.delta_t_k), lowest_k);
+  }
+  return text(
+      "the target line does not meet the TOD curve: the apparent contrast falls below the lowest contrast of "
+      "the curve, %g K, at %.4g m, where M is still above M75 = %g; the range is at least that",
+      lowest_k, line.end_m(), task.m75);
+}
+
+}  // namespace
+
+double m75_from_v50(double v50) {
+  return 0.6 * v50;
+}
+
+double identification_probability(double m_over_m75) {
+  const double x = v75_over_v50 * m_over_m75;
+  const double exponent = 1.51 + 0.24 * x;
+  // 1 / (1 + x^-E): exact at both ends.
+  return 1 / (1 + std::exp(-exponent * std::log(x)));
+}
+
+ThresholdSelection thresholds_of(const TodCurve& curve, double target_delta_t_k) {
+  ThresholdSelection selection;
+  const auto same_sign = [&](const TodPoint& p) { return std::signbit(p.delta_t_k) == std::signbit(target_delta_t_k); };
+  const bool any = std::any_of(curve.points.begin(), curve.points.end(), same_sign);
+  if (!any && !curve.points.empty())
+    selection.notes.emplace_back("the TOD curve is of the opposite polarity: taken to be the same for both");
+  for (const auto& point : curve.points) {
+    if (any && !same_sign(point)) continue;
+    if (!point.fit.threshold || point.fit.verdict == FitVerdict::flat_or_decreasing) {
+      selection.notes.push_back(text("the point at %g K was left out: it has no threshold", point.delta_t_k));
+      continue;
+    }
+    selection.thresholds.push_back({std::abs(point.delta_t_k), *point.fit.threshold, point.fit.ci95});
+  }
+  return selection;
+}
+
+std::optional<double> interpolated_acuity_per_mrad(std::span<const TodThreshold> sorted, double delta_t_k) {
+  const auto found = at(nodes_of(sorted), std::log(delta_t_k));
+  if (!found) return std::nullopt;
+  return std::exp(found->value);
+}
+
+Result<RangePrediction> predict_range(std::span<const TodThreshold> thresholds, const RangeTask& task) {
+  std::vector<TodThreshold> sorted(thresholds.begin(), thresholds.end());
+  std::sort(sorted.begin(), sorted.end(),
+            [](const TodThreshold& a, const TodThreshold& b) { return a.delta_t_k < b.delta_t_k; });
+  if (auto checked = check(sorted, task); !checked) return tl::unexpected(checked.error());
+  const std::vector<Node> nodes = nodes_of(sorted);
+  const TargetLine line(nodes, task);
+  RangePrediction prediction;
+  prediction.r75_m = line.crossing(Side::estimate);
+  if (prediction.r75_m) {
+    prediction.r75_ci95_m = {line.crossing(Side::low), line.crossing(Side::high)};
+  } else {
+    prediction.reason = why_not(line, task, sorted.front().delta_t_k);
+    // The curve, where it exists, bounds the range from below: by its lower side where that is met, else by its end.
+    if (line.end_m() > 0 && std::isfinite(line.end_m())) {
+      const auto low = line.crossing(Side::low);
+      prediction.r75_ci95_m.low = low ? low : std::optional(line.end_m());
+      if (std::isinf(nodes.front().acuity.below)) prediction.r75_ci95_m.low.reset();
+    }
+  }
+  if (std::abs(task.delta_t_k) > sorted.back().delta_t_k) {
+    prediction.notes.push_back(
+        text("the target's contrast lies above the highest of the TOD curve, %g K: the acuity is "
+             "taken to be constant there",
+             sorted.back().delta_t_k));
+  }
+  double farthest = 0;
+  for (const auto& node : nodes) farthest = std::max(farthest, line.range_of(node.acuity.value));
+  prediction.curve = probabilities(line, 2 * prediction.r75_m.value_or(farthest));
+  return prediction;
+}
+
+}  // namespace todbench

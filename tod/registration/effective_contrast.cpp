@@ -1,0 +1,136 @@
+// effective_contrast: inside minus surround of the large triangles.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "tod/plate/plate_outlines.h"
+#include "tod/registration/registration.h"
+
+namespace todbench {
+namespace {
+
+constexpr double inner_share = 0.45;    // of the inscribed radius, kept away from the edge
+constexpr double inner_most_px = 1.25;  // three blur widths of 0.4 px
+constexpr double ring_begin_px = 1.5;
+constexpr double ring_width_px = 3;
+
+/// Distance to the edge of a convex polygon, > 0 inside.
+double depth(const Polygon& polygon, cv::Point2d at) {
+  double inside = std::numeric_limits<double>::infinity();
+  double nearest = inside;
+  const double orientation = (polygon[1] - polygon[0]).cross(polygon[2] - polygon[1]) > 0 ? 1 : -1;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const cv::Point2d edge = polygon[(i + 1) % polygon.size()] - polygon[i];
+    const cv::Point2d to = at - polygon[i];
+    inside = std::min(inside, orientation * edge.cross(to) / cv::norm(edge));
+    const double t = std::clamp(to.dot(edge) / edge.dot(edge), 0.0, 1.0);
+    nearest = std::min(nearest, cv::norm(to - t * edge));
+  }
+  return inside >= 0 ? inside : -nearest;
+}
+
+double median(std::vector<double> values) {
+  std::ranges::sort(values);
+  const std::size_t n = values.size();
+  return n % 2 == 1 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
+}
+
+/// Standard error of a median of white noise whose spread the median absolute deviation gives: sqrt(pi / 2) sigma /
+/// sqrt(n).
+double median_error(const std::vector<double>& values, double sigma) {
+  return std::sqrt(std::numbers::pi / 2 / static_cast<double>(values.size())) * sigma;
+}
+
+double spread(std::vector<double> values) {
+  const double middle = median(values);
+  for (double& v : values) v = std::abs(v - middle);
+  return 1.4826 * median(std::move(values));
+}
+
+struct Samples {
+  std::vector<double> inside, ring;
+};
+
+/// Pixels of the inside and of the ring round triangle `which`; pixels near other triangles belong to neither.
+Samples samples(const cv::Mat1d& picture, const std::vector<Polygon>& outlines, std::size_t which, double margin) {
+  const Polygon& own = outlines[which];
+  const double reach = ring_begin_px + ring_width_px;
+  cv::Point2d low = own[0], high = own[0];
+  for (const cv::Point2d& p : own) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  Samples result;
+  double deepest = -std::numeric_limits<double>::infinity();
+  double deepest_value = 0;
+  const int top = std::max(0, static_cast<int>(std::floor(low.y - reach)));
+  const int bottom = std::min(picture.rows - 1, static_cast<int>(std::ceil(high.y + reach)));
+  const int left = std::max(0, static_cast<int>(std::floor(low.x - reach)));
+  const int right = std::min(picture.cols - 1, static_cast<int>(std::ceil(high.x + reach)));
+  for (int y = top; y <= bottom; ++y) {
+    for (int x = left; x <= right; ++x) {
+      const double d = depth(own, cv::Point2d(x, y));
+      if (d > deepest) {
+        deepest = d;
+        deepest_value = picture(y, x);
+      }
+      if (d >= margin) result.inside.push_back(picture(y, x));
+      if (d > -ring_begin_px || d < -reach) continue;
+      bool free = true;
+      for (std::size_t k = 0; free && k < outlines.size(); ++k) {
+        free = k == which || depth(outlines[k], cv::Point2d(x, y)) < -ring_begin_px;
+      }
+      if (free) result.ring.push_back(picture(y, x));
+    }
+  }
+  if (result.inside.empty()) result.inside.push_back(deepest_value);
+  return result;
+}
+
+}  // namespace
+
+Result<EffectiveContrast> effective_contrast(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
+                                             const Registration& registration, double min_size_px) {
+  const std::string doing = "measuring the contrast of plate \"" + mounted_plate.name + "\": ";
+  if (picture.empty() || !cv::checkRange(picture)) {
+    return fail(ErrorCode::invalid_input, doing + "the picture is empty or has values that are not finite");
+  }
+  std::vector<Polygon> outlines;
+  for (const PlateTriangle& t : mounted_plate.triangles) {
+    outlines.push_back(outline_in_picture(registration.plate_to_pixel, t, t.apex));
+  }
+  std::vector<double> contrasts;
+  double pixel_error = 0;
+  double largest = 0;
+  for (std::size_t k = 0; k < outlines.size(); ++k) {
+    const PlateTriangle& t = mounted_plate.triangles[k];
+    const double size = t.size_mm * registration.scale_at(t.position_mm);
+    largest = std::max(largest, size);
+    if (size < min_size_px) continue;
+    for (const cv::Point2d& p : outlines[k]) {
+      if (p.x >= 0 && p.y >= 0 && p.x <= picture.cols - 1 && p.y <= picture.rows - 1) continue;
+      return fail(ErrorCode::calibration, doing + t.name + " leaves the picture");
+    }
+    const double margin = std::min(inner_share * triangle_centroid_to_base * size, inner_most_px);
+    const Samples s = samples(picture, outlines, k, margin);
+    if (s.ring.empty()) return fail(ErrorCode::calibration, doing + t.name + " has no free surround in the picture");
+    contrasts.push_back(median(s.inside) - median(s.ring));
+    const double noise = spread(s.ring);
+    pixel_error = std::hypot(median_error(s.inside, noise), median_error(s.ring, noise));
+  }
+  if (contrasts.empty()) {
+    return fail(ErrorCode::invalid_input, doing + "no triangle is at least " + fixed(min_size_px, 1) +
+                                              " px, the largest is " + fixed(largest, 1) + " px");
+  }
+  EffectiveContrast result;
+  result.triangles = static_cast<int>(contrasts.size());
+  const double n = static_cast<double>(contrasts.size());
+  for (const double c : contrasts) result.value += c / n;
+  double squares = 0;
+  for (const double c : contrasts) squares += (c - result.value) * (c - result.value);
+  result.standard_error = n > 1 ? std::sqrt(squares / (n - 1) / n) : pixel_error;
+  return result;
+}
+
+}  // namespace todbench

@@ -1,0 +1,348 @@
+#include "tod/registration/registration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "tod/registration/blob_finder.h"
+#include "tod/registration/layout_matching.h"
+#include "tod/registration/plate_mapping.h"
+#include "tod/plate/plate_outlines.h"
+#include "tod/registration/shift_fit.h"
+
+namespace todbench {
+namespace {
+
+constexpr double first_blur_px = 0.45;     // optics, detector and sampling box of a focused camera
+constexpr double scale_range = 0.3;        // searched, so that a wrong scale is named
+constexpr double extra_rotation_deg = 10;  // searched beyond the limit, for the same reason
+constexpr int credible_pairs = 4;          // fewer blobs fit any layout by chance
+constexpr double agreement_needed = 0.75;  // of the large triangles must point as the plate says
+constexpr double reach_px = 2.5;           // of the fit from the place the blobs suggest
+
+/// Everything one attempt needs, fixed.
+struct Search {
+  const cv::Mat1d& picture;
+  const RegistrationOptions& options;
+  std::array<std::vector<Blob>, 2> blobs;  ///< warm, cold
+};
+
+/// The plate in one mounting, laid over the picture.
+struct Attempt {
+  Mounting mounting = Mounting::identity;
+  double sign = 1;
+  std::vector<PlateTriangle> large;
+  LayoutMatch match;
+  std::vector<PlateTriangle> located;  ///< those that point as they should
+  std::vector<cv::Point2d> pixels;     ///< their centroids
+  int judged = 0;                      ///< large triangles whose orientation could be seen
+  double blur_px = first_blur_px;
+  [[nodiscard]] int pairs() const { return static_cast<int>(match.pairs.size()); }
+  [[nodiscard]] bool agrees() const {
+    return judged > 0 && static_cast<double>(located.size()) >= agreement_needed * judged;
+  }
+};
+
+std::vector<cv::Point2d> places(const std::vector<PlateTriangle>& triangles) {
+  std::vector<cv::Point2d> result;
+  for (const PlateTriangle& t : triangles) result.push_back(t.position_mm);
+  return result;
+}
+
+/// The blur at which the located triangles are explained best: golden section on its logarithm from 0.2 to 1.6 px.
+double best_blur(const cv::Mat1d& picture, const cv::Matx33d& mapping, const Attempt& at) {
+  std::vector<Polygon> outlines;
+  for (std::size_t i = 0; i < at.located.size(); ++i) {
+    outlines.push_back(outline_in_picture(mapping, at.located[i], at.located[i].apex));
+    const cv::Point2d move = at.pixels[i] - to_pixel(mapping, at.located[i].position_mm);
+    for (cv::Point2d& p : outlines.back()) p += move;
+  }
+  const double ratio = std::numbers::phi - 1;
+  double low = std::log(0.2), high = std::log(1.6);
+  double a = high - ratio * (high - low), b = low + ratio * (high - low);
+  const auto cost = [&](double log_blur) { return misfit(picture, outlines, std::exp(log_blur)); };
+  double cost_a = cost(a), cost_b = cost(b);
+  while (high - low > 0.02) {
+    if (cost_a < cost_b) {
+      high = b;
+      b = a;
+      cost_b = cost_a;
+      a = high - ratio * (high - low);
+      cost_a = cost(a);
+    } else {
+      low = a;
+      a = b;
+      cost_a = cost_b;
+      b = low + ratio * (high - low);
+      cost_b = cost(b);
+    }
+  }
+  return std::exp((low + high) / 2);
+}
+
+/// Where the triangle is if it points to `apex`, and how badly that explains the picture.
+std::optional<ShiftFit> locate(const cv::Mat1d& picture, const cv::Matx33d& mapping, const PlateTriangle& t, Apex apex,
+                               double blur_px) {
+  const Polygon outline = outline_in_picture(mapping, t, apex);
+  return fit_shift(picture, std::span(&outline, 1), blur_px, {0, 0}, reach_px);
+}
+
+/// Which way each large triangle points (smallest unexplained variance of the four shapes, each at its best place);
+/// those that point as the plate says are located.
+void judge(const Search& search, Attempt& at) {
+  for (const PlateTriangle& t : at.large) {
+    std::optional<Apex> seen;
+    std::optional<ShiftFit> best;
+    for (const Apex apex : all_apexes) {
+      auto fit = locate(search.picture, at.match.plate_to_pixel, t, apex, first_blur_px);
+      if (!fit || fit->amplitudes[0] * at.sign <= 0) continue;
+      if (best && fit->unexplained >= best->unexplained) continue;
+      best = std::move(fit);
+      seen = apex;
+    }
+    // Half of the variance unexplained: there is something else than a triangle, or nothing.
+    if (!best || best->unexplained > 0.5) continue;
+    ++at.judged;
+    if (*seen != t.apex) continue;
+    at.located.push_back(t);
+    at.pixels.push_back(to_pixel(at.match.plate_to_pixel, t.position_mm) + best->shift);
+  }
+}
+
+/// The layout in one mounting against the warm and against the cold blobs; the better one, its orientations judged.
+std::optional<Attempt> attempt(const Search& search, const TargetPlate& plate, Mounting relative) {
+  const TargetPlate turned = mounted(plate, relative);
+  const double scale = search.options.expected_scale_px_per_mm;
+  const MatchLimits limits{scale, scale_range, search.options.max_rotation_deg + extra_rotation_deg,
+                           search.picture.size()};
+  std::optional<Attempt> best;
+  for (std::size_t side = 0; side < 2; ++side) {
+    Attempt at;
+    at.mounting = turned.mounting;
+    at.sign = side == 0 ? 1 : -1;
+    at.large = triangles_from(turned, search.options.min_triangle_px / scale);
+    auto match = match_layout(at.large, search.blobs[side], limits);
+    if (!match || (best && !match->better_than(best->match))) continue;
+    at.match = std::move(*match);
+    best = std::move(at);
+  }
+  const int needed = std::min(credible_pairs, search.options.min_triangles);
+  if (best && best->pairs() >= needed) judge(search, *best);
+  return best;
+}
+
+/// The fit without the triangle that disturbs it most, and which one that is.
+std::pair<std::size_t, FittedMapping> without_worst(const Attempt& at, double scale) {
+  std::pair<std::size_t, FittedMapping> best;
+  for (std::size_t i = 0; i < at.located.size(); ++i) {
+    auto plate = places(at.located);
+    auto pixels = at.pixels;
+    plate.erase(plate.begin() + static_cast<std::ptrdiff_t>(i));
+    pixels.erase(pixels.begin() + static_cast<std::ptrdiff_t>(i));
+    const FittedMapping others = fit_mapping(plate, pixels, scale);
+    if (i == 0 || others.residual_px < best.second.residual_px) best = {i, others};
+  }
+  return best;
+}
+
+/// Mapping, sharper places and blur in turn. Then triangles that a bad pixel or dirt pulls aside are left out while
+/// enough remain.
+FittedMapping refine(const Search& search, Attempt& at) {
+  const double scale = search.options.expected_scale_px_per_mm;
+  FittedMapping fitted = fit_mapping(places(at.located), at.pixels, scale);
+  for (int round = 0; round < 2; ++round) {
+    at.blur_px = best_blur(search.picture, fitted.plate_to_pixel, at);
+    for (std::size_t i = 0; i < at.located.size(); ++i) {
+      const auto fit = locate(search.picture, fitted.plate_to_pixel, at.located[i], at.located[i].apex, at.blur_px);
+      if (fit) at.pixels[i] = to_pixel(fitted.plate_to_pixel, at.located[i].position_mm) + fit->shift;
+    }
+    fitted = fit_mapping(places(at.located), at.pixels, scale);
+  }
+  // A third of the residual is left when one of eight is taken away: F(2, 10) = 40, for a given one by chance once in
+  // 60 000. Below 0.02 px it would not matter.
+  constexpr double decisive = 3;
+  constexpr double harmless_px = 0.02;
+  while (static_cast<int>(at.located.size()) > search.options.min_triangles && fitted.residual_px > harmless_px) {
+    const auto [worst, others] = without_worst(at, scale);
+    const bool acceptable = fitted.residual_px <= search.options.max_residual_px;
+    if (acceptable && others.residual_px * decisive > fitted.residual_px) break;
+    at.located.erase(at.located.begin() + static_cast<std::ptrdiff_t>(worst));
+    at.pixels.erase(at.pixels.begin() + static_cast<std::ptrdiff_t>(worst));
+    fitted = others;
+  }
+  return fitted;
+}
+
+tl::unexpected<Error> contradiction(const TargetPlate& plate, const std::string& what) {
+  return fail(ErrorCode::calibration, "plate \"" + plate.name + "\" " + what);
+}
+
+/// The triangles that are not wholly inside the picture with the 2 px round them that a surround needs, as a sentence;
+/// empty when all are.
+std::string outside_picture(const TargetPlate& plate, const cv::Matx33d& mapping, cv::Size picture) {
+  constexpr double margin = 2;
+  int count = 0;
+  std::string first;
+  for (const PlateTriangle& t : plate.triangles) {
+    const Polygon outline = outline_in_picture(mapping, t, t.apex);
+    const bool inside = std::ranges::all_of(outline, [&](const cv::Point2d& p) {
+      return p.x >= margin && p.y >= margin && p.x <= picture.width - 1 - margin && p.y <= picture.height - 1 - margin;
+    });
+    if (inside) continue;
+    const cv::Point2d place = to_pixel(mapping, t.position_mm);
+    if (count++ == 0) first = t.name + " would be at (" + fixed(place.x, 1) + ", " + fixed(place.y, 1) + ")";
+  }
+  if (count == 0) return {};
+  return "is partly out of the picture of " + std::to_string(picture.width) + " x " + std::to_string(picture.height) +
+         " pixels: " + std::to_string(count) + " of " + std::to_string(plate.triangles.size()) +
+         " triangles are not inside, " + first;
+}
+
+Result<void> check_input(const cv::Mat1d& picture, const TargetPlate& plate, const RegistrationOptions& options) {
+  const auto wrong = [&](const std::string& what) {
+    return fail(ErrorCode::invalid_input, "registering plate \"" + plate.name + "\": " + what);
+  };
+  if (!(options.expected_scale_px_per_mm > 0) || !std::isfinite(options.expected_scale_px_per_mm)) {
+    return wrong("the expected scale must be positive, it is " + fixed(options.expected_scale_px_per_mm, 4) + " px/mm");
+  }
+  if (options.min_triangles < 1) return wrong("min_triangles must be at least 1");
+  if (picture.empty() || !cv::checkRange(picture))
+    return wrong("the picture is empty or has values that are not finite");
+  const auto large = triangles_from(plate, options.min_triangle_px / options.expected_scale_px_per_mm);
+  if (static_cast<int>(large.size()) < options.min_triangles) {
+    return wrong("only " + std::to_string(large.size()) + " of its " + std::to_string(plate.triangles.size()) +
+                 " triangles are at least " + fixed(options.min_triangle_px, 1) + " px at " +
+                 fixed(options.expected_scale_px_per_mm, 4) + " px/mm, and " + std::to_string(options.min_triangles) +
+                 " are needed");
+  }
+  return {};
+}
+
+/// Why the stated mounting was not found: another mounting, or too little that fits.
+tl::unexpected<Error> explain(const Search& search, const TargetPlate& plate, const std::optional<Attempt>& stated) {
+  for (const Mounting relative : all_mountings) {
+    if (relative == Mounting::identity) continue;
+    const auto other = attempt(search, plate, relative);
+    if (other && other->pairs() >= std::min(credible_pairs, search.options.min_triangles) && other->agrees() &&
+        static_cast<int>(other->located.size()) >= std::min(credible_pairs, search.options.min_triangles)) {
+      return contradiction(plate, "seems to be mounted " + std::string(to_string(other->mounting)) + ", not " +
+                                      std::string(to_string(plate.mounting)) + ": " +
+                                      std::to_string(other->located.size()) + " of " + std::to_string(other->judged) +
+                                      " large triangles point that way, " +
+                                      std::to_string(stated ? stated->located.size() : 0) + " as stated");
+    }
+  }
+  const std::string spots = std::to_string(search.blobs[0].size()) + " warm and " +
+                            std::to_string(search.blobs[1].size()) + " cold spots were seen";
+  const std::size_t wanted =
+      triangles_from(plate, search.options.min_triangle_px / search.options.expected_scale_px_per_mm).size();
+  if (!stated || stated->pairs() < credible_pairs) {
+    return contradiction(plate, "not found: " + std::to_string(stated ? stated->pairs() : 0) + " of its " +
+                                    std::to_string(wanted) + " large triangles fit one arrangement, " + spots);
+  }
+  return contradiction(plate, "does not look as its file says: its large triangles were found, but only " +
+                                  std::to_string(stated->located.size()) + " of " + std::to_string(stated->judged) +
+                                  " point as they should, in no mounting more; another plate?");
+}
+
+Registration describe(const FittedMapping& fitted, const Attempt& at, double expected_scale) {
+  Registration r;
+  r.plate_to_pixel = fitted.plate_to_pixel;
+  r.mapping = fitted.mapping;
+  r.residual_px = fitted.residual_px;
+  r.triangles_used = static_cast<int>(at.located.size());
+  const cv::Matx22d j = jacobian(r.plate_to_pixel, {0, 0});
+  r.scale_px_per_mm = std::sqrt(std::abs(cv::determinant(j)));
+  // Rotation part of the polar decomposition.
+  r.rotation_deg = std::atan2(j(1, 0) - j(0, 1), j(0, 0) + j(1, 1)) * 180 / std::numbers::pi;
+  r.scale_deviation = r.scale_px_per_mm / expected_scale - 1;
+  r.contrast_sign = at.sign;
+  r.blur_px = at.blur_px;
+  return r;
+}
+
+std::string percent(double share) {
+  return fixed(100 * share, 1) + " %";
+}
+
+}  // namespace
+
+std::string_view to_string(PlateMapping mapping) {
+  switch (mapping) {
+    case PlateMapping::translation:
+      return "translation";
+    case PlateMapping::similarity:
+      return "similarity";
+    case PlateMapping::affine:
+      return "affine";
+    case PlateMapping::homography:
+      return "homography";
+  }
+  return "unknown";
+}
+
+cv::Point2d Registration::pixel(cv::Point2d plate_mm) const {
+  return to_pixel(plate_to_pixel, plate_mm);
+}
+
+double Registration::scale_at(cv::Point2d plate_mm) const {
+  return std::sqrt(std::abs(cv::determinant(jacobian(plate_to_pixel, plate_mm))));
+}
+
+Registration Registration::shifted(cv::Point2d shift_mm) const {
+  Registration result = *this;
+  result.plate_to_pixel = plate_to_pixel * cv::Matx33d(1, 0, shift_mm.x, 0, 1, shift_mm.y, 0, 0, 1);
+  return result;
+}
+
+Registration Registration::moved(cv::Point2d shift_px) const {
+  Registration result = *this;
+  result.plate_to_pixel = cv::Matx33d(1, 0, shift_px.x, 0, 1, shift_px.y, 0, 0, 1) * plate_to_pixel;
+  return result;
+}
+
+Result<Registration> register_plate(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
+                                    const RegistrationOptions& options) {
+  if (auto checked = check_input(picture, mounted_plate, options); !checked) return tl::unexpected(checked.error());
+  const double scale = options.expected_scale_px_per_mm;
+  const auto large = triangles_from(mounted_plate, options.min_triangle_px / scale);
+  const auto [smallest, largest] = std::ranges::minmax(large, {}, &PlateTriangle::size_mm);
+  const double low = smallest.size_mm * scale * (1 - scale_range);
+  const double high = largest.size_mm * scale * (1 + scale_range);
+  const Search search{picture, options, {find_warm_blobs(picture, low, high), find_warm_blobs(-picture, low, high)}};
+
+  auto found = attempt(search, mounted_plate, Mounting::identity);
+  if (!found || !found->agrees()) return explain(search, mounted_plate, found);
+  if (static_cast<int>(found->located.size()) < options.min_triangles) {
+    const std::string outside = outside_picture(mounted_plate, found->match.plate_to_pixel, picture.size());
+    if (!outside.empty()) return contradiction(mounted_plate, outside);
+    return contradiction(mounted_plate,
+                         "has too few usable triangles in the picture: " + std::to_string(found->located.size()) +
+                             " of " + std::to_string(large.size()) + " large ones were located, " +
+                             std::to_string(options.min_triangles) + " are needed");
+  }
+  const FittedMapping fitted = refine(search, *found);
+  const Registration result = describe(fitted, *found, scale);
+  if (result.residual_px > options.max_residual_px) {
+    return contradiction(mounted_plate, "does not fit its file: the located triangles are " +
+                                            fixed(result.residual_px, 3) + " px rms from where the file puts them, " +
+                                            fixed(options.max_residual_px, 3) + " px are allowed");
+  }
+  if (std::abs(result.scale_deviation) > options.max_scale_deviation) {
+    return contradiction(mounted_plate, "has another scale than planned: the picture shows " +
+                                            fixed(result.scale_px_per_mm, 4) + " px/mm, distance and IFOV give " +
+                                            fixed(scale, 4) + " px/mm, a deviation of " +
+                                            percent(result.scale_deviation) + " where " +
+                                            percent(options.max_scale_deviation) + " are allowed");
+  }
+  if (std::abs(result.rotation_deg) > options.max_rotation_deg) {
+    return contradiction(mounted_plate, "is rotated by " + fixed(result.rotation_deg, 1) + " degrees where " +
+                                            fixed(options.max_rotation_deg, 1) + " are allowed");
+  }
+  const std::string outside = outside_picture(mounted_plate, result.plate_to_pixel, picture.size());
+  if (!outside.empty()) return contradiction(mounted_plate, outside);
+  return result;
+}
+
+}  // namespace todbench

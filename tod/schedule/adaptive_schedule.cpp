@@ -1,0 +1,181 @@
+#include "tod/schedule/adaptive_schedule.h"
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cassert>
+#include <cmath>
+
+#include "tod/psychometric/tod_curve.h"
+
+namespace todbench {
+namespace {
+
+constexpr double least_trials = 40;
+constexpr std::size_t least_sizes = 3;
+constexpr int least_presentations = 8;
+constexpr double contradiction = 0.001;  // p of the deviance
+constexpr double frame_s = 0.1;          // a presentation without any change: exposures after the change and the frame
+
+/// Thresholds are looked for from a third of the smallest size to three times the largest.
+PsiOptions prior_over(const std::vector<TargetPlate>& plates, double distance_m, PsychometricForm form) {
+  double smallest = plates.front().triangles.front().size_mm, largest = smallest;
+  for (const TargetPlate& plate : plates) {
+    for (const PlateTriangle& t : plate.triangles) {
+      smallest = std::min(smallest, t.size_mm);
+      largest = std::max(largest, t.size_mm);
+    }
+  }
+  PsiOptions options;
+  options.form = form;
+  options.first_size = smallest / distance_m / 3;
+  options.last_size = 3 * largest / distance_m;
+  return options;
+}
+
+bool contradicted(const PsychometricFit& fit) {
+  if (!fit.deviance || fit.degrees_of_freedom < 1 || *fit.deviance <= 0) return false;
+  const boost::math::chi_squared law(fit.degrees_of_freedom);
+  // Deviance over the clustered variance: trials of one presentation are not independent.
+  return boost::math::cdf(boost::math::complement(law, *fit.deviance / fit.variance_inflation)) < contradiction;
+}
+
+}  // namespace
+
+AdaptiveSchedule::AdaptiveSchedule(AdaptiveOptions options, const RandomStream& stream) : options_(std::move(options)) {
+  assert(!options_.plates.empty() && options_.distance_m > 0 && options_.stimuli.phases > 0);
+  for (std::size_t p = 0; p < options_.plates.size(); ++p) {
+    for (const Mounting mounting : options_.stimuli.mountings) set_ups_.push_back({p, mounting, 0});
+  }
+  std::vector<double> sorted = options_.stimuli.delta_t_k;
+  std::ranges::stable_sort(sorted, [](double a, double b) { return std::abs(a) > std::abs(b); });
+  const PsiOptions prior = prior_over(options_.plates, options_.distance_m, options_.fit.form);
+  for (std::size_t c = 0; c < sorted.size(); ++c) {
+    Contrast contrast{.delta_t_k = sorted[c],
+                      .knowledge = PsiPlacement(prior, stream.sub(2 * c)),
+                      .trials = {},
+                      .phases = spread_phases(options_.max_presentations + 1, stream.sub(2 * c + 1)),
+                      .progress = {}};
+    contrast.progress.delta_t_k = sorted[c];
+    contrasts_.push_back(std::move(contrast));
+  }
+  if (!set_ups_.empty() && !contrasts_.empty()) begin_visit();
+}
+
+double AdaptiveSchedule::value_per_second(const SetUp& set_up) const {
+  const double* cost = options_.stimuli.change_cost_s;
+  double seconds = 0, gain = 0;
+  if (shown_ > 0) {
+    const SetUp& now = set_ups_[current_set_up_];
+    if (set_up.plate != now.plate) seconds += cost[0];
+    if (set_up.mounting != now.mounting) seconds += cost[1];
+  }
+  for (const Contrast& contrast : contrasts_) {
+    if (contrast.progress.settled) continue;
+    seconds += cost[2] + options_.stimuli.phases * (cost[3] + frame_s);
+    for (const PlateTriangle& t : options_.plates[set_up.plate].triangles)
+      gain += contrast.knowledge.expected_gain(t.size_mm / options_.distance_m);
+  }
+  return gain / seconds / (1 + set_up.visits);
+}
+
+void AdaptiveSchedule::begin_visit() {
+  std::size_t best = 0;
+  double best_value = -1;
+  for (std::size_t s = 0; s < set_ups_.size(); ++s) {
+    const double value = value_per_second(set_ups_[s]);
+    if (value > best_value) {
+      best_value = value;
+      best = s;
+    }
+  }
+  registered_ = shown_ > 0 && best == current_set_up_;
+  current_set_up_ = best;
+  ++set_ups_[best].visits;
+  to_visit_.clear();
+  for (std::size_t c = 0; c < contrasts_.size(); ++c) {
+    // A new set-up needs one look at the highest contrast, settled or not.
+    if (!contrasts_[c].progress.settled || (c == 0 && !registered_)) to_visit_.push_back(c);
+  }
+  shown_here_ = 0;
+}
+
+std::optional<TargetState> AdaptiveSchedule::next() {
+  if (set_ups_.empty() || contrasts_.empty()) return std::nullopt;
+  const auto all_settled = [&] {
+    return std::ranges::all_of(contrasts_, [](const Contrast& c) { return c.progress.settled; });
+  };
+  if (shown_ >= options_.max_presentations || all_settled()) return std::nullopt;
+  const auto done_here = [&] {
+    const bool settled = contrasts_[to_visit_.front()].progress.settled;
+    return shown_here_ >= options_.stimuli.phases || (settled && (registered_ || shown_here_ > 0));
+  };
+  while (to_visit_.empty() || done_here()) {
+    if (!to_visit_.empty()) to_visit_.erase(to_visit_.begin());
+    shown_here_ = 0;
+    if (to_visit_.empty()) begin_visit();
+  }
+  Contrast& contrast = contrasts_[to_visit_.front()];
+  const SetUp& set_up = set_ups_[current_set_up_];
+  TargetState state;
+  state.plate = options_.plates[set_up.plate].name;
+  state.mounting = set_up.mounting;
+  state.delta_t_k = contrast.delta_t_k;
+  state.shift_mm =
+      options_.stimuli.pixel_mm * contrast.phases[static_cast<std::size_t>(contrast.progress.presentations)];
+  registered_ = true;
+  ++contrast.progress.presentations;
+  ++shown_here_;
+  ++shown_;
+  return state;
+}
+
+void AdaptiveSchedule::observe(std::span<const Trial> trials) {
+  std::map<std::pair<double, double>, std::pair<double, double>> counts;  // contrast, size: right, all
+  for (const Trial& trial : trials) {
+    auto& count = counts[{trial.set_delta_t_k, trial.size_mrad}];
+    count.first += trial.correct() ? 1 : 0;
+    count.second += 1;
+  }
+  for (Contrast& contrast : contrasts_) {
+    bool changed = false;
+    for (const auto& [key, count] : counts) {
+      if (key.first != contrast.delta_t_k) continue;
+      contrast.knowledge.observe(key.second, count.first, count.second);
+      changed = true;
+    }
+    if (!changed) continue;
+    for (const Trial& trial : trials) {
+      if (trial.set_delta_t_k == contrast.delta_t_k) contrast.trials.push_back(trial);
+    }
+    judge(contrast);
+  }
+}
+
+void AdaptiveSchedule::judge(Contrast& contrast) const {
+  ContrastProgress& progress = contrast.progress;
+  progress.trials = static_cast<double>(contrast.trials.size());
+  FitOptions options = options_.fit;
+  options.with_posterior = false;
+  const auto curve = tod_curve(contrast.trials, options);
+  progress.half_width_percent.reset();
+  progress.settled = false;
+  if (!curve || curve->points.empty()) return;
+  const PsychometricFit& fit = curve->points.front().fit;
+  if (!fit.threshold || !fit.ci95.low || !fit.ci95.high || *fit.ci95.low <= 0) return;
+  progress.half_width_percent = 100 * std::log(*fit.ci95.high / *fit.ci95.low) / 2;
+  std::vector<double> sizes;
+  for (const Trial& trial : contrast.trials) sizes.push_back(trial.size_mrad);
+  std::ranges::sort(sizes);
+  const auto distinct = static_cast<std::size_t>(std::unique(sizes.begin(), sizes.end()) - sizes.begin());
+  progress.settled = fit.verdict == FitVerdict::ok && progress.trials >= least_trials && distinct >= least_sizes &&
+                     progress.presentations >= least_presentations &&
+                     *progress.half_width_percent < options_.half_width_percent && !contradicted(fit);
+}
+
+std::vector<ContrastProgress> AdaptiveSchedule::progress() const {
+  std::vector<ContrastProgress> out;
+  for (const Contrast& contrast : contrasts_) out.push_back(contrast.progress);
+  return out;
+}
+
+}  // namespace todbench

@@ -1,0 +1,82 @@
+// Presentations chosen by what the answers so far leave open.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tod/schedule/psi_placement.h"
+#include "tod/psychometric/psychometric_fit.h"
+#include "tod/schedule/schedule.h"
+
+namespace todbench {
+
+struct AdaptiveOptions {
+  /// Plates, mountings, contrasts, pixel and costs of changes. `phases` is the number of presentations per visit: one
+  /// contrast in one set-up, before something else is changed.
+  ConstantStimuliOptions stimuli;
+  std::vector<TargetPlate> plates;  ///< identity mounting; the sizes that each shows
+  double distance_m = 0;
+  FitOptions fit;                  ///< with which the result will be fitted
+  double half_width_percent = 10;  ///< wanted: half the width of the 95 % interval of ln S75, at every contrast
+  int max_presentations = 1000;    ///< hard cap, over all contrasts; at least one visit to each contrast is made
+};
+
+/// Where a contrast stands.
+struct ContrastProgress {
+  double delta_t_k = 0;
+  double trials = 0;
+  int presentations = 0;
+  std::optional<double> half_width_percent;  ///< nothing while a side of the interval is open
+  bool settled = false;
+};
+
+/// All triangles of a picture are answered at once and for nothing; what costs time is to change the target. So the
+/// schedule chooses set-ups (plate and mounting): the one whose triangles are expected to take most entropy from the
+/// thresholds of the contrasts still open (PsiPlacement::expected_gain, summed over triangles) per second of changing
+/// the target, set-ups visited before counting less, so that places on the plate vary. A visit begins at the highest
+/// contrast, where the plate is registered, and goes on with the open ones. A contrast is settled when it has 40 trials
+/// of three sizes in eight presentations or more, a two-sided interval with half-width below the wanted one, and a fit
+/// that the data do not contradict (deviance, p > 0.001); it ends in the middle of a visit. The run ends when all are
+/// settled or at the cap.
+class AdaptiveSchedule final : public TrialSchedule {
+ public:
+  AdaptiveSchedule(AdaptiveOptions options, const RandomStream& stream);
+
+  [[nodiscard]] std::optional<TargetState> next() override;
+  [[nodiscard]] std::size_t planned() const override { return static_cast<std::size_t>(options_.max_presentations); }
+  void observe(std::span<const Trial> trials) override;
+
+  /// In the order of the contrasts, highest first.
+  [[nodiscard]] std::vector<ContrastProgress> progress() const;
+
+ private:
+  struct SetUp {
+    std::size_t plate = 0;
+    Mounting mounting = Mounting::identity;
+    int visits = 0;
+  };
+  struct Contrast {
+    double delta_t_k = 0;
+    PsiPlacement knowledge;
+    std::vector<Trial> trials;
+    std::vector<cv::Point2d> phases;  ///< fractions of a pixel
+    ContrastProgress progress;
+  };
+
+  void begin_visit();
+  [[nodiscard]] double value_per_second(const SetUp& set_up) const;
+  void judge(Contrast& contrast) const;
+
+  AdaptiveOptions options_;
+  std::vector<SetUp> set_ups_;
+  std::vector<Contrast> contrasts_;
+  std::size_t current_set_up_ = 0;
+  std::vector<std::size_t> to_visit_;  ///< contrasts of this visit still to come, the present one first
+  int shown_here_ = 0;                 ///< of the present contrast in this visit
+  bool registered_ = false;            ///< the visit has shown its first contrast
+  int shown_ = 0;
+};
+
+}  // namespace todbench

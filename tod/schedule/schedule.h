@@ -1,0 +1,59 @@
+// What to show next.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "acquisition/core/rng.h"
+#include "tod/presentation/target.h"
+#include "tod/presentation/trial.h"
+
+namespace todbench {
+
+/// Chooses presentations. One thread at a time.
+class TrialSchedule {
+ public:
+  virtual ~TrialSchedule() = default;
+  /// The next state, or nothing when enough has been shown.
+  [[nodiscard]] virtual std::optional<TargetState> next() = 0;
+  /// Presentations in all, for progress and time left; the most there can be where answers decide.
+  [[nodiscard]] virtual std::size_t planned() const = 0;
+  /// The answers to the state that next() gave last. Schedules that do not adapt ignore them.
+  virtual void observe(std::span<const Trial> trials);
+};
+
+/// The method of constant stimuli on plates: every plate in every mounting at every contrast in every phase.
+struct ConstantStimuliOptions {
+  std::vector<std::string> plates;
+  std::vector<Mounting> mountings;
+  std::vector<double> delta_t_k;
+  int phases = 16;                              ///< sub-pixel shifts per plate, mounting and contrast
+  double pixel_mm = 1;                          ///< one pixel on the plate; shifts are spread over one pixel in x and y
+  double change_cost_s[4] = {60, 30, 20, 0.1};  ///< plate, mounting, contrast, shift
+};
+
+/// `count` sub-pixel shifts in [0, 1)^2, spread evenly for every count (additive recurrence with the plastic number,
+/// Roberts 2018), started at a random place of `stream`.
+[[nodiscard]] std::vector<cv::Point2d> spread_phases(int count, const RandomStream& stream);
+
+/// Presentations nested so that what takes longest to change changes least often; within a contrast group the highest
+/// contrast comes first, because the plate is registered there. Ties keep the order plate, mounting, contrast, shift.
+[[nodiscard]] std::vector<TargetState> constant_stimuli(const ConstantStimuliOptions& options,
+                                                        const RandomStream& stream);
+
+/// A schedule that shows a list once.
+class ListedSchedule final : public TrialSchedule {
+ public:
+  explicit ListedSchedule(std::vector<TargetState> states) : states_(std::move(states)) {}
+  [[nodiscard]] std::optional<TargetState> next() override;
+  [[nodiscard]] std::size_t planned() const override { return states_.size(); }
+
+ private:
+  std::vector<TargetState> states_;
+  std::size_t position_ = 0;
+};
+
+}  // namespace todbench
