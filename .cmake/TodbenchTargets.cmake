@@ -25,7 +25,8 @@ endif()
 option(TODBENCH_PRECOMPILE "Compile the headers of other projects once" ON)
 if(TODBENCH_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 warns about the inside of std::string when its header comes precompiled; "science" builds without and has the warnings.
-  target_compile_options(todbench_options INTERFACE -fpch-preprocess -Wno-array-bounds -Wno-stringop-overflow)
+  target_compile_options(todbench_options INTERFACE -fpch-preprocess -Wno-array-bounds -Wno-stringop-overflow
+    -Wno-stringop-overread)
 else()
   set(TODBENCH_PRECOMPILE OFF)
 endif()

@@ -3,15 +3,15 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
+#include "bench/judgement/verdict.h"
 #include "bench/report/cost_figure.h"
 #include "bench/report/report.h"
-#include "bench/studies/cost_study.h"
 #include "bench/run/report_data.h"
 #include "bench/session/cost_record.h"
-#include "bench/text/files.h"
 #include "bench/session/manifest.h"
 #include "bench/session/session_folder.h"
-#include "bench/judgement/verdict.h"
+#include "bench/studies/cost_study.h"
+#include "bench/text/files.h"
 
 namespace todbench {
 namespace {

@@ -2,9 +2,9 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
-#include "bench/text/text.h"
-#include "bench/session/trials_csv.h"
 #include "bench/judgement/verdict.h"
+#include "bench/session/trials_csv.h"
+#include "bench/text/text.h"
 
 namespace todbench {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "acquisition/recording/recording_backend.h"
 #include "bench/cli/commands.h"
-#include "bench/plan/descriptions.h"
 #include "bench/judgement/verdict.h"
+#include "bench/plan/descriptions.h"
 #include "bench/studies/real_noise_study.h"
 #include "tod/plate/test_pattern.h"
 

@@ -3,9 +3,9 @@
 
 #include "bench/cli/commands.h"
 #include "bench/cli/simulation_plan.h"
+#include "bench/judgement/verdict.h"
 #include "bench/run/comparison_forecast.h"
 #include "bench/run/prediction.h"
-#include "bench/judgement/verdict.h"
 
 namespace todbench {
 namespace {

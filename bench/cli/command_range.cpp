@@ -2,9 +2,9 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
+#include "bench/judgement/verdict.h"
 #include "bench/session/session_folder.h"
 #include "bench/text/text.h"
-#include "bench/judgement/verdict.h"
 #include "tod/range/range_prediction.h"
 
 namespace todbench {

@@ -8,9 +8,9 @@
 #include "acquisition/recording/frame_stream.h"
 #include "acquisition/recording/tiff_stack.h"
 #include "bench/cli/commands.h"
+#include "bench/judgement/verdict.h"
 #include "bench/run/devices.h"
 #include "bench/session/provenance.h"
-#include "bench/judgement/verdict.h"
 
 namespace todbench {
 namespace {

@@ -3,10 +3,10 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
+#include "bench/judgement/verdict.h"
 #include "bench/studies/eo_vista.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
-#include "bench/judgement/verdict.h"
 
 namespace todbench {
 namespace {

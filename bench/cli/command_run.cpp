@@ -4,11 +4,11 @@
 
 #include "bench/cli/commands.h"
 #include "bench/cli/simulation_plan.h"
+#include "bench/plan/resources.h"
 #include "bench/run/emulation.h"
 #include "bench/run/experiment.h"
 #include "bench/run/replay.h"
 #include "bench/session/provenance.h"
-#include "bench/plan/resources.h"
 #include "tod/psychometric/acuity.h"
 
 namespace todbench {

@@ -2,15 +2,15 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
+#include "bench/judgement/verdict.h"
+#include "bench/plan/plan_options.h"
 #include "bench/report/report.h"
 #include "bench/run/comparison_forecast.h"
 #include "bench/run/report_data.h"
-#include "bench/text/files.h"
 #include "bench/session/human_record.h"
 #include "bench/session/manifest.h"
-#include "bench/plan/plan_options.h"
 #include "bench/session/session_folder.h"
-#include "bench/judgement/verdict.h"
+#include "bench/text/files.h"
 
 namespace todbench {
 namespace {

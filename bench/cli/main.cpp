@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "bench/cli/commands.h"
+#include "bench/judgement/verdict.h"
 #include "bench/session/build_info.h"
 #include "bench/text/text.h"
-#include "bench/judgement/verdict.h"
 
 namespace todbench {
 

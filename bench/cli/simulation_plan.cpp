@@ -3,8 +3,8 @@
 #include <array>
 #include <utility>
 
-#include "bench/run/default_design.h"
 #include "bench/plan/descriptions.h"
+#include "bench/run/default_design.h"
 #include "bench/text/text.h"
 
 namespace todbench {

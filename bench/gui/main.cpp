@@ -6,11 +6,11 @@
 #include <cstdio>
 #include <string_view>
 
-#include "bench/gui/views/main_window.h"
-#include "bench/gui/screenshots.h"
 #include "bench/gui/presenters/session_presenter.h"
-#include "bench/session/build_info.h"
+#include "bench/gui/screenshots.h"
+#include "bench/gui/views/main_window.h"
 #include "bench/judgement/verdict.h"
+#include "bench/session/build_info.h"
 
 namespace {
 

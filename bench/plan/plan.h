@@ -14,9 +14,9 @@
 #include "bench/plan/resources.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "tod/measurement/measurement.h"
+#include "tod/plate/target_plate.h"
 #include "tod/psychometric/psychometric_fit.h"
 #include "tod/schedule/schedule.h"
-#include "tod/plate/target_plate.h"
 
 namespace todbench {
 
@@ -67,7 +67,8 @@ struct SimulationPlan {
 
 enum class ScheduleKind {
   constant,  ///< every combination of [target], in every phase
-  adaptive,  ///< what the answers so far leave open, until intervals are narrow enough (tod/schedule/adaptive_schedule.h)
+  adaptive,  ///< what the answers so far leave open, until intervals are narrow enough
+             ///< (tod/schedule/adaptive_schedule.h)
 };
 [[nodiscard]] std::string_view to_string(ScheduleKind kind);
 

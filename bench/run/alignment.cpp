@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/plan/plan_options.h"
 #include "bench/report/number_format.h"
 #include "bench/run/devices.h"
 #include "bench/run/experiment_inputs.h"
 #include "bench/run/observed_source.h"
-#include "bench/plan/plan_options.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "tod/measurement/frame_taker.h"
-#include "tod/registration/patch_windows.h"
 #include "tod/plate/test_pattern.h"
+#include "tod/registration/patch_windows.h"
 
 namespace todbench {
 namespace {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "acquisition/core/frame_source.h"
-#include "bench/run/operator_target.h"
 #include "bench/plan/plan.h"
+#include "bench/run/operator_target.h"
 #include "hvs/shape/polygon.h"
 #include "tod/registration/registration.h"
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "bench/run/prediction.h"
 #include "bench/plan/plan.h"
+#include "bench/run/prediction.h"
 #include "tod/comparison/comparison.h"
 #include "tod/comparison/planning.h"
 

@@ -9,9 +9,9 @@
 #include <stop_token>
 
 #include "acquisition/core/camera_registry.h"
+#include "bench/plan/plan.h"
 #include "bench/run/operator_target.h"
 #include "bench/run/reconnecting_source.h"
-#include "bench/plan/plan.h"
 #include "sim_devices/sensor/simulated_camera.h"
 #include "tod/measurement/frame_taker.h"
 #include "tod/measurement/measurement.h"

@@ -10,14 +10,14 @@
 #include <string>
 #include <string_view>
 
+#include "bench/judgement/verdict.h"
+#include "bench/plan/plan.h"
+#include "bench/plan/plan_options.h"
 #include "bench/run/devices.h"
 #include "bench/run/experiment_inputs.h"
 #include "bench/run/pause.h"
 #include "bench/session/json_output.h"
-#include "bench/plan/plan.h"
-#include "bench/plan/plan_options.h"
 #include "bench/session/session_folder.h"
-#include "bench/judgement/verdict.h"
 
 namespace todbench {
 

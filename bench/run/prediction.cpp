@@ -4,9 +4,9 @@
 #include <cmath>
 #include <map>
 
-#include "bench/run/time_prediction.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
+#include "bench/run/time_prediction.h"
 #include "bench/text/text.h"
 #include "sim_devices/prediction/direct_timing.h"
 #include "tod/comparison/planning.h"

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "bench/plan/plan.h"
 #include "bench/run/experiment_inputs.h"
 #include "bench/session/json_output.h"
-#include "bench/plan/plan.h"
 
 namespace todbench {
 

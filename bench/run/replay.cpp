@@ -1,9 +1,9 @@
 #include "bench/run/replay.h"
 
 #include "bench/run/recorded_bench.h"
-#include "bench/text/files.h"
 #include "bench/session/fit_record.h"
 #include "bench/session/manifest.h"
+#include "bench/text/files.h"
 #include "bench/text/text.h"
 
 namespace todbench {

@@ -3,9 +3,9 @@
 #include <cctype>
 #include <system_error>
 
+#include "bench/judgement/verdict.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
-#include "bench/judgement/verdict.h"
 
 namespace todbench {
 namespace {

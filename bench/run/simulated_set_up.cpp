@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "bench/run/simulated_responses.h"
 #include "bench/plan/plan_options.h"
+#include "bench/run/simulated_responses.h"
 
 namespace todbench {
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/run/devices.h"
 #include "bench/plan/plan_options.h"
+#include "bench/run/devices.h"
 #include "sim_devices/prediction/direct_timing.h"
 #include "tod/measurement/frame_taker.h"
+#include "tod/plate/test_pattern.h"
 #include "tod/registration/patch_windows.h"
 #include "tod/registration/registration.h"
-#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {

@@ -6,13 +6,13 @@
 #include <system_error>
 #include <utility>
 
-#include "bench/text/csv_table.h"
-#include "bench/text/files.h"
+#include "bench/plan/plan_options.h"
 #include "bench/session/fit_record.h"
 #include "bench/session/manifest.h"
-#include "bench/plan/plan_options.h"
-#include "bench/text/text.h"
 #include "bench/session/trials_csv.h"
+#include "bench/text/csv_table.h"
+#include "bench/text/files.h"
+#include "bench/text/text.h"
 
 namespace todbench {
 namespace {

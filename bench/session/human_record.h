@@ -8,8 +8,8 @@
 
 #include "acquisition/core/result.h"
 #include "bench/plan/plan.h"
-#include "tod/psychometric/tod_curve.h"
 #include "tod/presentation/trial.h"
+#include "tod/psychometric/tod_curve.h"
 
 namespace todbench {
 

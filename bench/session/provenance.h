@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "acquisition/core/frame_source.h"
-#include "bench/session/json_output.h"
 #include "bench/plan/plan_options.h"
+#include "bench/session/json_output.h"
 #include "tod/measurement/measurement.h"
 
 namespace todbench {

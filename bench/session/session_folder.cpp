@@ -9,8 +9,8 @@
 #include <system_error>
 
 #include "bench/session/cost_record.h"
-#include "bench/text/files.h"
 #include "bench/session/fit_record.h"
+#include "bench/text/files.h"
 #include "bench/text/text.h"
 #include "tod/psychometric/acuity.h"
 

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/session/manifest.h"
 #include "bench/plan/plan.h"
+#include "bench/session/manifest.h"
 #include "bench/session/provenance.h"
 #include "bench/session/trials_csv.h"
 #include "sim_devices/prediction/cost_frontier.h"

@@ -7,8 +7,8 @@
 
 #include "acquisition/core/result.h"
 #include "bench/text/files.h"
-#include "tod/psychometric/psychometric_fit.h"
 #include "tod/presentation/trial.h"
+#include "tod/psychometric/psychometric_fit.h"
 
 namespace todbench {
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/plan/plan_options.h"
 #include "bench/run/devices.h"
 #include "bench/run/experiment_inputs.h"
 #include "bench/run/prediction.h"
 #include "bench/run/simulated_set_up.h"
-#include "bench/plan/plan_options.h"
 #include "bench/text/text.h"
 #include "tod/plate/test_pattern.h"
 #include "tod/psychometric/tod_curve.h"

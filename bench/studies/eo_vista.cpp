@@ -5,9 +5,9 @@
 #include <functional>
 #include <thread>
 
-#include "bench/studies/eo_vista_figures.h"
 #include "bench/plan/descriptions.h"
 #include "bench/session/json_output.h"
+#include "bench/studies/eo_vista_figures.h"
 #include "bench/text/text.h"
 #include "sim_devices/prediction/camera_trials.h"
 #include "sim_devices/prediction/direct_estimate.h"

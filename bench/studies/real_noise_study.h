@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "hvs/observer/template_observer.h"
-#include "tod/measures/three_d_noise.h"
 #include "sim_devices/sensor/sensor_spec.h"
+#include "tod/measures/three_d_noise.h"
 #include "tod/psychometric/psychometric_fit.h"
 
 namespace todbench {

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "acquisition/core/multiversion.h"
-#include "hvs/shape/polygon_image.h"
 #include "hvs/observer/template_observer.h"
+#include "hvs/shape/polygon_image.h"
 
 namespace todbench {
 namespace {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "acquisition/core/accuracy.h"
-#include "sim_devices/lab/instruments/black_body.h"
 #include "sim_devices/lab/gige/gige_camera.h"
-#include "sim_devices/lab/laboratory_camera.h"
+#include "sim_devices/lab/instruments/black_body.h"
 #include "sim_devices/lab/instruments/plate_stage.h"
+#include "sim_devices/lab/laboratory_camera.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "tod/plate/target_plate.h"
 

@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "sim_devices/lab/laboratory_camera.h"
 #include "sim_devices/lab/device_nodes/mock_system.h"
+#include "sim_devices/lab/laboratory_camera.h"
 #include "sim_devices/lab/video/video_frames.h"
 
 namespace todbench {

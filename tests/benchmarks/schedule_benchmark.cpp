@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "tests/sim_devices/test_plates.h"
+#include "tod/psychometric/psychometric_fit.h"
 #include "tod/schedule/adaptive_schedule.h"
 #include "tod/schedule/psi_placement.h"
-#include "tod/psychometric/psychometric_fit.h"
 
 namespace todbench {
 namespace {

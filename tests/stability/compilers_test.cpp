@@ -14,9 +14,9 @@
 #include "sim_devices/sensor/transfer_functions.h"
 #include "tests/support/source_file.h"
 #include "tod/comparison/planning.h"
-#include "tod/schedule/psi_placement.h"
-#include "tod/range/range_prediction.h"
 #include "tod/plate/test_pattern.h"
+#include "tod/range/range_prediction.h"
+#include "tod/schedule/psi_placement.h"
 
 namespace todbench {
 namespace {

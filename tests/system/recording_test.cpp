@@ -1,6 +1,6 @@
 // Recording and replay as a user has them: the same answers bit for bit, also of a run that did not end well.
-#include "bench/text/files.h"
 #include "bench/session/session_folder.h"
+#include "bench/text/files.h"
 #include "bench/text/text.h"
 #include "tests/system/system_test_support.h"
 

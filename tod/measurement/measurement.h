@@ -15,10 +15,10 @@
 #include "acquisition/core/integrity_gate.h"
 #include "hvs/observer/observer.h"
 #include "tod/measurement/frame_taker.h"
-#include "tod/registration/registration.h"
-#include "tod/schedule/schedule.h"
 #include "tod/presentation/target.h"
 #include "tod/presentation/trial.h"
+#include "tod/registration/registration.h"
+#include "tod/schedule/schedule.h"
 
 namespace todbench {
 

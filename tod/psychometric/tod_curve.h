@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "tod/psychometric/psychometric_fit.h"
 #include "tod/presentation/trial.h"
+#include "tod/psychometric/psychometric_fit.h"
 
 namespace todbench {
 

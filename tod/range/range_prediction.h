@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "acquisition/core/result.h"
-#include "tod/psychometric/tod_curve.h"
 #include "tod/psychometric/acuity.h"
+#include "tod/psychometric/tod_curve.h"
 
 namespace todbench {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "tod/registration/blob_finder.h"
 #include "tod/plate/target_plate.h"
+#include "tod/registration/blob_finder.h"
 
 namespace todbench {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "hvs/observer/observer.h"
-#include "tod/registration/registration.h"
 #include "tod/plate/target_plate.h"
+#include "tod/registration/registration.h"
 
 namespace todbench {
 

@@ -5,8 +5,8 @@
 #include <opencv2/calib3d.hpp>
 #include <vector>
 
-#include "tod/registration/layout_matching.h"
 #include "tod/plate/plate_outlines.h"
+#include "tod/registration/layout_matching.h"
 
 namespace todbench {
 namespace {

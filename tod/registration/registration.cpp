@@ -5,10 +5,10 @@
 #include <numbers>
 #include <utility>
 
+#include "tod/plate/plate_outlines.h"
 #include "tod/registration/blob_finder.h"
 #include "tod/registration/layout_matching.h"
 #include "tod/registration/plate_mapping.h"
-#include "tod/plate/plate_outlines.h"
 #include "tod/registration/shift_fit.h"
 
 namespace todbench {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "tod/schedule/psi_placement.h"
 #include "tod/psychometric/psychometric_fit.h"
+#include "tod/schedule/psi_placement.h"
 #include "tod/schedule/schedule.h"
 
 namespace todbench {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
-#include "bench/run/devices.h"
 #include "bench/plan/plan_options.h"
+#include "bench/run/devices.h"
 #include "tod/schedule/schedule.h"
 
 namespace todbench {

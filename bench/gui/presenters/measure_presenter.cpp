@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "bench/plan/plan_options.h"
 #include "bench/report/tod_figures.h"
 #include "bench/run/replay.h"
 #include "bench/run/report_data.h"
-#include "bench/plan/plan_options.h"
 
 namespace todbench {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "bench/plan/plan.h"
 #include "bench/report/svg_plot.h"
 #include "bench/run/prediction.h"
-#include "bench/plan/plan.h"
 #include "tod/psychometric/tod_curve.h"
 
 namespace todbench {

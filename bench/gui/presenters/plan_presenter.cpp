@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "bench/plan/plan_options.h"
 #include "bench/run/experiment_inputs.h"
 #include "bench/text/files.h"
-#include "bench/plan/plan_options.h"
 
 namespace todbench {
 namespace {

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "bench/gui/presenters/pdf_report.h"
+#include "bench/plan/plan_options.h"
 #include "bench/report/tod_figures.h"
 #include "bench/run/recorded_bench.h"
 #include "bench/run/report_data.h"
 #include "bench/text/files.h"
-#include "bench/plan/plan_options.h"
 #include "bench/text/text.h"
 
 namespace todbench {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "bench/run/devices.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/resources.h"
+#include "bench/run/devices.h"
 
 namespace todbench {
 namespace {

@@ -11,8 +11,8 @@
 
 #include "bench/gui/presenters/job_runner.h"
 #include "bench/gui/presenters/live_feed.h"
-#include "bench/run/emulation.h"
 #include "bench/plan/plan.h"
+#include "bench/run/emulation.h"
 
 namespace todbench {
 

@@ -3,8 +3,8 @@
 #include <QHBoxLayout>
 
 #include "bench/gui/presenters/align_presenter.h"
-#include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/presenters/look_presenter.h"
+#include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/picture_view.h"
 
 namespace todbench {

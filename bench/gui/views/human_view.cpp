@@ -7,8 +7,8 @@
 #include <QSpinBox>
 
 #include "bench/gui/presenters/human_presenter.h"
-#include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/presenters/measure_presenter.h"
+#include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/picture_view.h"
 #include "bench/report/number_format.h"
 #include "bench/report/tod_figures.h"

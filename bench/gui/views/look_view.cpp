@@ -10,9 +10,9 @@
 #include <QSignalBlocker>
 #include <QTreeWidget>
 
+#include "bench/gui/presenters/look_presenter.h"
 #include "bench/gui/views/histogram_view.h"
 #include "bench/gui/views/layout_pieces.h"
-#include "bench/gui/presenters/look_presenter.h"
 #include "bench/gui/views/picture_view.h"
 
 namespace todbench {

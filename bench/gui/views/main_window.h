@@ -12,8 +12,8 @@
 #include "bench/gui/presenters/measure_presenter.h"
 #include "bench/gui/presenters/plan_presenter.h"
 #include "bench/gui/presenters/session_presenter.h"
-#include "bench/gui/views/theme.h"
 #include "bench/gui/presenters/workbench.h"
+#include "bench/gui/views/theme.h"
 
 class QFrame;
 class QLabel;

@@ -13,8 +13,8 @@
 #include <QTabWidget>
 #include <cmath>
 
-#include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/presenters/plan_presenter.h"
+#include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/plot_view.h"
 
 namespace todbench {

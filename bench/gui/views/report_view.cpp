@@ -6,9 +6,9 @@
 #include <QSplitter>
 #include <QUrl>
 
+#include "bench/gui/presenters/session_presenter.h"
 #include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/plot_view.h"
-#include "bench/gui/presenters/session_presenter.h"
 #include "bench/report/number_format.h"
 
 namespace todbench {

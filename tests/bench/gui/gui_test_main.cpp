@@ -2,8 +2,8 @@
 // of its own where the system permits it, because the control port of GigE Vision is fixed.
 #include <gmock/gmock.h>
 
-#include "tests/support/private_network.h"
 #include "tests/bench/gui/watched_application.h"
+#include "tests/support/private_network.h"
 
 int main(int argc, char** argv) {
   testing::InitGoogleMock(&argc, argv);

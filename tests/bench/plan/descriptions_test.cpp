@@ -2,8 +2,8 @@
 
 #include <gmock/gmock.h>
 
-#include "tests/support/temporary_folder.h"
 #include "tests/support/source_file.h"
+#include "tests/support/temporary_folder.h"
 
 namespace todbench {
 namespace {

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 
 #include "bench/plan/plan_options.h"
-#include "tests/support/temporary_folder.h"
 #include "tests/support/source_file.h"
+#include "tests/support/temporary_folder.h"
 
 namespace todbench {
 namespace {

@@ -6,10 +6,10 @@
 #include <mutex>
 #include <thread>
 
+#include "bench/judgement/verdict.h"
 #include "bench/run/emulation.h"
 #include "bench/run/recorded_bench.h"
 #include "bench/run/replay.h"
-#include "bench/judgement/verdict.h"
 #include "tests/support/temporary_folder.h"
 
 namespace todbench {

@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "bench/session/build_info.h"
-#include "bench/text/files.h"
 #include "bench/session/fit_record.h"
-#include "tests/support/temporary_folder.h"
+#include "bench/text/files.h"
 #include "tests/bench/session/trial_values.h"
 #include "tests/support/source_file.h"
+#include "tests/support/temporary_folder.h"
 
 namespace todbench {
 namespace {

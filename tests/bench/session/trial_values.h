@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "acquisition/core/rng.h"
-#include "tod/psychometric/tod_curve.h"
 #include "tod/presentation/trial.h"
+#include "tod/psychometric/tod_curve.h"
 
 namespace todbench::testing {
 

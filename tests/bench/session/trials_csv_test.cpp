@@ -6,8 +6,8 @@
 #include <csignal>
 
 #include "acquisition/core/rng.h"
-#include "tests/support/temporary_folder.h"
 #include "tests/bench/session/trial_values.h"
+#include "tests/support/temporary_folder.h"
 
 namespace todbench {
 namespace {

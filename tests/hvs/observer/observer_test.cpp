@@ -4,8 +4,8 @@
 
 #include "hvs/observer/ideal_observer.h"
 #include "hvs/observer/known_position.h"
-#include "hvs/shape/polygon_image.h"
 #include "hvs/observer/template_observer.h"
+#include "hvs/shape/polygon_image.h"
 #include "tod/plate/test_pattern.h"
 
 namespace todbench {

@@ -9,8 +9,8 @@
 #include "sim_devices/lab/v4l2_laboratory.h"
 #include "tests/acquisition/usb/usb_test_support.h"
 #include "tests/acquisition/v4l2/video_test_support.h"
-#include "tests/support/parameter_names.h"
 #include "tests/sim_devices/lab/driver_fault_matrix.h"
+#include "tests/support/parameter_names.h"
 
 namespace todbench::test {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/tod/measurement/fake_clock.h"
 #include "tests/sim_devices/reference.h"
+#include "tests/tod/measurement/fake_clock.h"
 
 namespace todbench {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "tod/comparison/planning.h"
-#include "tod/schedule/psi_placement.h"
 #include "tod/psychometric/psychometric_fit.h"
+#include "tod/schedule/psi_placement.h"
 
 namespace todbench::testing {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "acquisition/v4l2/v4l2_backend.h"
-#include "sim_devices/lab/video/v4l2_camera.h"
 #include "sim_devices/lab/v4l2_laboratory.h"
+#include "sim_devices/lab/video/v4l2_camera.h"
 #include "tests/support/parameter_names.h"
 #include "tests/tod/measurement/free_running_camera.h"
 #include "tests/tod/measurement/measurement_bench.h"
