@@ -55,29 +55,54 @@ function(todbench_precompile target kind)
   endif()
 endfunction()
 
-# todbench_library(NAME SOURCES ... DEPENDS ... [PRECOMPILED KIND]): a static library whose headers are included from the repository root.
+# Sanitizers and static analysis make each source expensive: their presets compile the sources of a library together. Two functions of one
+# name in such a library do not compile there; a source that must keep its names is named APART.
+option(TODBENCH_UNITY "Compile the sources of a library together" OFF)
+if(TODBENCH_UNITY)
+  # A local name is not to be compared with those of another source.
+  target_compile_options(todbench_options INTERFACE -Wno-shadow)
+endif()
+
+function(todbench_together target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${TODBENCH_UNITY} UNITY_BUILD_BATCH_SIZE 16)
+endfunction()
+
+# todbench_library(NAME SOURCES ... DEPENDS ... [APART ...] [PRECOMPILED KIND]): a static library whose headers are included from the
+# repository root.
 function(todbench_library name)
-  cmake_parse_arguments(ARG "" "PRECOMPILED" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "" "PRECOMPILED" "SOURCES;DEPENDS;PRIVATE_DEPENDS;APART" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
   target_link_libraries(${name} PUBLIC todbench_options ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS})
   if(NOT ARG_PRECOMPILED)
     set(ARG_PRECOMPILED core)
   endif()
   todbench_precompile(${name} ${ARG_PRECOMPILED})
+  todbench_together(${name})
+  set(generated ${ARG_SOURCES})
+  list(FILTER generated INCLUDE REGEX "^${CMAKE_BINARY_DIR}/")
+  foreach(source ${ARG_APART} ${generated})
+    set_source_files_properties("${source}" PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  endforeach()
 endfunction()
 
-# todbench_test(NAME SOURCES ... DEPENDS ... [LABELS ...] [SANITIZERS address thread] [TIMEOUT s] [PRECOMPILED KIND]): one GoogleTest
-# program, its cases listed by ctest. A build with a sanitizer has only the programs that name it.
+# Patience of a test whose program is a process of ctest: a hang ends it, a busy machine does not.
+set(todbench_hang_s 1800)
+
+# todbench_test(NAME SOURCES ... DEPENDS ... [LABELS ...] [SANITIZERS address thread] [SHARDS n | EACH_CASE] [COST s]
+# [PRECOMPILED KIND]): one GoogleTest program.
+#   LABELS      of its tests for ctest; the target todbench_tests_LABEL builds the programs with that label
+#   SANITIZERS  a build with a sanitizer has only the programs that name it
+#   SHARDS      ctest runs the program as so many processes with a part of the cases each; one when nothing is said: starting a process
+#               costs more than most cases do
+#   EACH_CASE   ctest runs every case in a process of its own: for programs whose cases take seconds
+#   COST        seconds of the whole program; ctest begins with the longest, so that none runs alone at the end
 function(todbench_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT;PRECOMPILED" "SOURCES;DEPENDS;LABELS;SANITIZERS" ${ARGN})
+  cmake_parse_arguments(ARG "EACH_CASE" "COST;SHARDS;PRECOMPILED" "SOURCES;DEPENDS;LABELS;SANITIZERS" ${ARGN})
   foreach(sanitizer address thread)
     if(TODBENCH_SANITIZE MATCHES "${sanitizer}" AND NOT "${sanitizer}" IN_LIST ARG_SANITIZERS)
       return()
     endif()
   endforeach()
-  if(NOT ARG_TIMEOUT)
-    set(ARG_TIMEOUT 300)
-  endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_DEPENDS} todbench_source_file GTest::gmock_main)
   # Compiling assertions costs more than running them.
@@ -87,16 +112,37 @@ function(todbench_test name)
   endif()
   todbench_precompile(${name} ${ARG_PRECOMPILED})
   add_dependencies(todbench_tests ${name})
-  include(GoogleTest)
-  set(environment "")
+  foreach(label ${ARG_LABELS})
+    if(NOT TARGET todbench_tests_${label})
+      add_custom_target(todbench_tests_${label})
+    endif()
+    add_dependencies(todbench_tests_${label} ${name})
+  endforeach()
+  set(environment GTEST_BRIEF=1)
   if(TODBENCH_SANITIZE MATCHES "thread")
-    set(environment ENVIRONMENT "TSAN_OPTIONS=suppressions=${CMAKE_SOURCE_DIR}/tests/tsan_suppressions.txt")
+    list(APPEND environment "TSAN_OPTIONS=suppressions=${CMAKE_SOURCE_DIR}/tests/tsan_suppressions.txt")
   endif()
-  # Long tests begin first, so that none runs alone at the end.
-  set(cost 0)
-  if("slow" IN_LIST ARG_LABELS)
-    set(cost 100)
+  if(NOT ARG_COST)
+    set(ARG_COST 1)
   endif()
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60
-    PROPERTIES TIMEOUT ${ARG_TIMEOUT} COST ${cost} ${environment} LABELS "${ARG_LABELS}")
+  if(NOT ARG_SHARDS)
+    set(ARG_SHARDS 1)
+  endif()
+  if(ARG_EACH_CASE)
+    include(GoogleTest)
+    gtest_discover_tests(${name} DISCOVERY_TIMEOUT 600
+      PROPERTIES TIMEOUT ${todbench_hang_s} COST ${ARG_COST} ENVIRONMENT "${environment}" LABELS "${ARG_LABELS}")
+    return()
+  endif()
+  math(EXPR last "${ARG_SHARDS} - 1")
+  math(EXPR cost "${ARG_COST} / ${ARG_SHARDS}")
+  foreach(shard RANGE ${last})
+    set(test ${name})
+    if(ARG_SHARDS GREATER 1)
+      set(test ${name}.${shard})
+    endif()
+    add_test(NAME ${test} COMMAND ${name})
+    set_tests_properties(${test} PROPERTIES TIMEOUT ${todbench_hang_s} COST ${cost} LABELS "${ARG_LABELS}"
+      ENVIRONMENT "${environment};GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${shard}")
+  endforeach()
 endfunction()

@@ -14,9 +14,6 @@
 
 namespace todbench::testing {
 
-/// Far longer than anything a test waits for takes on a loaded machine; a test that waits this long has failed.
-inline constexpr std::chrono::seconds patience{120};
-
 struct ChildOptions {
   std::filesystem::path folder{};               ///< working folder; empty: that of the test
   std::map<std::string, std::string> setenv{};  ///< added to the environment of the test
@@ -40,7 +37,8 @@ class ChildProcess {
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   void signal(int number) const;
-  /// Reads the output while the process runs, until `enough` says so; false when it ends first or patience does.
+  /// Reads the output while the process runs, until `enough` says so; false when it ends first or patience does (two
+  /// minutes, more on a busy machine).
   [[nodiscard]] bool wait_until(const std::function<bool()>& enough);
   /// What it wrote to standard output so far.
   [[nodiscard]] const std::string& out() const { return out_; }

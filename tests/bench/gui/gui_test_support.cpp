@@ -2,12 +2,14 @@
 
 #include <QElapsedTimer>
 
+#include "tests/support/patience.h"
+
 namespace todbench::testing {
 
 bool wait_until(const std::function<bool()>& so, int patience_ms) {
   QElapsedTimer waited;
   waited.start();
-  while (!so() && waited.elapsed() < patience_ms) {
+  while (!so() && waited.elapsed() < testing_support::patience(std::chrono::milliseconds(patience_ms)).count()) {
     // The loop sleeps until there is an event, at most as long as this timer.
     QEventLoop loop;
     QTimer::singleShot(10, &loop, &QEventLoop::quit);
