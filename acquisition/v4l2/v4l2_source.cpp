@@ -232,7 +232,7 @@ RadiometricScale V4l2Source::scale_of(const LeptonTelemetry& telemetry) const {
 
 Result<void> V4l2Source::learn_scale() {
   if (layout_.telemetry_rows == 0) return {};
-  if (const auto started = start(); !started) return started;
+  if (auto started = start(); !started) return started;
   const auto frame = next(patience_with_first_frame);
   stop();
   if (!frame) return fail("reading the telemetry", frame.error());

@@ -46,6 +46,7 @@ struct Attempt {
 
 std::vector<cv::Point2d> places(const std::vector<PlateTriangle>& triangles) {
   std::vector<cv::Point2d> result;
+  result.reserve(triangles.size());
   for (const PlateTriangle& t : triangles) result.push_back(t.position_mm);
   return result;
 }
