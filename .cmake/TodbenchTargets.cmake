@@ -104,7 +104,12 @@ function(todbench_test name)
     endif()
   endforeach()
   add_executable(${name} ${ARG_SOURCES})
-  target_link_libraries(${name} PRIVATE ${ARG_DEPENDS} todbench_source_file GTest::gmock_main)
+  # A library of test support (todbench_..._test_support) brings a main() of its own; beside another, the linker would take either.
+  set(main GTest::gmock_main)
+  if(ARG_DEPENDS MATCHES "_test_support")
+    set(main GTest::gmock)
+  endif()
+  target_link_libraries(${name} PRIVATE ${ARG_DEPENDS} todbench_source_file ${main})
   # Compiling assertions costs more than running them.
   target_compile_options(${name} PRIVATE -O1)
   if(NOT ARG_PRECOMPILED)
