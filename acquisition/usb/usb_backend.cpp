@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "acquisition/core/camera_id.h"
 #include "acquisition/usb/seek_source.h"
 #include "acquisition/usb/usb_connection.h"
 
@@ -42,7 +43,7 @@ Result<Search> search(libusb_context* context) {
 
 class UsbBackend final : public CameraBackend {
  public:
-  [[nodiscard]] std::string scheme() const override { return "usb"; }
+  [[nodiscard]] std::string scheme() const override { return std::string(camera_scheme::usb); }
 
   [[nodiscard]] Result<std::vector<CameraEntry>> list() override {
     auto context = usb_context();

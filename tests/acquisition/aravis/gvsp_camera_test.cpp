@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "acquisition/aravis/glib_ptr.h"
-#include "tests/acquisition/aravis/gvsp_test_support.h"
+#include "tests/support/gvsp_test_support.h"
 
 namespace todbench {
 namespace {
