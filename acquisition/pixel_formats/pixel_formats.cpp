@@ -74,13 +74,6 @@ constexpr std::uint32_t fourcc(const char* text) {
 
 }  // namespace
 
-std::optional<PixelFormat> pixel_format_named(std::string_view pfnc_name) {
-  for (const auto& facts : pixel_format_table) {
-    if (facts.name == pfnc_name) return facts.format;
-  }
-  return std::nullopt;
-}
-
 std::optional<PixelFormat> pixel_format_of_pfnc(std::uint32_t code) {
   for (const auto& facts : pixel_format_table) {
     if (facts.pfnc == code) return facts.format;

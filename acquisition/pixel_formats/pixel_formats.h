@@ -59,8 +59,6 @@ enum class ByteOrder { little_endian, big_endian };
 [[nodiscard]] constexpr std::string_view to_string(PixelFormat format) {
   return facts_of(format).name;
 }
-/// By PFNC name; nothing for a name that is not in the table.
-[[nodiscard]] std::optional<PixelFormat> pixel_format_named(std::string_view pfnc_name);
 /// The PFNC code, and back.
 [[nodiscard]] constexpr std::uint32_t pfnc_code(PixelFormat format) {
   return facts_of(format).pfnc;
