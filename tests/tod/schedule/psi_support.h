@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "tests/tod/comparison/planning_reference.h"
-#include "tod/comparison/planning.h"
 #include "tod/psychometric/psychometric_fit.h"
 #include "tod/schedule/psi_placement.h"
 
