@@ -5,6 +5,7 @@
 #include "acquisition/aravis/aravis_source.h"
 #include "acquisition/aravis/description_url.h"
 #include "acquisition/aravis/genicam_features.h"
+#include "acquisition/aravis/gev_registers.h"
 #include "acquisition/aravis/glib_ptr.h"
 #include "acquisition/aravis/gvcp_client.h"
 #include "acquisition/core/camera_id.h"
@@ -19,11 +20,10 @@ struct BootstrapText {
   std::uint64_t address;
   std::uint32_t size;
 };
-constexpr BootstrapText bootstrap_vendor{0x0048, 32};
-constexpr BootstrapText bootstrap_model{0x0068, 32};
-constexpr BootstrapText bootstrap_version{0x0088, 32};
-constexpr BootstrapText bootstrap_serial{0x00D8, 16};
-constexpr std::uint32_t first_url = 0x0200, second_url = 0x0400;
+constexpr BootstrapText bootstrap_vendor{gev::vendor_name, 32};
+constexpr BootstrapText bootstrap_model{gev::model_name, 32};
+constexpr BootstrapText bootstrap_version{gev::device_version, 32};
+constexpr BootstrapText bootstrap_serial{gev::serial_number, 16};
 constexpr std::uint16_t url_bytes = 512;
 
 std::string bootstrap_text(ArvDevice* device, BootstrapText field) {
@@ -69,7 +69,7 @@ bool controlled_by_another(const std::string& address) {
 /// to the opening.
 Result<void> check_description(const std::string& address) {
   if (!is_ipv4(address)) return {};
-  for (const std::uint32_t where : {first_url, second_url}) {
+  for (const std::uint32_t where : {gev::first_url, gev::second_url}) {
     const auto url = gvcp_read_text(address, where, url_bytes, 500ms);
     if (!url || url->empty()) continue;
     if (auto valid = check_description_url(*url); !valid) return valid;

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "sim_devices/lab/gige/gev_registers.h"
+#include "acquisition/aravis/gev_registers.h"
 
 namespace todbench {
 namespace {

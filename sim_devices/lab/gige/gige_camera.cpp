@@ -13,10 +13,10 @@
 #include <thread>
 #include <vector>
 
+#include "acquisition/aravis/gev_registers.h"
 #include "acquisition/aravis/gvcp_client.h"
 #include "sim_devices/lab/genicam/picture_encoder.h"
 #include "sim_devices/lab/genicam/thermal_features.h"
-#include "sim_devices/lab/gige/gev_registers.h"
 
 namespace todbench {
 

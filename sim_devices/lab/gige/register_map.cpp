@@ -5,7 +5,7 @@
 #include <cassert>
 #include <utility>
 
-#include "sim_devices/lab/gige/gev_registers.h"
+#include "acquisition/aravis/gev_registers.h"
 
 namespace todbench {
 namespace {

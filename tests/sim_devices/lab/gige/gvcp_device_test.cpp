@@ -1,9 +1,9 @@
 // The emulated GigE Vision camera without its sockets: control messages, packets, faults, pictures.
 #include <gmock/gmock.h>
 
+#include "acquisition/aravis/gev_registers.h"
 #include "sim_devices/lab/genicam/picture_encoder.h"
 #include "sim_devices/lab/gige/camera_models.h"
-#include "sim_devices/lab/gige/gev_registers.h"
 #include "sim_devices/lab/gige/gvcp_device.h"
 #include "sim_devices/lab/gige/gvsp_faults.h"
 #include "sim_devices/lab/gige/gvsp_packets.h"

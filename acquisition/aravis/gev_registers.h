@@ -19,6 +19,7 @@ inline constexpr std::uint32_t device_version = 0x0088;     ///< 32 bytes
 inline constexpr std::uint32_t manufacturer_info = 0x00A8;  ///< 48 bytes
 inline constexpr std::uint32_t serial_number = 0x00D8;      ///< 16 bytes
 inline constexpr std::uint32_t first_url = 0x0200;          ///< 512 bytes
+inline constexpr std::uint32_t second_url = 0x0400;         ///< 512 bytes
 inline constexpr std::uint32_t network_interfaces = 0x0600;
 inline constexpr std::uint32_t stream_channels = 0x0904;
 inline constexpr std::uint32_t gvcp_capability = 0x0934;
