@@ -2,13 +2,13 @@
 
 #include <arpa/inet.h>
 
-#include <cctype>
-
 #include "acquisition/aravis/aravis_source.h"
 #include "acquisition/aravis/description_url.h"
 #include "acquisition/aravis/genicam_features.h"
+#include "acquisition/aravis/gev_registers.h"
 #include "acquisition/aravis/glib_ptr.h"
 #include "acquisition/aravis/gvcp_client.h"
+#include "acquisition/core/camera_id.h"
 
 namespace todbench {
 namespace {
@@ -20,11 +20,10 @@ struct BootstrapText {
   std::uint64_t address;
   std::uint32_t size;
 };
-constexpr BootstrapText bootstrap_vendor{0x0048, 32};
-constexpr BootstrapText bootstrap_model{0x0068, 32};
-constexpr BootstrapText bootstrap_version{0x0088, 32};
-constexpr BootstrapText bootstrap_serial{0x00D8, 16};
-constexpr std::uint32_t first_url = 0x0200, second_url = 0x0400;
+constexpr BootstrapText bootstrap_vendor{gev::vendor_name, 32};
+constexpr BootstrapText bootstrap_model{gev::model_name, 32};
+constexpr BootstrapText bootstrap_version{gev::device_version, 32};
+constexpr BootstrapText bootstrap_serial{gev::serial_number, 16};
 constexpr std::uint16_t url_bytes = 512;
 
 std::string bootstrap_text(ArvDevice* device, BootstrapText field) {
@@ -70,7 +69,7 @@ bool controlled_by_another(const std::string& address) {
 /// to the opening.
 Result<void> check_description(const std::string& address) {
   if (!is_ipv4(address)) return {};
-  for (const std::uint32_t where : {first_url, second_url}) {
+  for (const std::uint32_t where : {gev::first_url, gev::second_url}) {
     const auto url = gvcp_read_text(address, where, url_bytes, 500ms);
     if (!url || url->empty()) continue;
     if (auto valid = check_description_url(*url); !valid) return valid;
@@ -83,7 +82,7 @@ class AravisBackend : public CameraBackend {
   explicit AravisBackend(AravisOptions options) : options_(std::move(options)) {}
 
   [[nodiscard]] std::string scheme() const override {
-    return options_.transport == AravisTransport::gige_vision ? "gige" : "u3v";
+    return std::string(options_.transport == AravisTransport::gige_vision ? camera_scheme::gige : camera_scheme::u3v);
   }
   [[nodiscard]] Result<std::vector<CameraEntry>> list() override;
   [[nodiscard]] Result<std::unique_ptr<FrameSource>> open(const std::string& id) override;
@@ -97,7 +96,7 @@ class AravisBackend : public CameraBackend {
     return options_.transport == AravisTransport::gige_vision ? "GigE Vision" : "USB3 Vision";
   }
   [[nodiscard]] CameraEntry entry(unsigned index) const;
-  [[nodiscard]] Result<std::string> aravis_name(const std::string& id);
+  [[nodiscard]] Result<std::string> aravis_name(const std::string& id, const std::string& name);
   [[nodiscard]] SourceInfo identity(ArvDevice* device) const;
 
   AravisOptions options_;
@@ -112,7 +111,7 @@ CameraEntry AravisBackend::entry(unsigned index) const {
                            text_or_empty(arv_interface_get_device_physical_id(cameras, index)));
   camera.address = text_or_empty(arv_interface_get_device_address(cameras, index));
   camera.transport = transport_name();
-  camera.id = camera_id(scheme(), camera.vendor, camera.serial);
+  camera.id = camera_id(scheme(), {camera.vendor, camera.serial});
   return camera;
 }
 
@@ -124,8 +123,7 @@ Result<std::vector<CameraEntry>> AravisBackend::list() {
   return cameras;
 }
 
-Result<std::string> AravisBackend::aravis_name(const std::string& id) {
-  const std::string name = id.substr(scheme().size() + 1);
+Result<std::string> AravisBackend::aravis_name(const std::string& id, const std::string& name) {
   if (options_.transport == AravisTransport::gige_vision && is_ipv4(name)) {
     const auto answer = gvcp_read_register(name, gvcp_version_register, 500ms);
     if (!answer) return fail(ErrorCode::not_found, answer.error().message);
@@ -164,15 +162,14 @@ SourceInfo AravisBackend::identity(ArvDevice* device) const {
   info.serial = first_of(info.serial, first_feature(device, {"DeviceSerialNumber", "CameraSN", "DeviceID"}));
   info.firmware = first_of(first_feature(device, {"DeviceFirmwareVersion"}),
                            first_of(info.firmware, first_feature(device, {"DeviceVersion"})));
-  info.id = camera_id(scheme(), info.vendor, info.serial);
+  info.id = camera_id(scheme(), {info.vendor, info.serial});
   return info;
 }
 
 Result<std::unique_ptr<FrameSource>> AravisBackend::open(const std::string& id) {
-  if (!id.starts_with(scheme() + ":")) {
-    return fail(ErrorCode::invalid_input, "'" + id + "' does not begin with " + scheme() + ":");
-  }
-  const auto name = aravis_name(id);
+  const auto stated = camera_name(id, scheme());
+  if (!stated) return fail(ErrorCode::invalid_input, "'" + id + "' does not begin with " + scheme() + ":");
+  const auto name = aravis_name(id, *stated);
   if (!name) return tl::unexpected(name.error());
   GErrorSlot error;
   GObjectPtr<ArvDevice> device(arv_interface_open_device(interface(), name->c_str(), error.out()));
@@ -195,17 +192,6 @@ Result<std::unique_ptr<FrameSource>> AravisBackend::open(const std::string& id) 
 }
 
 }  // namespace
-
-std::string camera_id(std::string_view scheme, std::string_view vendor, std::string_view serial) {
-  const auto sanitised = [](std::string_view text) {
-    std::string clean(text);
-    for (char& c : clean) {
-      if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.' && c != '_') c = '_';
-    }
-    return clean;
-  };
-  return std::string(scheme) + ":" + sanitised(vendor) + "-" + sanitised(serial);
-}
 
 std::unique_ptr<CameraBackend> aravis_backend(AravisOptions options) {
   return std::make_unique<AravisBackend>(std::move(options));

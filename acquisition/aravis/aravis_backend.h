@@ -35,9 +35,6 @@ struct AravisOptions {
   std::uint64_t min_socket_buffer_bytes = 4U << 20U;
 };
 
-/// Identity of a camera: scheme, vendor and serial, with everything but letters, digits, '.' and '_' replaced by '_'.
-[[nodiscard]] std::string camera_id(std::string_view scheme, std::string_view vendor, std::string_view serial);
-
 /// Lists by discovery (1 s on a network) and opens "gige:VENDOR-SERIAL", or "gige:192.168.1.10" where broadcasts do not
 /// pass; the source then tells the true identity. Opening makes the choices of the camera's family (linear temperature,
 /// full depth, filters off; camera_families.h), looks at its test ramp where it has one and reads everything back. The

@@ -131,7 +131,7 @@ Result<void> AravisSource::refresh() {
   scale_ = std::make_shared<const RadiometricScale>(scale);
   info_.width = format_.width;
   info_.height = format_.height;
-  info_.pixel_format = format_.name;
+  info_.pixel_format = to_string(format_.pixel_format);
   info_.significant_bits = format_.significant_bits;
   info_.frame_rate_hz = read_frame_rate(camera_.get(), family_);
   info_.scale = *scale_;

@@ -12,16 +12,9 @@
 namespace todbench {
 namespace {
 
-struct MonoFormat {
-  const char* name;
-  ArvPixelFormat code;
-  int bits;
-};
-
-/// Unpacked formats: one pixel in two bytes, value in the low bits (PFNC 2.4). Mono14 stands before Mono16 so that it
-/// wins when both carry 14 bits: only its name states the full scale.
-constexpr std::array<MonoFormat, 4> mono_formats{
-    {{"Mono14", 0x01100025, 14}, {"Mono16", 0x01100007, 16}, {"Mono12", 0x01100005, 12}, {"Mono10", 0x01100003, 10}}};
+/// Formats that are measured with: one pixel in two bytes. Mono14 stands before Mono16 so that it wins when both carry
+/// 14 bits: only its name states the full scale.
+constexpr std::array usable_formats{PixelFormat::mono14, PixelFormat::mono16, PixelFormat::mono12, PixelFormat::mono10};
 
 /// Larger than any thermal camera's picture; a camera that states more would have this program reserve memory without
 /// bound.
@@ -96,18 +89,18 @@ int bits_in_mono16(ArvDevice* device) {
   return 16;
 }
 
-int significant_bits(ArvDevice* device, const MonoFormat& format) {
-  return format.bits == 16 ? bits_in_mono16(device) : format.bits;
+int significant_bits(ArvDevice* device, PixelFormat format) {
+  return format == PixelFormat::mono16 ? bits_in_mono16(device) : significant_bits(format);
 }
 
 Result<void> choose_pixel_format(ArvDevice* device, const std::string& wanted) {
   const auto offered = enumeration_entries(device, "PixelFormat");
-  std::optional<MonoFormat> best;
+  std::optional<PixelFormat> best;
   std::string names;
   for (const auto& name : offered) names += (names.empty() ? "" : ", ") + name;
-  for (const auto& format : mono_formats) {
-    if (std::find(offered.begin(), offered.end(), format.name) == offered.end()) continue;
-    if (!wanted.empty() && wanted != format.name) continue;
+  for (const auto format : usable_formats) {
+    if (std::find(offered.begin(), offered.end(), to_string(format)) == offered.end()) continue;
+    if (!wanted.empty() && wanted != to_string(format)) continue;
     if (!best || significant_bits(device, format) > significant_bits(device, *best)) best = format;
   }
   if (!best) {
@@ -115,7 +108,7 @@ Result<void> choose_pixel_format(ArvDevice* device, const std::string& wanted) {
                                                       : "no usable pixel format " + wanted) +
                                           "; the camera offers " + (names.empty() ? "none" : names));
   }
-  auto chosen = set_feature(device, "PixelFormat", best->name);
+  auto chosen = set_feature(device, "PixelFormat", std::string(to_string(*best)));
   if (!chosen && chosen.error().code != ErrorCode::disconnected) chosen.error().code = ErrorCode::not_found;
   return chosen;
 }
@@ -190,16 +183,14 @@ Result<StreamFormat> read_stream_format(ArvCamera* camera) {
   gint y = 0;
   arv_camera_get_region(camera, &x, &y, &format.width, &format.height, error.out());
   if (error) return error.failure(ErrorCode::not_found, "reading the image geometry");
-  format.code = arv_camera_get_pixel_format(camera, error.out());
+  const auto known = pixel_format_of_pfnc(arv_camera_get_pixel_format(camera, error.out()));
   if (error) return error.failure(ErrorCode::not_found, "reading the pixel format");
-  const auto known = std::find_if(mono_formats.begin(), mono_formats.end(),
-                                  [&](const MonoFormat& candidate) { return candidate.code == format.code; });
-  if (known == mono_formats.end()) {
+  if (!known || std::find(usable_formats.begin(), usable_formats.end(), *known) == usable_formats.end()) {
     return fail(ErrorCode::not_found, "pixel format " +
                                           text_or_empty(arv_camera_get_pixel_format_as_string(camera, nullptr)) +
                                           " is not an unpacked 10 ... 16 bit monochrome format");
   }
-  format.name = known->name;
+  format.pixel_format = *known;
   format.significant_bits = significant_bits(device, *known);
   format.payload_bytes = arv_camera_get_payload(camera, error.out());
   if (error) return error.failure(ErrorCode::not_found, "reading the payload size");

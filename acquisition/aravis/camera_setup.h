@@ -10,14 +10,14 @@
 #include "acquisition/aravis/camera_families.h"
 #include "acquisition/aravis/glib_ptr.h"
 #include "acquisition/core/frame_source.h"
+#include "acquisition/pixel_formats/pixel_formats.h"
 
 namespace todbench {
 
 /// What the camera sends.
 struct StreamFormat {
   int width = 0, height = 0;
-  std::string name;  ///< PFNC
-  ArvPixelFormat code = 0;
+  PixelFormat pixel_format = PixelFormat::mono16;
   int significant_bits = 16;
   std::size_t payload_bytes = 0;
   bool big_endian = false;  ///< pixels arrive with the high byte first

@@ -2,22 +2,12 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <cstring>
 
 namespace todbench {
 namespace {
 
 /// Never a valid id in either numbering.
 constexpr std::uint64_t no_frame_id = ~std::uint64_t{0};
-
-cv::Mat1w copied_pixels(const void* data, const StreamFormat& format) {
-  cv::Mat1w counts(format.height, format.width);
-  std::memcpy(counts.data, data, counts.total() * counts.elemSize());
-  if (format.big_endian) {
-    for (auto& count : counts) count = static_cast<ushort>(count << 8 | count >> 8);
-  }
-  return counts;
-}
 
 FrameStatus status_of(ArvBuffer* buffer, const StreamFormat& format) {
   switch (arv_buffer_get_status(buffer)) {
@@ -27,7 +17,7 @@ FrameStatus status_of(ArvBuffer* buffer, const StreamFormat& format) {
       const bool image = type == ARV_BUFFER_PAYLOAD_TYPE_IMAGE || type == ARV_BUFFER_PAYLOAD_TYPE_EXTENDED_CHUNK_DATA;
       const bool as_negotiated = image && arv_buffer_get_image_width(buffer) == format.width &&
                                  arv_buffer_get_image_height(buffer) == format.height &&
-                                 arv_buffer_get_image_pixel_format(buffer) == format.code;
+                                 arv_buffer_get_image_pixel_format(buffer) == pfnc_code(format.pixel_format);
       return as_negotiated ? FrameStatus::complete : FrameStatus::wrong_size;
     }
     case ARV_BUFFER_STATUS_SIZE_MISMATCH:
@@ -73,10 +63,14 @@ Frame frame_from_buffer(ArvBuffer* buffer, const StreamFormat& format) {
   // Without leader the buffer still holds the time of an older frame.
   if (frame_id_of(buffer)) frame.device_time_ns = static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer));
   std::size_t bytes = 0;
-  const void* data = arv_buffer_get_data(buffer, &bytes);
-  const auto expected = 2 * static_cast<std::size_t>(format.width) * static_cast<std::size_t>(format.height);
-  if (data != nullptr && bytes >= expected) {
-    frame.counts = copied_pixels(data, format);
+  const auto* data = static_cast<const std::uint8_t*>(arv_buffer_get_data(buffer, &bytes));
+  auto counts = decode_pixels({data, data != nullptr ? bytes : 0},
+                              {.format = format.pixel_format,
+                               .order = format.big_endian ? ByteOrder::big_endian : ByteOrder::little_endian,
+                               .width = format.width,
+                               .height = format.height});
+  if (counts) {
+    frame.counts = std::move(*counts);
     return frame;
   }
   if (frame.status == FrameStatus::complete) frame.status = FrameStatus::wrong_size;

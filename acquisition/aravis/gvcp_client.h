@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include "acquisition/aravis/gev_registers.h"
 #include "acquisition/core/result.h"
 
 namespace todbench {
@@ -13,10 +14,10 @@ namespace todbench {
 /// UDP port of every GigE Vision device; fixed by the standard.
 inline constexpr std::uint16_t gvcp_port = 3956;
 /// Version register: every device answers a read of it, from any client, without side effect.
-inline constexpr std::uint32_t gvcp_version_register = 0x0000;
+inline constexpr std::uint32_t gvcp_version_register = gev::version;
 /// Control channel privilege: not zero while a client controls the device. Not for polling: some devices take a read of
 /// it for the controller's heartbeat.
-inline constexpr std::uint32_t gvcp_control_privilege_register = 0x0A00;
+inline constexpr std::uint32_t gvcp_control_privilege_register = gev::control_privilege;
 
 /// Reads a 32-bit register of the device at `ipv4` without being its controller. Repeats the request every 50 ms until
 /// `patience` has passed. Blocks for `patience` at most; needs no privilege; any thread. Errors: `timeout` (no answer),

@@ -68,14 +68,4 @@ ByteOrderEvidence byte_order_evidence(const cv::Mat1w& counts, const ByteOrderOp
   return evidence;
 }
 
-cv::Mat1w with_swapped_bytes(const cv::Mat1w& counts) {
-  cv::Mat1w out(counts.size());
-  for (int row = 0; row < counts.rows; ++row) {
-    const std::uint16_t* from = counts.ptr<std::uint16_t>(row);
-    std::uint16_t* to = out.ptr<std::uint16_t>(row);
-    for (int column = 0; column < counts.cols; ++column) to[column] = swapped(from[column]);
-  }
-  return out;
-}
-
 }  // namespace todbench

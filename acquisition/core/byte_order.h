@@ -34,7 +34,4 @@ struct ByteOrderOptions {
 /// whose high byte is zero everywhere (8 bits) is undecided: it reads the same story in both orders.
 [[nodiscard]] ByteOrderEvidence byte_order_evidence(const cv::Mat1w& counts, const ByteOrderOptions& options);
 
-/// The picture with the two bytes of every pixel exchanged.
-[[nodiscard]] cv::Mat1w with_swapped_bytes(const cv::Mat1w& counts);
-
 }  // namespace todbench

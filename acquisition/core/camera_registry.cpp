@@ -1,5 +1,7 @@
 #include "acquisition/core/camera_registry.h"
 
+#include "acquisition/core/camera_id.h"
+
 namespace todbench {
 
 void CameraRegistry::add(std::unique_ptr<CameraBackend> backend) {
@@ -23,7 +25,7 @@ Result<std::unique_ptr<FrameSource>> CameraRegistry::open(const std::string& id)
   std::string schemes;
   for (const auto& backend : backends_) {
     const std::string scheme = backend->scheme();
-    if (id.starts_with(scheme + ":")) {
+    if (has_scheme(id, scheme)) {
       auto source = backend->open(id);
       if (!source) return fail("opening camera " + id, source.error());
       return source;

@@ -1,5 +1,5 @@
-// Bytes as cameras send them, to 16-bit counts and back. Pure functions; sizes are checked, nothing is assumed of the
-// bytes.
+// The pixel formats that are known, in one table; bytes as cameras send them, to 16-bit counts and back. Pure
+// functions; sizes are checked, nothing is assumed of the bytes.
 #pragma once
 
 #include <cstddef>
@@ -14,38 +14,59 @@
 
 namespace todbench {
 
-/// How the counts of one pixel lie in the bytes. The names are those of the GenICam Pixel Format Naming Convention
-/// (PFNC 2.x); Mono12, Mono12p and Mono12Packed are three different things.
+/// How the counts of one pixel lie in the bytes.
 enum class PixelFormat {
-  mono8,          ///< one byte; V4L2 GREY
-  mono10,         ///< two bytes, the low 10 bits
-  mono12,         ///< two bytes, the low 12 bits
-  mono14,         ///< two bytes, the low 14 bits; V4L2 Y14
-  mono16,         ///< two bytes; V4L2 Y16
-  mono10p,        ///< a stream of 10-bit numbers, lowest bit first, from pixel to pixel without gaps
-  mono12p,        ///< the same with 12 bits
-  mono10_packed,  ///< GigE Vision 1.x: two pixels in three bytes: A9..A2, then B1 B0 in bits 5-4 and A1 A0 in 1-0,
-                  ///< B9..B2
-  mono12_packed,  ///< GigE Vision 1.x: A11..A4, then B3..B0 in bits 7-4 and A3..A0 in 3-0, B11..B4
-  yuyv,           ///< two bytes, the first is the luma of the pixel and the second is dropped; V4L2 YUYV
+  mono8,   ///< one byte
+  mono10,  ///< two bytes, the low 10 bits
+  mono12,  ///< two bytes, the low 12 bits
+  mono14,  ///< two bytes, the low 14 bits
+  mono16,  ///< two bytes
+  yuyv,    ///< two bytes, the first is the luma of the pixel and the second is dropped
 };
-inline constexpr PixelFormat all_pixel_formats[] = {
-    PixelFormat::mono8,         PixelFormat::mono10,  PixelFormat::mono12,  PixelFormat::mono14,
-    PixelFormat::mono16,        PixelFormat::mono10p, PixelFormat::mono12p, PixelFormat::mono10_packed,
-    PixelFormat::mono12_packed, PixelFormat::yuyv};
+
+/// What is known of a format, wherever it is met: the name of the GenICam Pixel Format Naming Convention (PFNC 2.4),
+/// the 32-bit code that GigE Vision and USB3 Vision send for it, the four-character code of V4L2.
+struct PixelFormatFacts {
+  PixelFormat format;
+  std::string_view name;
+  std::uint32_t pfnc;
+  const char* fourcc;
+  int significant_bits;  ///< bits of a pixel that can be set
+  int bytes_per_pixel;
+};
+
+/// The formats that the back ends read and the emulated cameras send. Packed ones (Mono12p, Mono12Packed) are not among
+/// them.
+inline constexpr PixelFormatFacts pixel_format_table[] = {{PixelFormat::mono8, "Mono8", 0x01080001, "GREY", 8, 1},
+                                                          {PixelFormat::mono10, "Mono10", 0x01100003, "Y10 ", 10, 2},
+                                                          {PixelFormat::mono12, "Mono12", 0x01100005, "Y12 ", 12, 2},
+                                                          {PixelFormat::mono14, "Mono14", 0x01100025, "Y14 ", 14, 2},
+                                                          {PixelFormat::mono16, "Mono16", 0x01100007, "Y16 ", 16, 2},
+                                                          {PixelFormat::yuyv, "YUV422_8", 0x02100032, "YUYV", 8, 2}};
+
+/// The line of the table.
+[[nodiscard]] constexpr const PixelFormatFacts& facts_of(PixelFormat format) {
+  for (const auto& facts : pixel_format_table) {
+    if (facts.format == format) return facts;
+  }
+  return pixel_format_table[0];  // not reached: every format has a line
+}
 
 /// Of pixels with two bytes of counts (mono10, 12, 14, 16); the other formats have one order only and ignore it.
 enum class ByteOrder { little_endian, big_endian };
 
-/// PFNC name, e.g. "Mono12Packed"; "YUV422_8" for yuyv.
-[[nodiscard]] std::string_view to_string(PixelFormat format);
-/// By PFNC name; nothing for a name that is not in the list.
-[[nodiscard]] std::optional<PixelFormat> pixel_format_named(std::string_view pfnc_name);
-/// The 32-bit PFNC code that GigE Vision and USB3 Vision send, and back.
-[[nodiscard]] std::uint32_t pfnc_code(PixelFormat format);
+/// PFNC name, e.g. "Mono14"; "YUV422_8" for yuyv.
+[[nodiscard]] constexpr std::string_view to_string(PixelFormat format) {
+  return facts_of(format).name;
+}
+/// The PFNC code, and back.
+[[nodiscard]] constexpr std::uint32_t pfnc_code(PixelFormat format) {
+  return facts_of(format).pfnc;
+}
 [[nodiscard]] std::optional<PixelFormat> pixel_format_of_pfnc(std::uint32_t code);
-/// Bits of a pixel that can be set: 8 ... 16.
-[[nodiscard]] int significant_bits(PixelFormat format);
+[[nodiscard]] constexpr int significant_bits(PixelFormat format) {
+  return facts_of(format).significant_bits;
+}
 
 /// What a four-character code of V4L2 stands for.
 struct FourccFormat {
@@ -56,14 +77,15 @@ struct FourccFormat {
 /// "Y16 ", "Y16 " with bit 31 set (big-endian, listed as "Y16 -BE"), "Y14 ", "Y12 ", "Y10 ", "GREY", "YUYV"; nothing
 /// for any other. The code is v4l2_fourcc(): first character in the low byte.
 [[nodiscard]] std::optional<FourccFormat> format_of_fourcc(std::uint32_t fourcc);
+/// The code of a format, low byte first where there is an order.
+[[nodiscard]] std::uint32_t fourcc_code(PixelFormat format);
 
 /// A picture in memory.
 struct PixelLayout {
   PixelFormat format = PixelFormat::mono16;
   ByteOrder order = ByteOrder::little_endian;
   int width = 0, height = 0;  ///< pixels, 1 ... 65535
-  /// From the first byte of a row to the first of the next. 0: rows follow each other without a gap; in mono10p,
-  /// mono12p and the packed formats a row then begins in the middle of a byte or group when the one before ended there.
+  /// From the first byte of a row to the first of the next. 0: rows follow each other without a gap.
   std::size_t row_bytes = 0;
 };
 

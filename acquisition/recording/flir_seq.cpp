@@ -9,6 +9,8 @@
 #include <optional>
 #include <tuple>
 
+#include "acquisition/core/camera_id.h"
+
 namespace todbench {
 namespace {
 
@@ -182,7 +184,7 @@ std::string text(double value) {
 
 SourceInfo source_info(const std::filesystem::path& path, const FlirSeqFrame& first, const RadiometricScale& scale) {
   SourceInfo info;
-  info.id = "file:" + path.string();
+  info.id = camera_id(camera_scheme::file, path.string());
   info.vendor = "FLIR";
   info.model = first.camera_model;
   info.serial = first.camera_serial;

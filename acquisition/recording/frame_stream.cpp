@@ -16,6 +16,7 @@
 #include <system_error>
 #include <utility>
 
+#include "acquisition/core/camera_id.h"
 #include "acquisition/recording/stream_header.h"
 
 namespace todbench {
@@ -332,7 +333,7 @@ Result<FrameStream> open_frame_stream(const std::filesystem::path& path) {
   stream.readings = std::move(index.readings);
   stream.torn_bytes = index.torn_bytes();
   stream.recording.info = stream.header.info;
-  stream.recording.info.id = "file:" + name;
+  stream.recording.info.id = camera_id(camera_scheme::file, name);
   stream.recording.info.transport = "recording";
   if (stream.torn_bytes > 0) {
     stream.recording.info.warnings.push_back("the recording was cut off: " + std::to_string(stream.torn_bytes) +

@@ -4,6 +4,8 @@
 #include <fstream>
 #include <system_error>
 
+#include "acquisition/core/camera_id.h"
+
 namespace todbench {
 namespace {
 
@@ -42,7 +44,7 @@ Result<Recording> open_raw_recording(const std::filesystem::path& path, const Ra
                                               " frames of " + std::to_string(frame_bytes) + " bytes");
   }
   Recording recording;
-  recording.info.id = "file:" + name;
+  recording.info.id = camera_id(camera_scheme::file, name);
   recording.info.model = path.filename().string();
   recording.info.transport = "recording";
   recording.info.width = format.width;

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "acquisition/core/camera_id.h"
 #include "acquisition/recording/flir_seq.h"
 #include "acquisition/recording/frame_stream.h"
 #include "acquisition/recording/raw_recording.h"
@@ -62,14 +63,14 @@ Result<RawRecordingFormat> raw_format(std::map<std::string, double> values) {
 
 class RecordingBackend : public CameraBackend {
  public:
-  [[nodiscard]] std::string scheme() const override { return "file"; }
+  [[nodiscard]] std::string scheme() const override { return std::string(camera_scheme::file); }
   [[nodiscard]] Result<std::vector<CameraEntry>> list() override { return std::vector<CameraEntry>(); }
   [[nodiscard]] Result<std::unique_ptr<FrameSource>> open(const std::string& id) override {
-    if (!id.starts_with("file:")) return fail(ErrorCode::invalid_input, "'" + id + "' does not begin with file:");
-    const std::string rest = id.substr(5);
-    const std::size_t mark = rest.find('?');
-    const std::filesystem::path path = rest.substr(0, mark);
-    auto recording = open_recording(path, mark == std::string::npos ? "" : rest.substr(mark + 1));
+    const auto name = camera_name(id, camera_scheme::file);
+    if (!name) return fail(ErrorCode::invalid_input, "'" + id + "' does not begin with file:");
+    const std::size_t mark = name->find('?');
+    const std::filesystem::path path = name->substr(0, mark);
+    auto recording = open_recording(path, mark == std::string::npos ? "" : name->substr(mark + 1));
     if (!recording) return tl::unexpected(recording.error());
     recording->info.id = id;
     return recorded_source(std::move(*recording));

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "acquisition/core/camera_id.h"
+
 namespace todbench {
 namespace {
 
@@ -178,7 +180,7 @@ Result<Recording> open_tiff_stack(const std::filesystem::path& path, const TiffF
     if (auto added = add_pages(file, i, pages, size); !added) return fail((*files)[i].string(), added.error());
   }
   Recording recording;
-  recording.info.id = "file:" + path.string();
+  recording.info.id = camera_id(camera_scheme::file, path.string());
   recording.info.model = path.filename().string();
   recording.info.transport = "recording";
   recording.info.width = size.width;

@@ -1,8 +1,9 @@
 #include "acquisition/usb/seek_protocol.h"
 
 #include <algorithm>
-#include <cctype>
 #include <string>
+
+#include "acquisition/core/camera_id.h"
 
 namespace todbench {
 namespace {
@@ -108,11 +109,7 @@ std::string_view to_string(SeekModel model) {
 }
 
 std::string seek_camera_id(SeekModel model, std::string_view serial) {
-  std::string clean(serial);
-  for (char& c : clean) {
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.' && c != '_') c = '_';
-  }
-  return "usb:SEEK-" + std::string(to_string(model)) + "-" + clean;
+  return camera_id(camera_scheme::usb, {"SEEK", to_string(model), serial});
 }
 
 bool SeekTransfer::reads() const {

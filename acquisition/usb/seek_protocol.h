@@ -41,7 +41,7 @@ struct SeekGeometry {
 /// "Compact", "CompactPRO".
 [[nodiscard]] std::string_view to_string(SeekModel model);
 
-/// "usb:SEEK-MODEL-SERIAL"; characters that are no letter, digit, dot or underscore become underscores.
+/// "usb:SEEK-MODEL-SERIAL".
 [[nodiscard]] std::string seek_camera_id(SeekModel model, std::string_view serial);
 
 /// Vendor requests to the interface (bmRequestType 0x41 out, 0xC1 in), wValue and wIndex 0.

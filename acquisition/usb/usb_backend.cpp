@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "acquisition/core/camera_id.h"
 #include "acquisition/usb/seek_source.h"
 #include "acquisition/usb/usb_connection.h"
 
@@ -42,7 +43,7 @@ Result<Search> search(libusb_context* context) {
 
 class UsbBackend final : public CameraBackend {
  public:
-  [[nodiscard]] std::string scheme() const override { return "usb"; }
+  [[nodiscard]] std::string scheme() const override { return std::string(camera_scheme::usb); }
 
   [[nodiscard]] Result<std::vector<CameraEntry>> list() override {
     auto context = usb_context();
@@ -79,40 +80,10 @@ class UsbBackend final : public CameraBackend {
   }
 };
 
-int LIBUSB_CALL on_arrival(libusb_context*, libusb_device*, libusb_hotplug_event, void* arrived) {
-  *static_cast<bool*>(arrived) = true;
-  return 0;
-}
-
 }  // namespace
 
 std::unique_ptr<CameraBackend> usb_backend() {
   return std::make_unique<UsbBackend>();
-}
-
-Result<void> wait_for_usb_camera(const std::string& id, std::chrono::milliseconds timeout, std::stop_token stop) {
-  auto context = usb_context();
-  if (!context) return tl::unexpected(context.error());
-  const auto deadline = std::chrono::steady_clock::now() + timeout;
-  bool arrived = true;  // what is there already counts
-  libusb_hotplug_callback_handle callback{};
-  libusb_hotplug_register_callback(context->get(), LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED, 0, seek_vendor_id,
-                                   LIBUSB_HOTPLUG_MATCH_ANY, LIBUSB_HOTPLUG_MATCH_ANY, &on_arrival, &arrived,
-                                   &callback);
-  while (!stop.stop_requested()) {
-    if (std::exchange(arrived, false)) {
-      const auto seen = search(context->get());
-      if (seen && std::any_of(seen->found.begin(), seen->found.end(), [&](const Found& f) { return f.id == id; })) {
-        return {};
-      }
-    }
-    if (std::chrono::steady_clock::now() >= deadline) {
-      return fail(ErrorCode::timeout, id + " was not plugged in within " + std::to_string(timeout.count()) + " ms");
-    }
-    timeval nap{.tv_sec = 0, .tv_usec = 50'000};
-    libusb_handle_events_timeout_completed(context->get(), &nap, nullptr);
-  }
-  return fail(ErrorCode::interrupted, "stopped while waiting for " + id);
 }
 
 }  // namespace todbench

@@ -1,10 +1,7 @@
 // Cameras with a protocol of their own on USB, through libusb: Seek Thermal Compact and CompactPRO.
 #pragma once
 
-#include <chrono>
 #include <memory>
-#include <stop_token>
-#include <string>
 
 #include "acquisition/core/camera_registry.h"
 
@@ -17,9 +14,5 @@ namespace todbench {
 /// rejects. start() takes the time of a dozen frames; stop() milliseconds; a pulled cable is `disconnected` at once.
 /// Opening fails with `not_found`: absent, busy, or access denied.
 [[nodiscard]] std::unique_ptr<CameraBackend> usb_backend();
-
-/// Waits until a camera is plugged in and can be opened, by hot-plug events. Errors: `timeout`, `interrupted`.
-[[nodiscard]] Result<void> wait_for_usb_camera(const std::string& id, std::chrono::milliseconds timeout,
-                                               std::stop_token stop);
 
 }  // namespace todbench

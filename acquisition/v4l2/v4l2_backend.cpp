@@ -1,18 +1,17 @@
 #include "acquisition/v4l2/v4l2_backend.h"
 
+#include "acquisition/core/camera_id.h"
 #include "acquisition/v4l2/v4l2_source.h"
 #include "acquisition/v4l2/video_listing.h"
 
 namespace todbench {
 namespace {
 
-constexpr std::string_view scheme_name = "v4l2";
-
 class V4l2Backend final : public CameraBackend {
  public:
   explicit V4l2Backend(V4l2Options options) : options_(std::move(options)) {}
 
-  [[nodiscard]] std::string scheme() const override { return std::string(scheme_name); }
+  [[nodiscard]] std::string scheme() const override { return std::string(camera_scheme::v4l2); }
 
   [[nodiscard]] Result<std::vector<CameraEntry>> list() override {
     const auto listing = list_video_nodes();
@@ -34,7 +33,7 @@ class V4l2Backend final : public CameraBackend {
     if (!listing) return tl::unexpected(listing.error());
     std::string seen;
     for (const auto& node : listing->nodes) {
-      if (node.id == id || std::string(scheme_name) + ":" + node.node == id) return V4l2Source::create(node, options_);
+      if (node.id == id || camera_id(camera_scheme::v4l2, node.node) == id) return V4l2Source::create(node, options_);
       seen += (seen.empty() ? "" : ", ") + node.id;
     }
     std::string message = "no such camera; seen: " + (seen.empty() ? "none" : seen);

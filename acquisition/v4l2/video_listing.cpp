@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "acquisition/core/camera_id.h"
 #include "acquisition/v4l2/video_device.h"
 
 namespace todbench {
@@ -44,15 +45,6 @@ std::string first_of(std::string preferred, std::string fallback) {
   return preferred.empty() ? std::move(fallback) : std::move(preferred);
 }
 
-std::string in_identity(const std::string& text) {
-  std::string clean;
-  for (const char c : text) {
-    const bool kept = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '_';
-    clean += kept ? c : '_';
-  }
-  return clean;
-}
-
 /// Names come from the USB device's own strings; udev's data base is not needed, so a system without udevd works too.
 VideoNode described(udev_device* video, const VideoCapability& capability) {
   VideoNode node;
@@ -80,8 +72,8 @@ VideoNode described(udev_device* video, const VideoCapability& capability) {
 }  // namespace
 
 std::string video_id(const VideoNode& node) {
-  return "v4l2:" + in_identity(node.vendor) + "-" + in_identity(node.model) + "-" +
-         (node.serial.empty() ? "at_" + in_identity(node.port) : in_identity(node.serial));
+  const std::string told_by = node.serial.empty() ? "at_" + node.port : node.serial;
+  return camera_id(camera_scheme::v4l2, {node.vendor, node.model, told_by});
 }
 
 Result<VideoListing> list_video_nodes() {

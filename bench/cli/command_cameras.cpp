@@ -1,6 +1,7 @@
 // todbench devices, todbench emulate
 #include <memory>
 
+#include "acquisition/core/camera_id.h"
 #include "bench/cli/commands.h"
 #include "bench/run/devices.h"
 #include "bench/run/emulation.h"
@@ -45,7 +46,8 @@ int run_emulate(Console& console, const EmulationArguments& arguments, StopSigna
                     {"stage", lab.stage_endpoint()}});
   } else {
     const auto environment = lab.client_environment();
-    const std::string by_address = environment.empty() ? " or \"gige:" + lab.camera_address() + "\"" : "";
+    const std::string by_address =
+        environment.empty() ? " or \"" + camera_id(camera_scheme::gige, lab.camera_address()) + "\"" : "";
     console.table(
         {"device", "address", "for the plan"},
         {{"camera", lab.camera_address(), "[camera] id = \"" + lab.camera_id() + "\"" + by_address},

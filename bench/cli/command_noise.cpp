@@ -3,6 +3,7 @@
 #include <chrono>
 #include <memory>
 
+#include "acquisition/core/camera_id.h"
 #include "acquisition/recording/recording_backend.h"
 #include "bench/cli/commands.h"
 #include "bench/judgement/verdict.h"
@@ -31,7 +32,8 @@ struct Frames {
 
 /// All complete frames, in kelvin where the recording says how, else in counts.
 Result<Frames> frames_of(const std::string& id) {
-  auto source = recording_backend()->open(id.starts_with("file:") ? id : "file:" + id);
+  auto source =
+      recording_backend()->open(has_scheme(id, camera_scheme::file) ? id : camera_id(camera_scheme::file, id));
   // Here a recording is an input file and no device.
   if (!source) return fail(ErrorCode::invalid_input, source.error().message);
   if (auto started = (*source)->start(); !started) return tl::unexpected(started.error());

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string_view>
 
+#include "acquisition/core/camera_id.h"
 #include "acquisition/core/integrity_gate.h"
 #include "acquisition/recording/frame_stream.h"
 #include "acquisition/recording/tiff_stack.h"
@@ -127,15 +128,15 @@ bool as_wanted(const Recorded& recorded, const RecordArguments& a) {
   if (!recorded.ended_by) return true;
   const bool limited = a.frames > 0 || a.seconds > 0;
   if (recorded.ended_by->code == ErrorCode::interrupted) return !limited;
-  return recorded.ended_by->code == ErrorCode::disconnected && a.camera.starts_with("file:") && a.frames == 0 &&
-         recorded.frames > 0;
+  return recorded.ended_by->code == ErrorCode::disconnected && has_scheme(a.camera, camera_scheme::file) &&
+         a.frames == 0 && recorded.frames > 0;
 }
 
 /// Whether the file that is about to be written is the one that the frames come out of, or one of that folder.
 bool overwrites_its_camera(const std::filesystem::path& file, const std::string& camera) {
-  constexpr std::string_view scheme = "file:";
-  if (!camera.starts_with(scheme)) return false;
-  const std::filesystem::path source = camera.substr(scheme.size(), camera.find('?') - scheme.size());
+  const auto name = camera_name(camera, camera_scheme::file);
+  if (!name) return false;
+  const std::filesystem::path source = name->substr(0, name->find('?'));
   std::error_code problem;
   if (!std::filesystem::exists(file, problem)) return false;
   if (std::filesystem::equivalent(file, source, problem)) return true;

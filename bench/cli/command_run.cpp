@@ -55,14 +55,8 @@ void print_comparison(const Console& console, const ExperimentOutcome& outcome) 
   std::vector<TableRow> rows;
   for (std::size_t i = 0; i < outcome.comparison->points.size(); ++i) {
     const auto& c = outcome.comparison->points[i];
-    const auto find = [&](const TodCurve& curve) -> const TodPoint* {
-      for (const auto& p : curve.points) {
-        if (p.set_delta_t_k == c.set_delta_t_k) return &p;
-      }
-      return nullptr;
-    };
-    const TodPoint* real = find(outcome.curve);
-    const TodPoint* twin = find(*outcome.twin);
+    const TodPoint* real = point_at(outcome.curve, c.set_delta_t_k);
+    const TodPoint* twin = point_at(*outcome.twin, c.set_delta_t_k);
     rows.push_back({fixed(c.delta_t_a_k, 3), real != nullptr ? fixed(acuity_per_mrad(real->fit), 4) : "–",
                     real != nullptr ? range(acuity_interval(real->fit.ci95), 4) : "–",
                     twin != nullptr ? fixed(acuity_per_mrad(twin->fit), 4) : "–",

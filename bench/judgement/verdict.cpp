@@ -44,14 +44,6 @@ Interval deciding_interval(const TodPoint& point) {
   return point.lapse_warning && point.free_lapse_fit ? hull(interval, usable(*point.free_lapse_fit)) : interval;
 }
 
-const TodPoint* point_at(const TodCurve& curve, double delta_t_k) {
-  for (const TodPoint& point : curve.points) {
-    // Set contrasts pair within 0.5 %, as in a comparison.
-    if (std::abs(point.set_delta_t_k - delta_t_k) <= 0.005 * std::abs(delta_t_k)) return &point;
-  }
-  return nullptr;
-}
-
 VerdictItem judge_acuity(const AcuityLimit& limit, const TodCurve& curve) {
   VerdictItem item;
   item.demand =
@@ -180,7 +172,7 @@ Verdict judge(const LimitsPlan& limits, const TodCurve& curve, const std::option
   for (const AcuityLimit& limit : limits.acuity) verdict.items.push_back(judge_acuity(limit, curve));
   for (const TodPoint& point : curve.points) {
     const bool limited = std::any_of(limits.acuity.begin(), limits.acuity.end(), [&](const AcuityLimit& limit) {
-      return std::abs(point.set_delta_t_k - limit.delta_t_k) <= 0.005 * std::abs(limit.delta_t_k);
+      return same_contrast(point.set_delta_t_k, limit.delta_t_k);
     });
     if (!limited && !threshold_identified(point.fit)) verdict.items.push_back(unidentified(point));
   }

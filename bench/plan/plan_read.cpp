@@ -7,6 +7,7 @@
 #include "bench/plan/plan.h"
 #include "bench/plan/strict_toml.h"
 #include "bench/text/text.h"
+#include "tod/psychometric/tod_curve.h"
 
 namespace todbench {
 
@@ -91,7 +92,7 @@ std::vector<double> read_contrasts(TomlReader& reader, const std::vector<double>
     if (contrasts[i] == 0) reader.reject("delta_t_k", i, "a contrast of 0 K shows nothing");
     for (std::size_t j = 0; j < i; ++j) {
       // Curves are paired by contrast within 0.5 %: closer set-points would be one.
-      if (std::abs(contrasts[i] - contrasts[j]) > 0.005 * std::abs(contrasts[j])) continue;
+      if (!same_contrast(contrasts[i], contrasts[j])) continue;
       reader.reject("delta_t_k", i,
                     number_text(contrasts[i]) + " K is listed twice (contrasts within 0.5 % count as equal)");
     }
@@ -199,14 +200,11 @@ LimitsPlan read_limits(TomlReader reader, const std::vector<double>& contrasts) 
     AcuityLimit limit;
     limit.delta_t_k = row.number("delta_t_k", NumberRange::any(), std::nullopt);
     limit.least_acuity_per_mrad = row.number("least_acuity_per_mrad", NumberRange::positive(), std::nullopt);
-    const auto same = [&](double contrast) {
-      return std::abs(contrast - limit.delta_t_k) <= 0.005 * std::abs(contrast);
-    };
     bool shown = false;
-    for (const double contrast : contrasts) shown = shown || same(contrast);
+    for (const double contrast : contrasts) shown = shown || same_contrast(contrast, limit.delta_t_k);
     if (!shown) row.reject("delta_t_k", number_text(limit.delta_t_k) + " K is not among the contrasts of [target]");
     for (const AcuityLimit& other : limits.acuity) {
-      if (same(other.delta_t_k)) row.reject("delta_t_k", "a second limit at " + number_text(limit.delta_t_k) + " K");
+      if (same_contrast(other.delta_t_k, limit.delta_t_k)) row.reject("delta_t_k", "a second limit at " + number_text(limit.delta_t_k) + " K");
     }
     limits.acuity.push_back(limit);
   }

@@ -137,16 +137,6 @@ Interval wilson_interval(double correct, double total) {
   return {correct > 0 ? std::max(0.0, middle - half) : 0.0, correct < total ? std::min(1.0, middle + half) : 1.0};
 }
 
-bool same_contrast(double a_k, double b_k) {
-  return std::abs(a_k - b_k) <= 0.005 * std::max(std::abs(a_k), std::abs(b_k));
-}
-
-const TodPoint* point_at(const TodCurve& curve, double set_delta_t_k) {
-  for (const TodPoint& point : curve.points)
-    if (same_contrast(point.set_delta_t_k, set_delta_t_k)) return &point;
-  return nullptr;
-}
-
 Plot tod_figure(const NamedCurve& first, const NamedCurve& second, std::span<const DrawnLimit> limits) {
   Plot plot;
   plot.id = "tod";

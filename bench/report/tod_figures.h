@@ -50,10 +50,4 @@ struct NamedPoint {
 [[nodiscard]] Plot psychometric_figure(const std::string& id, const NamedPoint& first, const NamedPoint& second,
                                        PsychometricForm form);
 
-/// Whether two set contrasts are the same one: equal to 0.5 %.
-[[nodiscard]] bool same_contrast(double a_k, double b_k);
-
-/// The point of a curve with this set contrast, or null.
-[[nodiscard]] const TodPoint* point_at(const TodCurve& curve, double set_delta_t_k);
-
 }  // namespace todbench

@@ -15,13 +15,6 @@ std::optional<double> standard_error(const PsychometricFit& fit) {
   return std::log(*fit.ci95.high / *fit.ci95.low) / (2 * 1.96);
 }
 
-const TodPoint* point_at(const TodCurve& curve, double delta_t_k) {
-  for (const TodPoint& point : curve.points) {
-    if (std::abs(point.delta_t_k - delta_t_k) <= 1e-9 * std::abs(delta_t_k)) return &point;
-  }
-  return nullptr;
-}
-
 }  // namespace
 
 ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& prediction) {
@@ -64,8 +57,8 @@ ComparisonForecast comparison_forecast(const TodCurve& a, const TodCurve& b, con
   std::vector<PlannedComparison> contrasts;
   double margin = 0, trials = 0;
   for (const ComparisonPoint& point : comparison.points) {
-    const TodPoint* of_a = point_at(a, point.delta_t_a_k);
-    const TodPoint* of_b = point_at(b, point.delta_t_b_k);
+    const TodPoint* of_a = point_at(a, point.set_delta_t_k);
+    const TodPoint* of_b = point_at(b, point.set_delta_t_k);
     if (of_a == nullptr || of_b == nullptr) continue;
     const auto se_a = standard_error(of_a->fit), se_b = standard_error(of_b->fit);
     if (!se_a || !se_b) {

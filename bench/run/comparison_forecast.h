@@ -14,7 +14,6 @@ namespace todbench {
 struct ComparisonForecast {
   std::optional<ComparisonOutlook> outlook;  ///< nothing where a contrast identifies no threshold
   std::string sentence;                      ///< begins with "warning" where the power stays below 80 %
-  [[nodiscard]] bool warns() const { return !outlook || !outlook->reaches_80_percent(); }
 };
 
 /// Outlook of camera against twin: standard errors from the predicted uncertainty of the simulated design, that of the

@@ -2,6 +2,7 @@
 
 #include <iostream>
 
+#include "acquisition/core/camera_id.h"
 #include "acquisition/recording/recording_backend.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
@@ -21,8 +22,6 @@
 namespace todbench {
 namespace {
 
-constexpr std::string_view simulated_scheme = "sim:";
-
 /// A scene without a plate: what a simulated camera sees when no target is connected to it.
 PlateScene empty_scene(double distance_m) {
   PlateScene scene;
@@ -33,12 +32,12 @@ PlateScene empty_scene(double distance_m) {
 /// Simulated sensors by name, "sim:sc2000", looking at an empty scene.
 class SimulatedBackend final : public CameraBackend {
  public:
-  [[nodiscard]] std::string scheme() const override { return "sim"; }
+  [[nodiscard]] std::string scheme() const override { return std::string(camera_scheme::sim); }
 
   [[nodiscard]] Result<std::vector<CameraEntry>> list() override {
     std::vector<CameraEntry> entries;
     for (const auto& name : resource_names(ResourceKind::sensor)) {
-      entries.push_back({.id = "sim:" + name,
+      entries.push_back({.id = camera_id(camera_scheme::sim, name),
                          .vendor = "todbench",
                          .model = name,
                          .serial = "1",
@@ -49,7 +48,7 @@ class SimulatedBackend final : public CameraBackend {
   }
 
   [[nodiscard]] Result<std::unique_ptr<FrameSource>> open(const std::string& id) override {
-    auto spec = load_sensor(std::string_view(id).substr(simulated_scheme.size()));
+    auto spec = load_sensor(camera_name(id, camera_scheme::sim).value_or(id));
     if (!spec) return tl::unexpected(Error{ErrorCode::not_found, spec.error().message});
     auto model = std::make_shared<const SensorModel>(*spec, full_plan(*spec, {}, {}), Accuracy::normal(), 1);
     return simulated_source(std::move(model), std::make_shared<SceneHolder>(empty_scene(2)), "1");
@@ -101,7 +100,7 @@ Result<std::unique_ptr<Target>> open_target(const Plan& plan, std::stop_token st
 
 /// A camera that sends whether it is asked or not. Neither is a recording, nor is its end a loss.
 bool free_running(const Plan& plan) {
-  return !plan.camera.id.starts_with("file:") && !plan.camera.id.starts_with(simulated_scheme);
+  return !has_scheme(plan.camera.id, camera_scheme::file) && !has_scheme(plan.camera.id, camera_scheme::sim);
 }
 
 Result<void> write_settings(FrameSource& camera, const std::map<std::string, std::string>& settings) {
@@ -155,12 +154,13 @@ OpenedBench simulated_bench(std::shared_ptr<const SensorModel> model, const std:
 Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>& plates, std::stop_token stop,
                                const OperatorDialogue& ask_operator) {
   if (plan.target.kind == TargetKind::scene) {
-    if (!plan.camera.id.starts_with(simulated_scheme)) {
+    const auto sensor = camera_name(plan.camera.id, camera_scheme::sim);
+    if (!sensor) {
       return fail(ErrorCode::invalid_input,
                   "a target of kind 'scene' is the simulated scene of a camera 'sim:NAME'; camera " + plan.camera.id +
                       " needs kind 'scpi' or 'prompt'");
     }
-    auto spec = load_sensor(std::string_view(plan.camera.id).substr(simulated_scheme.size()));
+    auto spec = load_sensor(*sensor);
     if (!spec) return tl::unexpected(spec.error());
     auto accuracy = accuracy_of(plan);
     if (!accuracy) return tl::unexpected(accuracy.error());

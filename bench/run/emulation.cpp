@@ -3,6 +3,7 @@
 #include <optional>
 #include <string_view>
 
+#include "acquisition/core/camera_id.h"
 #include "bench/plan/descriptions.h"
 #ifdef TODBENCH_WITH_ARAVIS
 #include "sim_devices/lab/gvsp_laboratory.h"
@@ -133,8 +134,9 @@ Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& a
 
 Plan with_laboratory(Plan plan, const Laboratory& laboratory) {
   // The address of the camera is enough on GigE; anything else is known by its serial number.
-  plan.camera.id =
-      laboratory.camera_id().starts_with("gige:") ? "gige:" + laboratory.camera_address() : laboratory.camera_id();
+  plan.camera.id = has_scheme(laboratory.camera_id(), camera_scheme::gige)
+                       ? camera_id(camera_scheme::gige, laboratory.camera_address())
+                       : laboratory.camera_id();
   for (const auto& [name, value] : laboratory.camera_settings()) plan.camera.settings.insert_or_assign(name, value);
   plan.target.kind = TargetKind::scpi;
   plan.target.black_body = laboratory.black_body_endpoint();

@@ -274,22 +274,4 @@ Result<Session> read_session(const std::filesystem::path& folder) {
   return session;
 }
 
-Result<TodCurve> refit(const Session& session, SessionCurve which) {
-  const std::vector<Trial>& trials = which == SessionCurve::main ? session.trials : session.twin_trials;
-  const std::optional<TodCurve>& stored = which == SessionCurve::main ? session.curve : session.twin;
-  if (trials.empty()) return fail(ErrorCode::invalid_input, "the session has no trials to fit");
-  Result<TodCurve> curve = tod_curve(trials, fit_options(session.plan));
-  if (!curve || !stored) return curve;
-  curve->observer = stored->observer;
-  curve->sensor = stored->sensor;
-  for (TodPoint& point : curve->points) {
-    for (const TodPoint& old : stored->points) {
-      if (old.set_delta_t_k != point.set_delta_t_k) continue;
-      point.direct_s75_mrad = old.direct_s75_mrad;
-      point.direct_s75_se_mrad = old.direct_s75_se_mrad;
-    }
-  }
-  return curve;
-}
-
 }  // namespace todbench

@@ -80,9 +80,6 @@ struct Session {
 
 /// `invalid_input`: not a session folder, or a file in it that cannot be read, with its path and line or key.
 [[nodiscard]] Result<Session> read_session(const std::filesystem::path& folder);
-/// A curve fitted again from the trials with the options of the plan; figures of the direct estimate are taken over.
-/// `invalid_input` when there are no trials.
-[[nodiscard]] Result<TodCurve> refit(const Session& session, SessionCurve which);
 
 /// curve.csv.
 [[nodiscard]] std::string curve_csv(const TodCurve& main, const std::optional<TodCurve>& twin, Side side);

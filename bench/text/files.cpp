@@ -83,12 +83,6 @@ Result<std::string> sha256_of_file(const std::filesystem::path& file) {
   return hexadecimal(context.get());
 }
 
-std::string sha256_of(std::string_view content) {
-  const DigestContext context = sha256_context();
-  EVP_DigestUpdate(context.get(), content.data(), content.size());
-  return hexadecimal(context.get());
-}
-
 Result<AppendFile> AppendFile::open(const std::filesystem::path& file, Start start) {
   const int mode = start == Start::empty ? O_TRUNC : 0;
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | mode, 0666);

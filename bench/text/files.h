@@ -15,7 +15,6 @@ namespace todbench {
 
 /// SHA-256 of a file in lower-case hexadecimal, read in pieces. `io` when it cannot be read.
 [[nodiscard]] Result<std::string> sha256_of_file(const std::filesystem::path& file);
-[[nodiscard]] std::string sha256_of(std::string_view content);
 
 /// A file that only grows. Every write is checked and goes to the system at once, so that a crash of the program loses
 /// nothing that was appended. Move-only; one thread at a time.

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "acquisition/aravis/aravis_backend.h"
+#include "acquisition/core/camera_id.h"
 #include "acquisition/core/control_text.h"
 #include "sim_devices/lab/gige/camera_models.h"
 
@@ -19,7 +19,7 @@ class GvspLaboratoryCamera final : public LaboratoryCamera {
     const GvspCameraConfig& config = camera_->config();
     const auto description = describe_camera(
         config.model, {.vendor = config.vendor, .model = config.model_name, .serial = {}, .firmware = {}});
-    return camera_id("gige", description.genicam.vendor, config.serial);
+    return camera_id(camera_scheme::gige, {description.genicam.vendor, config.serial});
   }
   [[nodiscard]] std::string address() const override { return camera_->config().interface_address; }
   [[nodiscard]] std::map<std::string, std::string> settings() const override {
@@ -46,14 +46,8 @@ SensorSpec with_counts_of(CameraModel model, SensorSpec sensor) {
 
 ConnectCamera connect_gvsp(GvspCameraConfig config) {
   return [config](const SensorSpec& sensor,
-                  LaboratoryExposure exposure) mutable -> Result<std::unique_ptr<LaboratoryCamera>> {
-    config.width = sensor.width * sensor.microscan;
-    config.height = sensor.height * sensor.microscan;
-    config.significant_bits = sensor.bits;
-    config.frame_rate_hz = sensor.frame_rate_hz;
-    config.kelvin_per_count = sensor.kelvin_per_count;
-    config.offset_k = sensor.offset_k;
-    auto camera = GvspCamera::start(config, std::move(exposure));
+                  LaboratoryExposure exposure) -> Result<std::unique_ptr<LaboratoryCamera>> {
+    auto camera = GvspCamera::start(as_sensor(config, sensor), std::move(exposure));
     if (!camera) return fail("starting the emulated GigE camera", camera.error());
     return std::make_unique<GvspLaboratoryCamera>(std::move(*camera));
   };

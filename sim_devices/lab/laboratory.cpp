@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
-#include "acquisition/aravis/aravis_backend.h"
+#include "acquisition/core/camera_id.h"
 
 namespace todbench {
 
@@ -13,7 +13,7 @@ class GigeLaboratoryCamera final : public LaboratoryCamera {
  public:
   explicit GigeLaboratoryCamera(std::unique_ptr<EmulatedGigeCamera> camera) : camera_(std::move(camera)) {}
   [[nodiscard]] std::string id() const override {
-    return todbench::camera_id("gige", camera_->config().vendor, camera_->config().serial);
+    return todbench::camera_id(camera_scheme::gige, {camera_->config().vendor, camera_->config().serial});
   }
   [[nodiscard]] std::string address() const override { return camera_->config().interface_address; }
 
@@ -23,14 +23,8 @@ class GigeLaboratoryCamera final : public LaboratoryCamera {
 
 ConnectCamera connect_gige(EmulatedGigeCameraConfig config) {
   return [config](const SensorSpec& sensor,
-                  LaboratoryExposure exposure) mutable -> Result<std::unique_ptr<LaboratoryCamera>> {
-    config.width = sensor.width * sensor.microscan;
-    config.height = sensor.height * sensor.microscan;
-    config.significant_bits = sensor.bits;
-    config.frame_rate_hz = sensor.frame_rate_hz;
-    config.kelvin_per_count = sensor.kelvin_per_count;
-    config.offset_k = sensor.offset_k;
-    auto camera = EmulatedGigeCamera::start(config, std::move(exposure));
+                  LaboratoryExposure exposure) -> Result<std::unique_ptr<LaboratoryCamera>> {
+    auto camera = EmulatedGigeCamera::start(as_sensor(config, sensor), std::move(exposure));
     if (!camera) return fail("starting the emulated GigE camera", camera.error());
     return std::make_unique<GigeLaboratoryCamera>(std::move(*camera));
   };

@@ -34,6 +34,18 @@ class LaboratoryCamera {
 /// Picture number `index` since power-up, of the geometry of the sensor.
 using LaboratoryExposure = std::function<cv::Mat1w(std::uint64_t index)>;
 
+/// The configuration of an emulated camera with the geometry, rate and scale of a sensor.
+template <typename Config>
+[[nodiscard]] Config as_sensor(Config config, const SensorSpec& sensor) {
+  config.width = sensor.width * sensor.microscan;
+  config.height = sensor.height * sensor.microscan;
+  config.significant_bits = sensor.bits;
+  config.frame_rate_hz = sensor.frame_rate_hz;
+  config.kelvin_per_count = sensor.kelvin_per_count;
+  config.offset_k = sensor.offset_k;
+  return config;
+}
+
 /// Switches a camera on that sends what a sensor exposes.
 using ConnectCamera =
     std::function<Result<std::unique_ptr<LaboratoryCamera>>(const SensorSpec& sensor, LaboratoryExposure exposure)>;

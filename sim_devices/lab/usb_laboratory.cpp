@@ -1,6 +1,6 @@
 #include "sim_devices/lab/usb_laboratory.h"
 
-#include "acquisition/aravis/aravis_backend.h"
+#include "acquisition/core/camera_id.h"
 #include "acquisition/core/control_text.h"
 #include "sim_devices/lab/usb/usbfs_host.h"
 
@@ -39,16 +39,10 @@ Result<std::unique_ptr<LaboratoryCamera>> plugged(std::shared_ptr<MockSystem> sy
 ConnectCamera connect_u3v(std::shared_ptr<MockSystem> system, U3vCameraConfig config) {
   return
       [system = std::move(system), config](
-          const SensorSpec& sensor, LaboratoryExposure exposure) mutable -> Result<std::unique_ptr<LaboratoryCamera>> {
-        config.width = sensor.width * sensor.microscan;
-        config.height = sensor.height * sensor.microscan;
-        config.significant_bits = sensor.bits;
-        config.frame_rate_hz = sensor.frame_rate_hz;
-        config.kelvin_per_count = sensor.kelvin_per_count;
-        config.offset_k = sensor.offset_k;
-        auto camera = U3vCamera::create(config, std::move(exposure));
+          const SensorSpec& sensor, LaboratoryExposure exposure) -> Result<std::unique_ptr<LaboratoryCamera>> {
+        auto camera = U3vCamera::create(as_sensor(config, sensor), std::move(exposure));
         if (!camera) return tl::unexpected(camera.error());
-        return plugged(system, std::move(*camera), camera_id("u3v", config.vendor, config.serial), {});
+        return plugged(system, std::move(*camera), camera_id(camera_scheme::u3v, {config.vendor, config.serial}), {});
       };
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "acquisition/core/camera_id.h"
 #include "acquisition/core/host_clock.h"
 
 namespace todbench {
@@ -17,7 +18,7 @@ class SimulatedSource final : public FrameSource {
     const auto scale = RadiometricScale::linear({.kelvin_per_count = spec.kelvin_per_count, .offset_k = spec.offset_k});
     CV_Assert(scale.has_value());
     scale_ = std::make_shared<const RadiometricScale>(*scale);
-    info_.id = "sim:" + spec.name;
+    info_.id = camera_id(camera_scheme::sim, spec.name);
     info_.vendor = "todbench";
     info_.model = spec.name;
     info_.serial = std::move(serial);

@@ -15,18 +15,18 @@
 #include "sim_devices/sensor/simulated_camera.h"
 #include "tests/support/source_file.h"
 #ifdef TODBENCH_CONTRACT_WITH_ARAVIS
-#include "tests/acquisition/aravis/gvsp_test_support.h"
+#include "tests/support/gvsp_test_support.h"
 #endif
 #ifdef TODBENCH_CONTRACT_WITH_V4L2
-#include "tests/acquisition/v4l2/video_test_support.h"
+#include "tests/support/video_test_support.h"
 #endif
 
 #ifdef TODBENCH_CONTRACT_WITH_USB
 #include "acquisition/aravis/aravis_backend.h"
 #include "acquisition/usb/usb_backend.h"
 #include "sim_devices/lab/usb_laboratory.h"
-#include "tests/acquisition/usb/usb_test_support.h"
-#include "tests/acquisition/v4l2/video_test_support.h"
+#include "tests/support/usb_test_support.h"
+#include "tests/support/video_test_support.h"
 #endif
 
 namespace todbench {
@@ -116,7 +116,7 @@ Bench plugged(const ConnectCamera& connect, CameraBackend& backend, int width, i
   sensor.height = height;
   sensor.frame_rate_hz = 200;
   auto camera =
-      connect(sensor, [=](std::uint64_t index) { return testing_support::video_picture(index, width, height, 14); });
+      connect(sensor, [=](std::uint64_t index) { return testing_support::test_picture(index, width, height, 14); });
   EXPECT_TRUE(camera) << camera.error().message;
   auto source = backend.open((*camera)->id());
   EXPECT_TRUE(source) << source.error().message;
@@ -397,14 +397,8 @@ TEST(FrameSourceWaiting, SaysTimeoutWhenNothingCameAndIsWokenByStop) {
   static_cast<void>(source->next(patience));
   auto nothing = source->next(1ms);
   while (nothing) nothing = source->next(1ms);
-  auto reader = std::async(std::launch::async, [&] {
-    auto next = source->next(10min);
-    while (next) next = source->next(10min);
-    return next;
-  });
 
-  source->stop();
-  const auto woken = reader.get();
+  const auto woken = testing_support::woken_by_stop(*source);
 
   ASSERT_FALSE(nothing);
   EXPECT_EQ(nothing.error().code, ErrorCode::timeout);

@@ -12,7 +12,7 @@
 #include <memory>
 
 #include "acquisition/aravis/aravis_backend.h"
-#include "sim_devices/lab/gige/gev_registers.h"
+#include "acquisition/aravis/gev_registers.h"
 #include "sim_devices/lab/gige/gvsp_camera.h"
 #include "tests/support/private_network.h"
 

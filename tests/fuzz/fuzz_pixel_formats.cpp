@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   constexpr std::size_t head = 6;
   if (size < head) return 0;
   PixelLayout layout;
-  layout.format = all_pixel_formats[data[0] % std::size(all_pixel_formats)];
+  layout.format = pixel_format_table[data[0] % std::size(pixel_format_table)].format;
   layout.order = data[1] % 2 == 0 ? ByteOrder::little_endian : ByteOrder::big_endian;
   layout.width = data[2] - 1;
   layout.height = data[3] - 1;

@@ -11,8 +11,8 @@
 #include "acquisition/v4l2/v4l2_backend.h"
 #include "acquisition/v4l2/video_listing.h"
 #include "sim_devices/lab/usb/u3v_camera.h"
-#include "sim_devices/lab/usb/usbip_server.h"
-#include "sim_devices/lab/usb/uvc_camera.h"
+#include "tests/support/usbip_server.h"
+#include "tests/support/uvc_camera.h"
 
 namespace todbench {
 namespace {

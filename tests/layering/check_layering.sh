@@ -32,10 +32,11 @@ BEGIN {
   may["sim_devices/prediction"] = tod " sim_devices/scene sim_devices/sensor"
   may["sim_devices/lab/device_nodes"] = core
   may["sim_devices/lab/instruments"] = core " tod/plate tod/instruments"
-  may["sim_devices/lab/gige"] = core " acquisition/aravis acquisition/pixel_formats"
+  may["sim_devices/lab/genicam"] = core " acquisition/pixel_formats"
+  may["sim_devices/lab/gige"] = core " acquisition/aravis acquisition/pixel_formats sim_devices/lab/genicam"
   may["sim_devices/lab/video"] = core " acquisition/v4l2 acquisition/pixel_formats sim_devices/lab/device_nodes"
-  may["sim_devices/lab/usb"] = core " acquisition/usb acquisition/pixel_formats sim_devices/lab/device_nodes sim_devices/lab/video"
-  lab = "sim_devices/lab/device_nodes sim_devices/lab/instruments sim_devices/lab/gige sim_devices/lab/video sim_devices/lab/usb"
+  may["sim_devices/lab/usb"] = core " acquisition/usb acquisition/pixel_formats sim_devices/lab/device_nodes sim_devices/lab/genicam sim_devices/lab/video"
+  lab = "sim_devices/lab/device_nodes sim_devices/lab/genicam sim_devices/lab/instruments sim_devices/lab/gige sim_devices/lab/video sim_devices/lab/usb"
   may["sim_devices/lab"] = core " acquisition/aravis acquisition/v4l2 tod/plate sim_devices/scene sim_devices/sensor " lab
   science = tod " sim_devices/scene sim_devices/sensor sim_devices/prediction"
   may["bench/text"] = core " tod/psychometric"

@@ -127,20 +127,6 @@ ComparisonVerdict overall(const std::vector<ComparisonPoint>& points) {
   return any(ComparisonVerdict::inconclusive) ? ComparisonVerdict::inconclusive : ComparisonVerdict::equivalent;
 }
 
-// The point of `candidates` at the contrast of `point`, within 0.5 %.
-const TodPoint* partner(const TodPoint& point, const std::vector<TodPoint>& candidates) {
-  constexpr double tolerance = 0.005;
-  const TodPoint* best = nullptr;
-  double nearest = tolerance * std::abs(point.set_delta_t_k);
-  for (const TodPoint& candidate : candidates) {
-    const double distance = std::abs(candidate.set_delta_t_k - point.set_delta_t_k);
-    if (distance > nearest) continue;
-    nearest = distance;
-    best = &candidate;
-  }
-  return best;
-}
-
 }  // namespace
 
 std::string_view to_string(ComparisonVerdict verdict) {
@@ -191,7 +177,7 @@ Result<Comparison> compare(const TodCurve& a, const TodCurve& b, const Compariso
     return fail(ErrorCode::invalid_input, "the curves have different observers: " + a.observer + " and " + b.observer);
   Comparison comparison;
   for (const TodPoint& point : a.points) {
-    const TodPoint* other = partner(point, b.points);
+    const TodPoint* other = point_at(b, point.set_delta_t_k);
     if (other == nullptr) continue;
     auto compared = compare_points(point, *other, options);
     if (!compared) return fail("comparing at " + std::to_string(point.set_delta_t_k) + " K", compared.error());

@@ -65,14 +65,6 @@ std::vector<PlannedLevel> design_at(std::span<const Level> totals, PsychometricF
   return design;
 }
 
-double least_se_ln_threshold(double trials, double slope) {
-  assert(trials > 0 && slope > 0);
-  // d psi / d ln x = (1-g) kappa e^-kappa b at the threshold, kappa = ln 3; the information of a trial is its square
-  // over psi (1 - psi).
-  const double derivative = slope * 0.25 * std::log(3.0);
-  return std::sqrt(0.75 * 0.25 / trials) / derivative;
-}
-
 double equivalence_power(double se_ln_ratio, double margin_percent, double true_ln_ratio) {
   assert(se_ln_ratio > 0 && margin_percent > 0);
   const double margin = std::log1p(margin_percent / 100);
@@ -80,11 +72,6 @@ double equivalence_power(double se_ln_ratio, double margin_percent, double true_
   const double upper = (margin - true_ln_ratio) / se_ln_ratio - z;
   const double lower = (-margin - true_ln_ratio) / se_ln_ratio + z;
   return upper > lower ? normal_cdf(upper) - normal_cdf(lower) : 0;
-}
-
-double se_for_equivalence(double margin_percent, double power) {
-  assert(margin_percent > 0 && power >= 0.05 && power <= 0.999);
-  return std::log1p(margin_percent / 100) / (normal_quantile(1 - one_sided_level) + normal_quantile((1 + power) / 2));
 }
 
 double PlannedComparison::se_ln_ratio() const {

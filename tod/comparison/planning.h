@@ -29,20 +29,11 @@ struct ExpectedFit {
 [[nodiscard]] std::vector<PlannedLevel> design_at(std::span<const Level> totals, PsychometricForm form,
                                                   double threshold, double slope, double lapse);
 
-/// Least standard error of ln threshold that any placement of `trials` independent 4AFC trials can have with slope and
-/// threshold unknown, size form and no lapse: 0.4505 (3.5 / slope) / sqrt(trials), reached with all trials at the
-/// threshold, where psi = 3/4 and dpsi/dlnx = (b/4) ln 3 (Elfving 1952; Fisher information of a Bernoulli trial).
-[[nodiscard]] double least_se_ln_threshold(double trials, double slope);
-
 /// Probability that two one-sided tests at 5 % find two acuities equivalent within `margin_percent` (the ratio inside
 /// [1/(1+m), 1+m]) when the logarithm of their ratio is estimated with standard error `se_ln_ratio` > 0, and is
 /// `true_ln_ratio` in truth. Normal theory (Schuirmann 1987): exact for normal estimates, 0 where the 90 % interval is
 /// wider than the margin.
 [[nodiscard]] double equivalence_power(double se_ln_ratio, double margin_percent, double true_ln_ratio);
-
-/// The largest standard error of a log ratio with which equivalence is found with probability `power` (0.05 ... 0.999)
-/// when both are equal in truth: ln(1+m) / (z_0.95 + z_(1+power)/2).
-[[nodiscard]] double se_for_equivalence(double margin_percent, double power);
 
 /// One contrast of a comparison that has not been made.
 struct PlannedComparison {

@@ -133,4 +133,19 @@ Result<TodCurve> tod_curve(std::span<const Trial> trials, const FitOptions& opti
   return curve;
 }
 
+bool same_contrast(double a_k, double b_k) {
+  constexpr double tolerance = 0.005;
+  return std::abs(a_k - b_k) <= tolerance * std::max(std::abs(a_k), std::abs(b_k));
+}
+
+const TodPoint* point_at(const TodCurve& curve, double set_delta_t_k) {
+  const auto distance = [&](const TodPoint& point) { return std::abs(point.set_delta_t_k - set_delta_t_k); };
+  const TodPoint* best = nullptr;
+  for (const TodPoint& point : curve.points) {
+    if (!same_contrast(point.set_delta_t_k, set_delta_t_k)) continue;
+    if (best == nullptr || distance(point) <= distance(*best)) best = &point;
+  }
+  return best;
+}
+
 }  // namespace todbench

@@ -34,4 +34,10 @@ struct TodCurve {
 /// by presentation and by place on the plate (which shares fixed pattern); the wider one is reported.
 [[nodiscard]] Result<TodCurve> tod_curve(std::span<const Trial> trials, const FitOptions& options);
 
+/// Whether two set contrasts are the same one: equal to 0.5 % of the larger.
+[[nodiscard]] bool same_contrast(double a_k, double b_k);
+
+/// The point of a curve with this set contrast, the nearest of several; null where there is none.
+[[nodiscard]] const TodPoint* point_at(const TodCurve& curve, double set_delta_t_k);
+
 }  // namespace todbench

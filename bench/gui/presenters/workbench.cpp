@@ -3,18 +3,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "acquisition/core/camera_id.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/resources.h"
 #include "bench/run/devices.h"
 
 namespace todbench {
 namespace {
-
-constexpr std::string_view simulated_scheme = "sim:";
-
-bool is_simulated(const QString& id) {
-  return id.startsWith("sim:");
-}
 
 QString group_of(const CameraEntry& camera) {
   return QString::fromStdString(camera.transport == "simulation" ? "Simulated sensors" : camera.transport);
@@ -30,7 +25,7 @@ std::vector<DeviceEntry> built_in_devices() {
                      .health = DeviceHealth::ready});
 #endif
   for (const auto& name : resource_names(ResourceKind::sensor)) {
-    entries.push_back({.id = QString::fromStdString("sim:" + name),
+    entries.push_back({.id = QString::fromStdString(camera_id(camera_scheme::sim, name)),
                        .group = "Simulated sensors",
                        .label = QString::fromStdString(name),
                        .detail = "Sensor model, as fast as the processor",
@@ -85,20 +80,19 @@ void Workbench::set_plan(const Plan& plan) {
 Result<void> Workbench::select_device(const QString& id) {
   Plan plan = plan_;
   if (id == emulated_laboratory) {
-    plan.camera.id = "gige:127.0.0.1";
+    plan.camera.id = camera_id(camera_scheme::gige, "127.0.0.1");
     plan.target.kind = TargetKind::scpi;
     plan.target.black_body = "127.0.0.1:5025";
     plan.target.stage = "127.0.0.1:5026";
-  } else if (is_simulated(id)) {
-    const std::string name = id.toStdString().substr(simulated_scheme.size());
-    auto sensor = load_sensor(name);
+  } else if (const auto name = camera_name(id.toStdString(), camera_scheme::sim)) {
+    auto sensor = load_sensor(*name);
     if (!sensor) return tl::unexpected(sensor.error());
     plan.camera.id = id.toStdString();
     plan.camera.ifov_mrad = sensor->ifov_mrad() / sensor->microscan;
     plan.target.kind = TargetKind::scene;
     plan.target.black_body.clear();
     plan.target.stage.clear();
-    plan.simulation.sensor = name;
+    plan.simulation.sensor = *name;
   } else {
     plan.camera.id = id.toStdString();
     if (plan.target.kind == TargetKind::scene) plan.target.kind = TargetKind::prompt;

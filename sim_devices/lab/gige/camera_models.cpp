@@ -3,15 +3,15 @@
 #include <array>
 #include <cmath>
 
-#include "sim_devices/lab/gige/gev_registers.h"
+#include "acquisition/aravis/gev_registers.h"
 
 namespace todbench {
 namespace {
 
+using namespace features;
 using Features = std::vector<CameraFeature>;
 using Kind = FeatureKind;
 constexpr auto read_only = FeatureAccess::read_only;
-constexpr auto write_only = FeatureAccess::write_only;
 
 struct VideoStandard {
   const char* name;
@@ -29,12 +29,8 @@ std::uint32_t nearest_video_standard(double rate_hz) {
   return best.value;
 }
 
-CameraFeature text(const char* name, std::uint32_t address, std::uint32_t bytes, const std::string& content) {
-  return {.name = name, .kind = Kind::text, .address = address, .access = read_only, .bytes = bytes, .text = content};
-}
-
 /// The strings of discovery as features.
-Features device_control(const ModelOptions& o) {
+Features device_control(const ThermalCameraOptions& o) {
   return {
       text("DeviceVendorName", gev::vendor_name, 32, o.vendor), text("DeviceModelName", gev::model_name, 32, o.model),
       text("DeviceVersion", gev::device_version, 32, o.firmware), text("DeviceID", gev::serial_number, 16, o.serial)};
@@ -71,67 +67,25 @@ Features chunk_control(std::uint32_t mode) {
           {.name = "ChunkNUCActive", .kind = Kind::chunk_integer, .access = read_only, .chunk_id = chunk_nuc_active}};
 }
 
-struct FormatEntry {
-  const char* name;
-  std::uint32_t code;
-};
-
-/// Geometry, format and acquisition from `base` on, in the order of the Ax5.
-Features image_control(const ModelOptions& o, const ModelRegisters& r, const std::vector<FormatEntry>& formats) {
-  CameraFeature format{.name = "PixelFormat",
-                       .kind = Kind::enumeration,
-                       .address = r.pixel_format,
-                       .initial = formats.front().code,
-                       .locked_while_streaming = true};
-  for (const auto& entry : formats) format.entries.emplace_back(entry.name, entry.code);
-  const auto width = static_cast<std::uint32_t>(o.width);
-  const auto height = static_cast<std::uint32_t>(o.height);
-  return {{.name = "Width", .address = r.width, .access = read_only, .initial = width, .locked_while_streaming = true},
-          {.name = "Height", .address = r.height, .access = read_only, .initial = height},
-          format,
-          {.name = "PayloadSize", .address = r.payload_size, .access = read_only, .initial = 2 * width * height},
-          {.name = "AcquisitionMode",
-           .kind = Kind::enumeration,
-           .address = r.payload_size + 4,
-           .entries = {{"Continuous", 0}, {"SingleFrame", 1}, {"MultiFrame", 2}}},
-          {.name = "AcquisitionStart",
-           .kind = Kind::command,
-           .address = r.acquisition_start,
-           .access = write_only,
-           .initial = 1},
-          {.name = "AcquisitionStop",
-           .kind = Kind::command,
-           .address = r.acquisition_stop,
-           .access = write_only,
-           .initial = 1}};
-}
-
-CameraFeature choice(const char* name, std::uint32_t address, std::uint32_t initial,
-                     std::vector<std::pair<std::string, std::uint32_t>> entries) {
-  return {
-      .name = name, .kind = Kind::enumeration, .address = address, .initial = initial, .entries = std::move(entries)};
-}
-
-CameraFeature locked(CameraFeature feature) {
-  feature.locked_while_streaming = true;
-  return feature;
-}
-
-CameraFeature command(const char* name, std::uint32_t address, std::uint32_t value) {
-  return {.name = name, .kind = Kind::command, .address = address, .access = write_only, .initial = value};
-}
-
-CameraFeature temperature(const char* name, std::uint32_t address, double per_raw, std::uint32_t raw) {
-  return {
-      .name = name, .kind = Kind::scaled, .address = address, .access = read_only, .initial = raw, .per_raw = per_raw};
+/// Geometry, format and acquisition, in the order of the Ax5.
+Features image_control(const ThermalCameraOptions& o, const ModelRegisters& r,
+                       const std::vector<PixelFormat>& formats) {
+  const auto width = static_cast<std::uint32_t>(o.width), height = static_cast<std::uint32_t>(o.height);
+  return {locked_while_streaming(state("Width", r.width, width)),
+          state("Height", r.height, height),
+          locked_while_streaming(pixel_format(r.pixel_format, formats)),
+          state("PayloadSize", r.payload_size, 2 * width * height),
+          choice("AcquisitionMode", r.payload_size + 4, 0, {{"Continuous", 0}, {"SingleFrame", 1}, {"MultiFrame", 2}}),
+          command("AcquisitionStart", r.acquisition_start, 1),
+          command("AcquisitionStop", r.acquisition_stop, 1)};
 }
 
 /// At power-up as a camera as shipped: automatic corrections, counts instead of temperatures, eight bits, sharpening.
-Features ax5_thermal(const ModelOptions& o, const ModelRegisters& r) {
+Features ax5_thermal(const ThermalCameraOptions& o, const ModelRegisters& r) {
   std::vector<std::pair<std::string, std::uint32_t>> standards;
   for (const auto& s : video_standards) standards.emplace_back(s.name, s.value);
   return {
-      {.name = "CameraSN", .address = 0xE834, .access = read_only, .initial = 48000123},
+      state("CameraSN", 0xE834, 48000123),
       {.name = "SensorFrameRate",
        .kind = Kind::enumeration,
        .address = 0xE850,
@@ -157,9 +111,10 @@ Features ax5_thermal(const ModelOptions& o, const ModelRegisters& r) {
       {.name = "O", .kind = Kind::scaled, .address = 0xE9F0, .initial = 342000, .per_raw = 0.001},
       choice("TemperatureLinearMode", r.temperature_linear_mode, 0, {{"Off", 0}, {"On", 1}}),
       choice("TemperatureLinearResolution", r.temperature_linear_resolution, 0, {{"Low", 0}, {"High", 1}}),
-      locked(choice("DigitalOutput", 0xEA3C, 2, {{"bit8bit", 2}, {"bit14bit", 3}, {"Disabled", 5}, {"Enabled", 6}})),
+      locked_while_streaming(
+          choice("DigitalOutput", 0xEA3C, 2, {{"bit8bit", 2}, {"bit14bit", 3}, {"Disabled", 5}, {"Enabled", 6}})),
       choice("IRTestPattern", r.test_pattern, 0, {{"Off", 0}, {"Ascending_Ramp", 1}}),
-      locked(choice("CMOSBitDepth", 0xEA50, 1, {{"bit14bit", 0}, {"bit8bit", 1}})),
+      locked_while_streaming(choice("CMOSBitDepth", 0xEA50, 1, {{"bit14bit", 0}, {"bit8bit", 1}})),
       choice("SensorVideoStandard", r.video_standard, nearest_video_standard(o.frame_rate_hz), std::move(standards)),
       choice("ImageAdjustMethod", 0xEA60, 0, {{"PlateauHistogram", 0}, {"Linear", 1}, {"Manual", 2}}),
       temperature("SensorTemperature", r.sensor_temperature, 0.1, 312),
@@ -167,7 +122,23 @@ Features ax5_thermal(const ModelOptions& o, const ModelRegisters& r) {
       temperature("DeviceTemperature", 0xEA98, 0.1, 305)};
 }
 
-ModelDescription ax5(ModelOptions o) {
+/// The whole of a model from its own part.
+ModelDescription composed(const ThermalCameraOptions& o, const ModelRegisters& r, const char* file_name,
+                          const std::vector<PixelFormat>& formats, Features thermal) {
+  Features image = image_control(o, r, formats);
+  if (r.largest_count != 0) image.push_back(largest_count(r.largest_count, o.significant_bits));
+  return {.genicam = {.vendor = o.vendor,
+                      .model = o.model,
+                      .file_name = file_name,
+                      .categories = {{"DeviceControl", device_control(o)},
+                                     {"ImageFormatControl", std::move(image)},
+                                     {"ThermalControl", std::move(thermal)},
+                                     {"ChunkDataControl", chunk_control(r.chunk_mode)},
+                                     {"TransportLayerControl", transport_control()}}},
+          .registers = r};
+}
+
+ModelDescription ax5(ThermalCameraOptions o) {
   if (o.vendor.empty()) o.vendor = "FLIR";
   if (o.model.empty()) o.model = "AX5";
   ModelRegisters r;
@@ -187,18 +158,8 @@ ModelDescription ax5(ModelOptions o) {
   r.video_standard = 0xEA5C;
   r.sensor_temperature = 0xEA90;
   r.chunk_mode = 0xD400;
-  ModelDescription out;
-  out.registers = r;
-  const std::vector<FormatEntry> formats{{"Mono8", pfnc_mono8}, {"Mono14", pfnc_mono14}, {"Mono16", pfnc_mono16}};
-  out.genicam = {.vendor = o.vendor,
-                 .model = o.model,
-                 .file_name = "todbench_ax5.xml",
-                 .categories = {{"DeviceControl", device_control(o)},
-                                {"ImageFormatControl", image_control(o, r, formats)},
-                                {"ThermalControl", ax5_thermal(o, r)},
-                                {"ChunkDataControl", chunk_control(r.chunk_mode)},
-                                {"TransportLayerControl", transport_control()}}};
-  return out;
+  return composed(o, r, "todbench_ax5.xml", {PixelFormat::mono8, PixelFormat::mono14, PixelFormat::mono16},
+                  ax5_thermal(o, r));
 }
 
 /// Registers of the models that have no published ones: any addresses will do.
@@ -218,14 +179,7 @@ ModelRegisters own_registers() {
   return r;
 }
 
-CameraFeature largest_count(const ModelOptions& o, const ModelRegisters& r) {
-  return {.name = "PixelDynamicRangeMax",
-          .address = r.largest_count,
-          .access = read_only,
-          .initial = (1U << static_cast<unsigned>(o.significant_bits)) - 1};
-}
-
-CameraFeature frame_rate(const ModelOptions& o) {
+CameraFeature frame_rate(const ThermalCameraOptions& o) {
   return {.name = "AcquisitionFrameRate",
           .kind = Kind::scaled,
           .address = 0xB01C,
@@ -234,7 +188,7 @@ CameraFeature frame_rate(const ModelOptions& o) {
           .per_raw = 0.001};
 }
 
-ModelDescription a_series(ModelOptions o, CameraModel which) {
+ModelDescription a_series(ThermalCameraOptions o, CameraModel which) {
   const bool legacy = which == CameraModel::legacy_science;
   if (o.vendor.empty()) o.vendor = legacy ? "FLIR Systems AB" : "FLIR";
   if (o.model.empty()) o.model = legacy ? "A320G" : "A70";
@@ -247,30 +201,20 @@ ModelDescription a_series(ModelOptions o, CameraModel which) {
                    choice("NUCMode", r.nuc_mode, 1, {{"Off", 0}, {"Automatic", 1}}),
                    command("NUCAction", r.nuc_action, 1),
                    choice("NoiseReduction", r.noise_reduction, 1, {{"Off", 0}, {"On", 1}}),
-                   {.name = "NumCases", .address = 0xB114, .access = read_only, .initial = 2},
+                   state("NumCases", 0xB114, 2),
                    {.name = "CurrentCase", .address = 0xB118, .least = 0, .most = 1},
                    temperature("SensorTemperature", r.sensor_temperature, 0.1, 312),
                    frame_rate(o)};
-  std::vector<std::pair<std::string, Features>> categories{
-      {"DeviceControl", device_control(o)},
-      {"ImageFormatControl", image_control(o, r, {{"Mono16", pfnc_mono16}})},
-      {"ThermalControl", std::move(thermal)},
-      {"ChunkDataControl", chunk_control(r.chunk_mode)},
-      {"TransportLayerControl", transport_control()}};
-  categories[1].second.push_back(largest_count(o, r));
+  auto out = composed(o, r, "todbench_a_series.xml", {PixelFormat::mono16}, std::move(thermal));
   if (legacy) {
     // The order of bytes is not to be asked for, and not to be changed.
-    auto& transport = categories.back().second;
-    std::erase_if(transport, [](const CameraFeature& f) { return f.name == "GevSCPSBigEndian"; });
+    std::erase_if(more_of(out.genicam, "TransportLayerControl"),
+                  [](const CameraFeature& f) { return f.name == "GevSCPSBigEndian"; });
   }
-  return {.genicam = {.vendor = o.vendor,
-                      .model = o.model,
-                      .file_name = "todbench_a_series.xml",
-                      .categories = std::move(categories)},
-          .registers = r};
+  return out;
 }
 
-ModelDescription unlisted(ModelOptions o) {
+ModelDescription unlisted(ThermalCameraOptions o) {
   if (o.vendor.empty()) o.vendor = "Example Infrared";
   if (o.model.empty()) o.model = "EX-1";
   ModelRegisters r = own_registers();
@@ -278,18 +222,7 @@ ModelDescription unlisted(ModelOptions o) {
                    command("FlagCalibrate", r.nuc_action, 1),
                    temperature("SensorTemperature", r.sensor_temperature, 0.1, 312), frame_rate(o)};
   r.nuc_mode_automatic = 1;
-  std::vector<std::pair<std::string, Features>> categories{
-      {"DeviceControl", device_control(o)},
-      {"ImageFormatControl", image_control(o, r, {{"Mono16", pfnc_mono16}})},
-      {"ThermalControl", std::move(thermal)},
-      {"ChunkDataControl", chunk_control(r.chunk_mode)},
-      {"TransportLayerControl", transport_control()}};
-  categories[1].second.push_back(largest_count(o, r));
-  return {.genicam = {.vendor = o.vendor,
-                      .model = o.model,
-                      .file_name = "todbench_unlisted.xml",
-                      .categories = std::move(categories)},
-          .registers = r};
+  return composed(o, r, "todbench_unlisted.xml", {PixelFormat::mono16}, std::move(thermal));
 }
 
 struct ModelName {
@@ -317,7 +250,7 @@ std::optional<CameraModel> camera_model(std::string_view name) {
   return std::nullopt;
 }
 
-ModelDescription describe_camera(CameraModel model, const ModelOptions& options) {
+ModelDescription describe_camera(CameraModel model, const ThermalCameraOptions& options) {
   switch (model) {
     case CameraModel::ax5:
       return ax5(options);

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "sim_devices/lab/gige/genicam_description.h"
+#include "sim_devices/lab/genicam/thermal_features.h"
 
 namespace todbench {
 
@@ -43,26 +43,13 @@ inline constexpr std::uint32_t chunk_exposure = 0xA0000001;            ///< Chun
 inline constexpr std::uint32_t chunk_sensor_temperature = 0xA0000002;  ///< ChunkSensorTemperature, raw/10
 inline constexpr std::uint32_t chunk_nuc_active = 0xA0000003;          ///< ChunkNUCActive
 
-/// Where DEVICE strings come from and what the registers hold at power-up.
-struct ModelOptions {
-  std::string vendor, model, serial, firmware;  ///< empty vendor or model: those of the family
-  int width = 0, height = 0;
-  int significant_bits = 14;
-  double frame_rate_hz = 50;
-};
-
 struct ModelDescription {
   CameraDescription genicam;
   ModelRegisters registers;
 };
 
-/// Registers and features of a model.
-[[nodiscard]] ModelDescription describe_camera(CameraModel model, const ModelOptions& options);
-
-/// Pixel formats that the models send (PFNC 2.4).
-inline constexpr std::uint32_t pfnc_mono8 = 0x01080001;
-inline constexpr std::uint32_t pfnc_mono14 = 0x01100025;
-inline constexpr std::uint32_t pfnc_mono16 = 0x01100007;
+/// Registers and features of a model; an empty vendor or model is that of the family.
+[[nodiscard]] ModelDescription describe_camera(CameraModel model, const ThermalCameraOptions& options);
 
 /// Frames per second of a value of the Ax5's SensorVideoStandard; 0 for one that does not exist.
 [[nodiscard]] double video_standard_hz(std::uint32_t value);

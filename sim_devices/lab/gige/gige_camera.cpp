@@ -4,34 +4,34 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <array>
-#include <bit>
 #include <cmath>
 #include <condition_variable>
 #include <cstring>
 #include <mutex>
+#include <optional>
 #include <string_view>
 #include <thread>
 #include <vector>
 
+#include "acquisition/aravis/gev_registers.h"
 #include "acquisition/aravis/gvcp_client.h"
+#include "sim_devices/lab/genicam/picture_encoder.h"
+#include "sim_devices/lab/genicam/thermal_features.h"
 
 namespace todbench {
-
-/// Generated from gige_camera.xml.
-std::string_view gige_camera_xml();
 
 namespace {
 
 using namespace std::chrono_literals;
 
-/// This camera's own registers; gige_camera.xml names the same addresses.
+/// This camera's own registers, beside those of Aravis' fake camera.
 constexpr std::uint32_t register_ir_format = 0xA000;
 constexpr std::uint32_t register_nuc_mode = 0xA004;
 constexpr std::uint32_t register_nuc_action = 0xA008;
 constexpr std::uint32_t register_noise_reduction = 0xA00C;
 constexpr std::uint32_t register_device_temperature = 0xA010;
 constexpr std::uint32_t register_nuc_interval = 0xA014;
+constexpr std::uint32_t register_payload_size = 0xA018;
 constexpr std::uint32_t register_largest_count = 0xA01C;
 constexpr std::uint32_t register_big_endian = 0xA020;
 constexpr std::uint32_t register_instance = 0xA024;
@@ -39,19 +39,73 @@ constexpr std::uint32_t register_linear_scale = 0xA040;
 constexpr std::uint32_t register_linear_offset = 0xA048;
 constexpr std::uint32_t register_planck = 0xA050;  ///< R, B, F, O, eight bytes each
 
-constexpr std::uint32_t ir_format_radiometric = 0;
-constexpr std::uint32_t ir_format_100mk = 1;
-constexpr std::uint32_t ir_format_10mk = 2;
-constexpr std::uint32_t nuc_mode_automatic = 1;
+constexpr ThermalRegisters registers_of_this{.vendor = gev::vendor_name,
+                                             .model = gev::model_name,
+                                             .firmware = gev::device_version,
+                                             .serial = gev::serial_number,
+                                             .name_bytes = 32,
+                                             .serial_bytes = 16,
+                                             .width = ARV_FAKE_CAMERA_REGISTER_WIDTH,
+                                             .height = ARV_FAKE_CAMERA_REGISTER_HEIGHT,
+                                             .offset_x = ARV_FAKE_CAMERA_REGISTER_X_OFFSET,
+                                             .offset_y = ARV_FAKE_CAMERA_REGISTER_Y_OFFSET,
+                                             .pixel_format = ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT,
+                                             .largest_count = register_largest_count,
+                                             .payload_size = register_payload_size,
+                                             .acquisition_mode = ARV_FAKE_CAMERA_REGISTER_ACQUISITION_MODE,
+                                             .acquisition = ARV_FAKE_CAMERA_REGISTER_ACQUISITION,
+                                             .period_us = ARV_FAKE_CAMERA_REGISTER_ACQUISITION_FRAME_PERIOD_US,
+                                             .ir_format = register_ir_format,
+                                             .linear_scale = register_linear_scale,
+                                             .linear_offset = register_linear_offset,
+                                             .nuc_mode = register_nuc_mode,
+                                             .nuc_action = register_nuc_action};
 
-/// GigE Vision bootstrap strings.
-constexpr std::uint32_t bootstrap_vendor = 0x48;
-constexpr std::uint32_t bootstrap_model = 0x68;
-constexpr std::uint32_t bootstrap_version = 0x88;
-constexpr std::uint32_t bootstrap_serial = 0xD8;
+std::uint32_t raw_temperature(double temperature_c) {
+  return static_cast<std::uint32_t>(std::lround(100 * temperature_c));
+}
 
-constexpr ArvPixelFormat mono14 = 0x01100025;
-constexpr ArvPixelFormat mono16 = 0x01100007;
+/// The camera of thermal_camera() and what only this one has.
+CameraDescription described(const EmulatedGigeCameraConfig& c) {
+  using namespace features;
+  auto camera = thermal_camera(registers_of_this, {.vendor = c.vendor,
+                                                   .model = c.model,
+                                                   .serial = c.serial,
+                                                   .firmware = c.firmware,
+                                                   .width = c.width,
+                                                   .height = c.height,
+                                                   .significant_bits = c.significant_bits,
+                                                   .frame_rate_hz = c.frame_rate_hz,
+                                                   .kelvin_per_count = c.kelvin_per_count,
+                                                   .offset_k = c.offset_k});
+  const auto width = static_cast<std::uint32_t>(c.width), height = static_cast<std::uint32_t>(c.height);
+  more_of(camera, "DeviceControl")
+      .push_back(
+          temperature("DeviceTemperature", register_device_temperature, 0.01, raw_temperature(c.device_temperature_c)));
+  auto& image = more_of(camera, "ImageFormatControl");
+  image.push_back(state("SensorWidth", ARV_FAKE_CAMERA_REGISTER_SENSOR_WIDTH, width));
+  image.push_back(state("SensorHeight", ARV_FAKE_CAMERA_REGISTER_SENSOR_HEIGHT, height));
+  auto& formats = feature_named(camera, "IRFormat").entries;
+  formats.insert(formats.begin(), {"Radiometric", ir_format_radiometric});
+  feature_named(camera, "NUCMode").entries.emplace_back("Automatic", nuc_mode_automatic);
+  auto& thermal = more_of(camera, "ThermalControl");
+  const PlanckScale& planck = c.radiometric;
+  thermal.push_back(real("R", register_planck, planck.r));
+  thermal.push_back(real("B", register_planck + 8, planck.b));
+  thermal.push_back(real("F", register_planck + 16, planck.f));
+  thermal.push_back(real("O", register_planck + 24, planck.o));
+  thermal.push_back(
+      {.name = "NUCIntervalFrames", .address = register_nuc_interval, .initial = 9000, .least = 1, .most = 1'000'000});
+  thermal.push_back(choice("NoiseReduction", register_noise_reduction, 1, {{"Off", 0}, {"On", 1}}));
+  // The fake camera keeps nothing but the size of packets in its register.
+  more_of(camera, "TransportLayerControl")
+      .push_back({.name = "GevSCPSBigEndian",
+                  .kind = FeatureKind::bit,
+                  .address = register_big_endian,
+                  .bit = 31,
+                  .about = "Sends the high byte of a pixel first."});
+  return camera;
+}
 
 /// Commands are noticed this often while no frame is being exposed.
 constexpr auto command_poll_period = 20ms;
@@ -84,32 +138,13 @@ struct Unref {
 
 Result<void> validate(const EmulatedGigeCameraConfig& config) {
   const auto bad = [](const std::string& what) { return fail(ErrorCode::invalid_input, "emulated camera: " + what); };
-  if (config.width < 1 || config.height < 1 || config.width > 4096 || config.height > 4096) {
-    return bad("width and height must be 1 ... 4096");
-  }
-  if (config.significant_bits < 8 || config.significant_bits > 16) return bad("significant_bits must be 8 ... 16");
-  if (!(config.frame_rate_hz >= 0.1 && config.frame_rate_hz <= 1000)) return bad("frame_rate_hz must be 0.1 ... 1000");
-  if (!(config.kelvin_per_count > 0) || !std::isfinite(config.offset_k))
-    return bad("kelvin_per_count must be positive");
-  if (config.serial.empty() || config.serial.size() > 15) return bad("serial must have 1 ... 15 characters");
+  if (auto common = validate_emulation("emulated camera", config); !common) return common;
+  if (config.serial.size() > 15) return bad("serial must have 1 ... 15 characters");
   if (config.vendor.size() > 31 || config.model.size() > 31 || config.firmware.size() > 31) {
     return bad("vendor, model and firmware must have at most 31 characters");
   }
   if (config.first_frame_id == 0) return bad("frame id 0 does not exist");
-  if (config.nuc_freeze_frames < 0) return bad("nuc_freeze_frames must not be negative");
   return {};
-}
-
-/// Counts of IRFormat=Radiometric for every count of the linear scale; 0 where the formula does not reach.
-std::vector<std::uint16_t> radiometric_table(const EmulatedGigeCameraConfig& config) {
-  std::vector<std::uint16_t> table(65536);
-  const auto scale = RadiometricScale::planck(config.radiometric);
-  if (!scale) return table;
-  for (std::size_t count = 0; count < table.size(); ++count) {
-    const auto signal = scale->counts(config.offset_k + config.kelvin_per_count * static_cast<double>(count));
-    table[count] = cv::saturate_cast<std::uint16_t>(signal.value_or(0));
-  }
-  return table;
 }
 
 }  // namespace
@@ -118,7 +153,8 @@ struct EmulatedGigeCamera::State {
   EmulatedGigeCameraConfig config;
   Exposure exposure;
   NucObserver on_nuc;
-  std::vector<std::uint16_t> radiometric;
+  CameraDescription description;
+  std::optional<PictureEncoder> encoder;  ///< of the camera's thread
 
   mutable std::mutex mutex;  ///< guards what follows, down to `polled`
   std::uint64_t exposures = 0;
@@ -128,7 +164,7 @@ struct EmulatedGigeCamera::State {
   unsigned exposures_to_lose = 0;
   unsigned frozen_frames = 0;
   std::uint16_t next_frame_id = 1;
-  cv::Mat1w last_sent;
+  std::vector<std::uint8_t> last_sent;
   std::condition_variable_any polled;
 
   std::unique_ptr<ArvFakeCamera, Unref> registers;  ///< outlives the camera's thread, which reads it until the end
@@ -148,21 +184,11 @@ struct EmulatedGigeCamera::State {
   void write(std::uint32_t address, std::uint32_t value) const {
     arv_fake_camera_write_register(registers.get(), address, value);
   }
-  void write(std::uint32_t address, double value) const {
-    const std::uint64_t big_endian = GUINT64_TO_BE(std::bit_cast<std::uint64_t>(value));
-    arv_fake_camera_write_memory(registers.get(), address, sizeof big_endian, &big_endian);
-  }
-  void write(std::uint32_t address, const std::string& text, std::size_t size) const {
-    std::vector<char> field(size, '\0');
-    std::memcpy(field.data(), text.data(), std::min(text.size(), size - 1));
-    arv_fake_camera_write_memory(registers.get(), address, static_cast<guint32>(size), field.data());
-  }
-
   void power_up();
   void serve_commands();
   void begin_correction();
   [[nodiscard]] cv::Mat1w expose();
-  [[nodiscard]] cv::Mat1w processed(const cv::Mat1w& counts, ArvPixelFormat format);
+  [[nodiscard]] EncoderSettings encoder_settings(PixelFormat format) const;
   void fill(ArvBuffer* buffer, ArvPixelFormat format);
   static void on_fill(ArvBuffer* buffer, void* state, guint32, guint32, ArvPixelFormat format) {
     static_cast<State*>(state)->fill(buffer, format);
@@ -170,32 +196,11 @@ struct EmulatedGigeCamera::State {
 };
 
 void EmulatedGigeCamera::State::power_up() {
-  const auto format = config.significant_bits <= 14 ? mono14 : mono16;
-  write(bootstrap_vendor, config.vendor, 32);
-  write(bootstrap_model, config.model, 32);
-  write(bootstrap_version, config.firmware, 32);
-  write(bootstrap_serial, config.serial, 16);
-  write(ARV_FAKE_CAMERA_REGISTER_SENSOR_WIDTH, static_cast<std::uint32_t>(config.width));
-  write(ARV_FAKE_CAMERA_REGISTER_SENSOR_HEIGHT, static_cast<std::uint32_t>(config.height));
-  write(ARV_FAKE_CAMERA_REGISTER_WIDTH, static_cast<std::uint32_t>(config.width));
-  write(ARV_FAKE_CAMERA_REGISTER_HEIGHT, static_cast<std::uint32_t>(config.height));
-  write(ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT, static_cast<std::uint32_t>(format));
-  write(ARV_FAKE_CAMERA_REGISTER_ACQUISITION_FRAME_PERIOD_US,
-        static_cast<std::uint32_t>(std::lround(1e6 / config.frame_rate_hz)));
-  write(register_ir_format, ir_format_10mk);
-  write(register_noise_reduction, std::uint32_t{1});
-  write(register_nuc_interval, std::uint32_t{9000});
-  write(register_device_temperature, static_cast<std::uint32_t>(std::lround(100 * config.device_temperature_c)));
-  write(register_largest_count, (std::uint32_t{1} << config.significant_bits) - 1);
-  write(register_linear_scale, config.kelvin_per_count);
-  write(register_linear_offset, config.offset_k);
-  const PlanckScale& planck = config.radiometric;
-  write(register_planck, planck.r);
-  write(register_planck + 8, planck.b);
-  write(register_planck + 16, planck.f);
-  write(register_planck + 24, planck.o);
+  for (const auto& [address, bytes] : power_up_contents(description)) {
+    arv_fake_camera_write_memory(registers.get(), address, static_cast<guint32>(bytes.size()), bytes.data());
+  }
   next_frame_id = config.first_frame_id;
-  radiometric = radiometric_table(config);
+  encoder.emplace(config.kelvin_per_count, config.offset_k, config.radiometric);
   arv_fake_camera_set_fill_pattern(registers.get(), &State::on_fill, this);
 }
 
@@ -250,22 +255,16 @@ cv::Mat1w EmulatedGigeCamera::State::expose() {
   return cv::Mat1w::zeros(config.height, config.width);
 }
 
-cv::Mat1w EmulatedGigeCamera::State::processed(const cv::Mat1w& counts, ArvPixelFormat format) {
-  cv::Mat1w sent = counts.clone();
+EncoderSettings EmulatedGigeCamera::State::encoder_settings(PixelFormat format) const {
+  EncoderSettings settings;
   const auto ir_format = read(register_ir_format);
-  if (ir_format == ir_format_radiometric) {
-    for (auto& count : sent) count = radiometric[count];
-  } else if (ir_format == ir_format_100mk) {
-    for (auto& count : sent) count = static_cast<std::uint16_t>((count + 5) / 10);
-  }
-  const auto largest = static_cast<std::uint16_t>(
-      (std::uint32_t{1} << (format == mono14 ? std::min(14, config.significant_bits) : config.significant_bits)) - 1);
-  for (auto& count : sent) count = std::min(count, largest);
-  if (read(register_noise_reduction) != 0 && last_sent.size() == sent.size()) {
-    auto previous = last_sent.begin();
-    for (auto& count : sent) count = static_cast<std::uint16_t>((count + *previous++ + 1) / 2);
-  }
-  return sent;
+  if (ir_format == ir_format_radiometric) settings.signal = SignalKind::radiometric;
+  if (ir_format == ir_format_100mk) settings.signal = SignalKind::tenths;
+  settings.significant_bits = static_cast<unsigned>(config.significant_bits);
+  settings.format = format;
+  settings.averages = read(register_noise_reduction) != 0;
+  settings.big_endian = read(register_big_endian) != 0;
+  return settings;
 }
 
 void EmulatedGigeCamera::State::fill(ArvBuffer* buffer, ArvPixelFormat format) {
@@ -277,27 +276,21 @@ void EmulatedGigeCamera::State::fill(ArvBuffer* buffer, ArvPixelFormat format) {
   for (unsigned i = 0; i < lost; ++i) static_cast<void>(expose());
   const cv::Mat1w counts = expose();
   // The buffer was allocated for the geometry in the registers, which a client that ignores read-only may have changed.
+  const auto known = pixel_format_of_pfnc(format);
   const bool fits = read(ARV_FAKE_CAMERA_REGISTER_WIDTH) == static_cast<std::uint32_t>(config.width) &&
                     read(ARV_FAKE_CAMERA_REGISTER_HEIGHT) == static_cast<std::uint32_t>(config.height) &&
-                    (format == mono14 || format == mono16);
+                    (known == PixelFormat::mono14 || known == PixelFormat::mono16);
   const std::lock_guard lock(mutex);
   // Ids follow 65535 with 1.
   const auto id = static_cast<std::uint16_t>((next_frame_id - 1U + lost) % 65535U + 1U);
   next_frame_id = static_cast<std::uint16_t>(id % 65535U + 1U);
   arv_buffer_set_frame_id(buffer, id);
   arv_buffer_set_timestamp(buffer, clock_ns);
-  if (!counts.empty()) last_sent = processed(counts, format);
   if (!fits) return;
+  if (!counts.empty()) last_sent = encoder->encode(counts, encoder_settings(*known));
   // The reported size is 0 in this callback; the memory behind the pointer is the whole payload.
   std::size_t unused = 0;
-  auto* out = static_cast<std::uint8_t*>(const_cast<void*>(arv_buffer_get_data(buffer, &unused)));
-  const bool big_endian = read(register_big_endian) != 0;
-  for (const auto count : last_sent) {
-    const auto low = static_cast<std::uint8_t>(count & 0xFF);
-    const auto high = static_cast<std::uint8_t>(count >> 8);
-    *out++ = big_endian ? high : low;
-    *out++ = big_endian ? low : high;
-  }
+  std::memcpy(const_cast<void*>(arv_buffer_get_data(buffer, &unused)), last_sent.data(), last_sent.size());
 }
 
 EmulatedGigeCamera::EmulatedGigeCamera(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -312,9 +305,9 @@ Result<std::unique_ptr<EmulatedGigeCamera>> EmulatedGigeCamera::start(EmulatedGi
   state->config = std::move(config);
   state->exposure = std::move(exposure);
   state->on_nuc = std::move(on_nuc);
-  const MemoryFile description(gige_camera_xml());
-  state->camera.reset(
-      arv_gv_fake_camera_new_full(address.c_str(), state->config.serial.c_str(), description.path().c_str()));
+  state->description = described(state->config);
+  const MemoryFile file(genicam_xml(state->description));
+  state->camera.reset(arv_gv_fake_camera_new_full(address.c_str(), state->config.serial.c_str(), file.path().c_str()));
   if (!state->camera || arv_gv_fake_camera_is_running(state->camera.get()) == 0) {
     return fail(ErrorCode::not_found,
                 "emulated camera: no interface with address " + address + " is up, or its UDP port 3956 is busy");
@@ -362,7 +355,7 @@ std::uint64_t EmulatedGigeCamera::nonuniformity_corrections() const {
 }
 
 void EmulatedGigeCamera::set_device_temperature_c(double temperature_c) {
-  state_->write(register_device_temperature, static_cast<std::uint32_t>(std::lround(100 * temperature_c)));
+  state_->write(register_device_temperature, raw_temperature(temperature_c));
 }
 
 void EmulatedGigeCamera::set_packet_loss(double probability, std::uint32_t seed) {

@@ -1,6 +1,6 @@
 #include "sim_devices/lab/gige/gvcp_device.h"
 
-#include "sim_devices/lab/gige/gev_registers.h"
+#include "acquisition/aravis/gev_registers.h"
 
 namespace todbench {
 namespace {

@@ -1,6 +1,5 @@
 #include "sim_devices/lab/gige/gvsp_camera.h"
 
-#include <cmath>
 #include <utility>
 
 #include "sim_devices/lab/gige/gvsp_camera_state.h"
@@ -12,17 +11,13 @@ using Clock = std::chrono::steady_clock;
 
 Result<void> validate(const GvspCameraConfig& c) {
   const auto bad = [](const std::string& what) { return fail(ErrorCode::invalid_input, "emulated camera: " + what); };
-  if (c.width < 8 || c.height < 2 || c.width > 4096 || c.height > 4096)
-    return bad("the picture must be 8 x 2 ... 4096 x 4096");
-  if (c.significant_bits < 8 || c.significant_bits > 16) return bad("significant_bits must be 8 ... 16");
-  if (!(c.frame_rate_hz >= 0.1 && c.frame_rate_hz <= 1000)) return bad("frame_rate_hz must be 0.1 ... 1000");
-  if (!(c.kelvin_per_count > 0) || !std::isfinite(c.offset_k)) return bad("kelvin_per_count must be positive");
-  if (c.serial.empty() || c.serial.size() > 15) return bad("serial must have 1 ... 15 characters");
+  if (auto common = validate_emulation("emulated camera", c); !common) return common;
+  if (c.width < 8 || c.height < 2) return bad("the picture must be 8 x 2 ... 4096 x 4096");
+  if (c.serial.size() > 15) return bad("serial must have 1 ... 15 characters");
   if (c.vendor.size() > 31 || c.model_name.size() > 31 || c.firmware.size() > 31) {
     return bad("vendor, model and firmware must have at most 31 characters");
   }
   if (c.first_block_id == 0) return bad("block id 0 does not exist");
-  if (c.nuc_freeze_frames < 0) return bad("nuc_freeze_frames must not be negative");
   return {};
 }
 

@@ -102,8 +102,8 @@ void GvspCamera::State::on_write(std::uint32_t address, std::uint32_t value) {
 
 void GvspCamera::State::update_payload_size() {
   const ModelRegisters& r = description.registers;
-  const std::uint32_t bytes_per_pixel = registers.get(r.pixel_format) == pfnc_mono8 ? 1 : 2;
-  const auto image = bytes_per_pixel * static_cast<std::uint32_t>(config.width * config.height);
+  const auto format = pixel_format_of_pfnc(registers.get(r.pixel_format)).value_or(PixelFormat::mono16);
+  const auto image = static_cast<std::uint32_t>(facts_of(format).bytes_per_pixel * config.width * config.height);
   registers.set(r.payload_size, image + (registers.get(r.chunk_mode) != 0 ? chunk_bytes : 0));
 }
 

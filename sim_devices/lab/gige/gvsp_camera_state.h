@@ -10,12 +10,12 @@
 #include <stop_token>
 #include <thread>
 
+#include "acquisition/aravis/gev_registers.h"
 #include "acquisition/core/rng.h"
-#include "sim_devices/lab/gige/gev_registers.h"
+#include "sim_devices/lab/genicam/picture_encoder.h"
 #include "sim_devices/lab/gige/gvcp_device.h"
 #include "sim_devices/lab/gige/gvsp_camera.h"
 #include "sim_devices/lab/gige/gvsp_sockets.h"
-#include "sim_devices/lab/gige/picture_encoder.h"
 
 namespace todbench {
 

@@ -55,10 +55,8 @@ EncoderSettings GvspCamera::State::encoder_settings() const {
   const ModelRegisters& r = description.registers;
   const auto value = [this](std::uint32_t address) { return address == 0 ? 0 : registers.get(address); };
   EncoderSettings s;
-  const auto format = value(r.pixel_format);
-  s.bits_per_pixel = format == pfnc_mono8 ? 8 : 16;
+  s.format = pixel_format_of_pfnc(value(r.pixel_format)).value_or(PixelFormat::mono16);
   s.significant_bits = static_cast<unsigned>(config.significant_bits);
-  if (format == pfnc_mono14) s.significant_bits = std::min(s.significant_bits, 14U);
   if (r.temperature_linear_mode != 0) {
     s.signal = value(r.temperature_linear_mode) != 0 ? SignalKind::linear : SignalKind::radiometric;
     s.kelvin_per_signal = value(r.temperature_linear_resolution) != 0 ? 0.04 : 0.4;
@@ -132,7 +130,7 @@ std::shared_ptr<const GvspFrame> GvspCamera::State::frame_of(const Exposed& expo
       std::max(registers.get(gev::stream_packet_size) & gev::packet_size_mask, gvsp_least_packet_bytes);
   frame->bytes_per_packet = packet_bytes - gvsp_overhead_bytes;
   frame->data = picture_of(exposed, settings);
-  if (exposed.planned.swapped_bytes && settings.bits_per_pixel == 16) swap_bytes(frame->data);
+  if (exposed.planned.swapped_bytes && settings.format != PixelFormat::mono8) swap_bytes(frame->data);
   if (exposed.planned.wrong_size) {
     const std::size_t row_bytes = frame->data.size() / frame->height;
     frame->height /= 2;

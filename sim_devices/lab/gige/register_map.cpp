@@ -5,7 +5,7 @@
 #include <cassert>
 #include <utility>
 
-#include "sim_devices/lab/gige/gev_registers.h"
+#include "acquisition/aravis/gev_registers.h"
 
 namespace todbench {
 namespace {
@@ -20,11 +20,6 @@ bool is_standard(std::uint32_t address) {
   return address < gev::end_of_bootstrap || (address >= gev::stream_port && address < gev::end_of_stream_channel);
 }
 
-/// Chunks lie behind frames, and a bit is a part of a register that the standard owns.
-bool owns_register(const CameraFeature& f) {
-  return f.kind != FeatureKind::chunk_integer && f.kind != FeatureKind::chunk_scaled && f.kind != FeatureKind::bit;
-}
-
 }  // namespace
 
 RegisterMap::RegisterMap(CameraDescription description, std::string xml)
@@ -33,8 +28,9 @@ RegisterMap::RegisterMap(CameraDescription description, std::string xml)
   for (const auto& [category, features] : description_.categories) {
     for (const auto& f : features) {
       if (!owns_register(f)) continue;
-      assert(f.address % 4 == 0 && f.address + f.bytes <= memory_bytes);
-      for (std::uint32_t word = f.address; word < f.address + f.bytes; word += 4) {
+      const auto end = f.address + register_bytes(f);
+      assert(f.address % 4 == 0 && end <= memory_bytes);
+      for (std::uint32_t word = f.address; word < end; word += 4) {
         rules_[word] = {f.access, f.locked_while_streaming};
       }
     }
@@ -45,15 +41,9 @@ RegisterMap::RegisterMap(CameraDescription description, std::string xml)
 }
 
 void RegisterMap::power_up() {
-  for (const auto& [category, features] : description_.categories) {
-    for (const auto& f : features) {
-      if (!owns_register(f)) continue;
-      if (f.kind == FeatureKind::text) {
-        set_text(f.address, f.text, f.bytes);
-      } else {
-        set(f.address, f.kind == FeatureKind::command ? 0 : f.initial);
-      }
-    }
+  const std::lock_guard lock(mutex_);
+  for (const auto& [address, bytes] : power_up_contents(description_)) {
+    std::copy(bytes.begin(), bytes.end(), memory_.begin() + address);
   }
 }
 

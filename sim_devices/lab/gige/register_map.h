@@ -9,7 +9,7 @@
 #include <string_view>
 #include <tl/expected.hpp>
 
-#include "sim_devices/lab/gige/genicam_description.h"
+#include "sim_devices/lab/genicam/genicam_description.h"
 #include "sim_devices/lab/gige/gvcp_message.h"
 
 namespace todbench {

@@ -66,10 +66,6 @@ class Camera final : public SeekCamera {
     const std::lock_guard lock(mutex_);
     return exposures_;
   }
-  [[nodiscard]] std::uint64_t shutter_events() const override {
-    const std::lock_guard lock(mutex_);
-    return shutter_events_;
-  }
   void lose_exposures(unsigned count) override {
     const std::lock_guard lock(mutex_);
     exposures_ += count;
@@ -98,7 +94,7 @@ class Camera final : public SeekCamera {
   std::size_t sent_ = 0;
   bool frame_begun_ = false;
   std::uint64_t since_start_ = 0;  ///< frames since initialisation
-  std::uint64_t exposures_ = 0, shutter_events_ = 0;
+  std::uint64_t exposures_ = 0;
   std::optional<std::size_t> truncated_;
   Clock::time_point next_exposure_ = Clock::now();
 };
@@ -174,7 +170,6 @@ UsbBytes Camera::next_frame(std::unique_lock<std::mutex>& lock) {
   const std::uint64_t k = since_start_++;
   const auto interval = static_cast<std::uint64_t>(config_.shutter_interval_frames);
   const bool closes = k == 2 || (interval > 0 && k > 2 && (k - 2) % (interval + 1) == 0);
-  if (closes) ++shutter_events_;
   lock.unlock();
   UsbBytes bytes;
   const cv::Size size = shutter_.size();

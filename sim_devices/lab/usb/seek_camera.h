@@ -39,7 +39,6 @@ class SeekCamera : public UsbDevice {
   [[nodiscard]] static Result<std::shared_ptr<SeekCamera>> create(SeekCameraConfig config, Exposure exposure);
 
   [[nodiscard]] virtual std::uint64_t exposures() const = 0;
-  [[nodiscard]] virtual std::uint64_t shutter_events() const = 0;
   /// The next `count` exposures happen but are never sent.
   virtual void lose_exposures(unsigned count) = 0;
   /// Of the next frame only the first `bytes` are sent.

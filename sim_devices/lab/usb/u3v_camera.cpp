@@ -3,21 +3,19 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
-#include <cmath>
 #include <condition_variable>
 #include <cstring>
 #include <deque>
 #include <mutex>
 #include <optional>
-#include <string_view>
+#include <string>
 #include <utility>
 
+#include "sim_devices/lab/genicam/picture_encoder.h"
+#include "sim_devices/lab/genicam/thermal_features.h"
 #include "sim_devices/lab/usb/u3v_protocol.h"
 
 namespace todbench {
-
-/// Generated from u3v_camera.xml.
-std::string_view u3v_camera_xml();
 
 namespace {
 
@@ -26,6 +24,48 @@ using Clock = std::chrono::steady_clock;
 
 /// Answers that nobody fetched: a client that only asks does not make the camera grow.
 constexpr std::size_t most_answers = 8;
+
+constexpr std::uint32_t own(std::uint64_t offset) {
+  return static_cast<std::uint32_t>(camera_registers + offset);
+}
+
+constexpr ThermalRegisters registers_of_this{.vendor = abrm_vendor,
+                                             .model = abrm_model,
+                                             .firmware = abrm_version,
+                                             .serial = abrm_serial,
+                                             .name_bytes = 64,
+                                             .serial_bytes = 64,
+                                             .width = own(reg_width),
+                                             .height = own(reg_height),
+                                             .offset_x = own(reg_offset_x),
+                                             .offset_y = own(reg_offset_y),
+                                             .pixel_format = own(reg_pixel_format),
+                                             .largest_count = own(reg_largest_count),
+                                             .payload_size = own(reg_payload_size),
+                                             .acquisition_mode = own(reg_acquisition_mode),
+                                             .acquisition = own(reg_acquisition),
+                                             .period_us = own(reg_period_us),
+                                             .ir_format = own(reg_ir_format),
+                                             .linear_scale = own(reg_scale),
+                                             .linear_offset = own(reg_offset),
+                                             .nuc_mode = own(reg_nuc_mode),
+                                             .nuc_action = own(reg_nuc)};
+
+CameraDescription described(const U3vCameraConfig& c) {
+  auto camera = thermal_camera(registers_of_this, {.vendor = c.vendor,
+                                                   .model = c.model,
+                                                   .serial = c.serial,
+                                                   .firmware = c.firmware,
+                                                   .width = c.width,
+                                                   .height = c.height,
+                                                   .significant_bits = c.significant_bits,
+                                                   .frame_rate_hz = c.frame_rate_hz,
+                                                   .kelvin_per_count = c.kelvin_per_count,
+                                                   .offset_k = c.offset_k});
+  camera.name_space = "U3V";
+  camera.order = std::endian::little;
+  return camera;
+}
 
 class Camera final : public U3vCamera {
  public:
@@ -59,19 +99,20 @@ class Camera final : public U3vCamera {
   enum class Phase { idle, leader, payload, trailer };
 
   void fill_bootstrap();
+  [[nodiscard]] std::uint32_t register_of_this(std::uint64_t offset) { return camera_.u32(own(offset)); }
   [[nodiscard]] UsbBytes answer(std::span<const std::uint8_t> command);
   [[nodiscard]] std::uint16_t read(std::uint64_t address, std::size_t size, UsbBytes& into);
   [[nodiscard]] std::uint16_t write(std::uint64_t address, std::span<const std::uint8_t> data);
   [[nodiscard]] bool streaming() {
-    return (bootstrap_.u32(sirm + si_control) & 1U) != 0 && camera_.u32(camera_registers + reg_acquisition) != 0;
+    return (bootstrap_.u32(sirm + si_control) & 1U) != 0 && register_of_this(reg_acquisition) != 0;
   }
   [[nodiscard]] std::chrono::microseconds period() {
-    return std::chrono::microseconds(std::clamp(camera_.u32(camera_registers + reg_period_us), 1000U, 10'000'000U));
+    return std::chrono::microseconds(std::clamp(register_of_this(reg_period_us), 1000U, 10'000'000U));
   }
   [[nodiscard]] std::optional<UsbBytes> stream(std::unique_lock<std::mutex>& lock, std::size_t length,
                                                const std::stop_token& stop);
   [[nodiscard]] bool begin_frame(std::unique_lock<std::mutex>& lock, const std::stop_token& stop);
-  [[nodiscard]] cv::Mat1w next_picture(std::unique_lock<std::mutex>& lock, std::uint64_t index);
+  [[nodiscard]] UsbBytes next_picture(std::unique_lock<std::mutex>& lock, std::uint64_t index);
   [[nodiscard]] UsbBytes leader();
   [[nodiscard]] UsbBytes trailer() const;
 
@@ -91,27 +132,31 @@ class Camera final : public U3vCamera {
   unsigned to_lose_ = 0;
   int frozen_frames_ = 0;
   std::optional<std::size_t> truncated_;
-  cv::Mat1w last_sent_;
-  UsbBytes payload_;
+  PictureEncoder encoder_;  ///< of the thread of the stream endpoint
+  UsbBytes payload_;        ///< as sent last
   std::size_t sent_ = 0;
   Clock::time_point next_exposure_ = Clock::now();
 };
 
 Camera::Camera(U3vCameraConfig config, Exposure exposure)
-    : config_(std::move(config)), exposure_(std::move(exposure)), descriptors_(descriptors_of(config_)) {
-  const std::string_view xml = u3v_camera_xml();
+    : config_(std::move(config)),
+      exposure_(std::move(exposure)),
+      descriptors_(descriptors_of(config_)),
+      encoder_(config_.kelvin_per_count, config_.offset_k, {}) {
+  const CameraDescription description = described(config_);
+  const std::string xml = genicam_xml(description);
   description_ =
       config_.description == U3vDescription::zipped ? zipped("camera.xml", xml) : UsbBytes(xml.begin(), xml.end());
   fill_bootstrap();
+  for (const auto& [address, bytes] : power_up_contents(description)) {
+    auto& registers = address < camera_registers ? bootstrap_ : camera_;
+    std::copy(bytes.begin(), bytes.end(), registers.at(address, bytes.size()).begin());
+  }
 }
 
 void Camera::fill_bootstrap() {
   bootstrap_.set(0, std::uint32_t{0x00010000});
-  bootstrap_.set(abrm_vendor, config_.vendor);
-  bootstrap_.set(abrm_model, config_.model);
   bootstrap_.set(abrm_family, std::string("thermal"));
-  bootstrap_.set(abrm_version, config_.firmware);
-  bootstrap_.set(abrm_serial, config_.serial);
   bootstrap_.set(abrm_capability, std::uint64_t{0});
   bootstrap_.set(abrm_response_time, std::uint32_t{500});
   bootstrap_.set(abrm_manifest, manifest);
@@ -137,15 +182,6 @@ void Camera::fill_bootstrap() {
   bootstrap_.set(manifest + 12, std::uint32_t{0x01010000} | (zip ? std::uint32_t{1} << 10U : 0U));
   bootstrap_.set(manifest + 16, description_address);
   bootstrap_.set(manifest + 24, static_cast<std::uint64_t>(description_.size()));
-  const auto own = [&](std::uint64_t offset, auto value) { camera_.set(camera_registers + offset, value); };
-  own(reg_width, static_cast<std::uint32_t>(config_.width));
-  own(reg_height, static_cast<std::uint32_t>(config_.height));
-  own(reg_pixel_format, config_.significant_bits <= 14 ? mono14 : mono16);
-  own(reg_largest_count, (std::uint32_t{1} << static_cast<unsigned>(config_.significant_bits)) - 1);
-  own(reg_period_us, static_cast<std::uint32_t>(std::lround(1e6 / config_.frame_rate_hz)));
-  own(reg_ir_format, format_10mk);
-  own(reg_scale, std::bit_cast<std::uint64_t>(config_.kelvin_per_count));
-  own(reg_offset, std::bit_cast<std::uint64_t>(config_.offset_k));
 }
 
 // --- control ----------------------------------------------------------------------------------------------------
@@ -208,17 +244,17 @@ std::uint16_t Camera::read(std::uint64_t address, std::size_t size, UsbBytes& in
 
 std::uint16_t Camera::write(std::uint64_t address, std::span<const std::uint8_t> data) {
   const bool stream_register = address >= sirm && address + data.size() <= sirm + 0x30;
-  const bool own = camera_.contains(address, data.size()) && address >= camera_registers + reg_pixel_format &&
-                   address + data.size() <= camera_registers + reg_scale;
-  if (!stream_register && !own) {
+  const bool camera_register = camera_.contains(address, data.size()) && address >= own(reg_pixel_format) &&
+                               address + data.size() <= own(reg_scale);
+  if (!stream_register && !camera_register) {
     return bootstrap_.contains(address, data.size()) || camera_.contains(address, data.size()) ? status_write_protected
                                                                                                : status_invalid_address;
   }
   const bool was_streaming = streaming();
   auto registers = stream_register ? bootstrap_.at(address, data.size()) : camera_.at(address, data.size());
   std::copy(data.begin(), data.end(), registers.begin());
-  if (camera_.u32(camera_registers + reg_nuc) != 0) {
-    camera_.set(camera_registers + reg_nuc, std::uint32_t{0});
+  if (register_of_this(reg_nuc) != 0) {
+    camera_.set(own(reg_nuc), std::uint32_t{0});
     ++corrections_;
     frozen_frames_ = config_.nuc_freeze_frames;
   }
@@ -234,22 +270,20 @@ std::uint16_t Camera::write(std::uint64_t address, std::span<const std::uint8_t>
 
 // --- stream -----------------------------------------------------------------------------------------------------
 
-cv::Mat1w Camera::next_picture(std::unique_lock<std::mutex>& lock, std::uint64_t index) {
-  if (frozen_frames_ > 0 && !last_sent_.empty()) {
+UsbBytes Camera::next_picture(std::unique_lock<std::mutex>& lock, std::uint64_t index) {
+  if (frozen_frames_ > 0 && !payload_.empty()) {
     --frozen_frames_;
-    return last_sent_;
+    return payload_;
   }
-  const bool coarse = camera_.u32(camera_registers + reg_ir_format) == format_100mk;
+  EncoderSettings settings;
+  if (register_of_this(reg_ir_format) == ir_format_100mk) settings.signal = SignalKind::tenths;
+  settings.significant_bits = static_cast<unsigned>(config_.significant_bits);
   lock.unlock();
-  cv::Mat1w counts = exposure_(index);
+  const cv::Mat1w counts = exposure_(index);
   CV_Assert(counts.rows == config_.height && counts.cols == config_.width);
-  if (coarse) {
-    counts = counts.clone();
-    for (auto& count : counts) count = static_cast<std::uint16_t>((count + 5) / 10);
-  }
+  auto bytes = encoder_.encode(counts, settings);
   lock.lock();
-  last_sent_ = counts;
-  return counts;
+  return bytes;
 }
 
 /// Waits for the time of the next exposure and exposes. False: stopped.
@@ -268,11 +302,9 @@ bool Camera::begin_frame(std::unique_lock<std::mutex>& lock, const std::stop_tok
     }
     const std::uint64_t index = exposures_++;
     clock_ns_ += static_cast<std::uint64_t>(std::chrono::nanoseconds(period()).count());
-    const cv::Mat1w picture = next_picture(lock, index);
+    auto picture = next_picture(lock, index);
     if (stream_number_ != number) continue;  // stopped meanwhile: the exposure is lost
-    payload_.clear();
-    payload_.reserve(2 * picture.total());
-    for (const auto count : picture) put(payload_, static_cast<std::uint16_t>(count));
+    payload_ = std::move(picture);
     sent_ = 0;
     phase_ = Phase::leader;
     return true;
@@ -288,7 +320,7 @@ UsbBytes Camera::leader() {
   put(bytes, std::uint16_t{0});
   put(bytes, std::uint16_t{1});  // image
   put(bytes, clock_ns_);
-  put(bytes, camera_.u32(camera_registers + reg_pixel_format));
+  put(bytes, register_of_this(reg_pixel_format));
   put(bytes, static_cast<std::uint32_t>(config_.width));
   put(bytes, static_cast<std::uint32_t>(config_.height));
   put(bytes, std::uint32_t{0});
@@ -355,14 +387,10 @@ Result<std::shared_ptr<U3vCamera>> U3vCamera::create(U3vCameraConfig config, Exp
   const auto bad = [](const std::string& what) {
     return fail(ErrorCode::invalid_input, "emulated USB3 Vision camera: " + what);
   };
-  if (config.width < 1 || config.height < 1 || config.width > 4096 || config.height > 4096) {
-    return bad("width and height must be 1 ... 4096");
+  if (auto valid = validate_emulation("emulated USB3 Vision camera", config); !valid) {
+    return tl::unexpected(valid.error());
   }
-  if (config.significant_bits < 8 || config.significant_bits > 16) return bad("significant_bits must be 8 ... 16");
-  if (!(config.frame_rate_hz >= 0.1 && config.frame_rate_hz <= 1000)) return bad("frame rate is 0.1 ... 1000 Hz");
-  if (!(config.kelvin_per_count > 0) || !std::isfinite(config.offset_k)) return bad("kelvin_per_count is positive");
-  if (config.serial.empty() || config.vendor.empty()) return bad("vendor and serial are needed");
-  if (config.nuc_freeze_frames < 0) return bad("a correction cannot freeze less than 0 frames");
+  if (config.vendor.empty()) return bad("a vendor is needed");
   if (!exposure) return bad("there is nothing to expose");
   return std::make_shared<Camera>(std::move(config), std::move(exposure));
 }

@@ -25,12 +25,11 @@ inline constexpr std::size_t bootstrap_size = 0x3000, camera_size = 0x100;
 inline constexpr std::uint64_t si_info = 0x0, si_control = 0x4, si_payload = 0x8, si_leader = 0x10, si_trailer = 0x14;
 inline constexpr std::size_t leader_size = 52, trailer_size = 32;
 
-// The camera's own registers; u3v_camera.xml names the same addresses.
-inline constexpr std::uint64_t reg_width = 0x00, reg_height = 0x04, reg_pixel_format = 0x10, reg_largest_count = 0x14,
-                               reg_acquisition = 0x1C, reg_period_us = 0x20, reg_ir_format = 0x24, reg_nuc = 0x2C,
-                               reg_scale = 0x40, reg_offset = 0x48;
-inline constexpr std::uint32_t mono14 = 0x01100025, mono16 = 0x01100007;
-inline constexpr std::uint32_t format_100mk = 1, format_10mk = 2;
+// The camera's own registers. A client may write from the pixel format to the first that is a matter of the sensor.
+inline constexpr std::uint64_t reg_width = 0x00, reg_height = 0x04, reg_offset_x = 0x08, reg_offset_y = 0x0C,
+                               reg_pixel_format = 0x10, reg_largest_count = 0x14, reg_acquisition_mode = 0x18,
+                               reg_acquisition = 0x1C, reg_period_us = 0x20, reg_ir_format = 0x24, reg_nuc_mode = 0x28,
+                               reg_nuc = 0x2C, reg_scale = 0x40, reg_offset = 0x48, reg_payload_size = 0x50;
 
 // GenCP 1.1, section 4.2.
 inline constexpr std::uint32_t command_magic = 0x43563355, leader_magic = 0x4C563355, trailer_magic = 0x54563355;

@@ -56,7 +56,7 @@ struct EmulatedV4l2Camera::State {
   ~State();
 
   [[nodiscard]] std::uint32_t image_bytes() const {
-    return static_cast<std::uint32_t>(size.area() * format.bytes_per_pixel);
+    return static_cast<std::uint32_t>(size.area() * format.bytes_per_pixel());
   }
 
   void expose(const std::stop_token& stop);

@@ -41,12 +41,12 @@ int EmulatedV4l2Camera::State::query_capability(v4l2_capability& out) const {
 int EmulatedV4l2Camera::State::enumerate_format(v4l2_fmtdesc& out) const {
   if (out.index != 0 || out.type != V4L2_BUF_TYPE_VIDEO_CAPTURE) return EINVAL;
   out.flags = 0;
-  out.pixelformat = format.fourcc;
+  out.pixelformat = format.fourcc();
   return 0;
 }
 
 int EmulatedV4l2Camera::State::enumerate_size(v4l2_frmsizeenum& out) const {
-  if (out.pixel_format != format.fourcc || out.index >= format.sizes.size()) return EINVAL;
+  if (out.pixel_format != format.fourcc() || out.index >= format.sizes.size()) return EINVAL;
   out.type = V4L2_FRMSIZE_TYPE_DISCRETE;
   out.discrete = {.width = static_cast<__u32>(format.sizes[out.index].width),
                   .height = static_cast<__u32>(format.sizes[out.index].height)};
@@ -58,9 +58,9 @@ int EmulatedV4l2Camera::State::get_format(v4l2_format& out) const {
   out.fmt.pix = {};
   out.fmt.pix.width = static_cast<__u32>(size.width);
   out.fmt.pix.height = static_cast<__u32>(size.height);
-  out.fmt.pix.pixelformat = format.fourcc;
+  out.fmt.pix.pixelformat = format.fourcc();
   out.fmt.pix.field = V4L2_FIELD_NONE;
-  out.fmt.pix.bytesperline = static_cast<__u32>(size.width * format.bytes_per_pixel);
+  out.fmt.pix.bytesperline = static_cast<__u32>(size.width * format.bytes_per_pixel());
   out.fmt.pix.sizeimage = image_bytes();
   out.fmt.pix.colorspace = V4L2_COLORSPACE_SRGB;
   return 0;

@@ -8,25 +8,37 @@
 namespace todbench {
 namespace {
 
-constexpr std::uint32_t fourcc(const char (&text)[5]) {
-  std::uint32_t code = 0;
-  for (unsigned i = 0; i < 4; ++i) code |= static_cast<std::uint32_t>(text[i]) << (8 * i);
-  return code;
-}
-
 void put_word(std::vector<std::uint8_t>& bytes, unsigned value) {
   bytes.push_back(static_cast<std::uint8_t>(value & 0xFFU));
   bytes.push_back(static_cast<std::uint8_t>(value >> 8U & 0xFFU));
 }
 
-/// The upper half of a Tiny1 frame: the picture for people, stretched between its extremes, without colour.
-void put_picture_for_people(std::vector<std::uint8_t>& bytes, const cv::Mat1w& counts) {
+PixelFormat format_of_counts(VideoCameraKind kind) {
+  switch (kind) {
+    case VideoCameraKind::y14:
+      return PixelFormat::mono14;
+    case VideoCameraKind::grey:
+      return PixelFormat::mono8;
+    default:
+      return PixelFormat::mono16;
+  }
+}
+
+/// Counts that do not fit are cut off.
+void append(std::vector<std::uint8_t>& bytes, const cv::Mat1w& counts, PixelFormat format) {
+  const cv::Mat1w cut = cv::min(counts, (1 << significant_bits(format)) - 1);
+  const auto encoded = encode_pixels(cut, {.format = format, .width = counts.cols, .height = counts.rows});
+  CV_Assert(encoded.has_value());
+  bytes.insert(bytes.end(), encoded->begin(), encoded->end());
+}
+
+/// The upper half of a Tiny1 frame: the picture for people, stretched between its extremes.
+cv::Mat1w picture_for_people(const cv::Mat1w& counts) {
   const auto [low, high] = std::minmax_element(counts.begin(), counts.end());
   const unsigned span = std::max(1U, static_cast<unsigned>(*high) - *low);
-  for (const auto count : counts) {
-    bytes.push_back(static_cast<std::uint8_t>((count - *low) * 255U / span));
-    bytes.push_back(128);
-  }
+  cv::Mat1w picture = counts.clone();
+  for (auto& count : picture) count = static_cast<std::uint16_t>((count - *low) * 255U / span);
+  return picture;
 }
 
 LeptonTelemetry telemetry_of(const VideoCameraConfig& config, const VideoCameraState& state) {
@@ -89,14 +101,7 @@ double kelvin_per_count(VideoCameraKind kind) {
 }
 
 int significant_bits(VideoCameraKind kind) {
-  switch (kind) {
-    case VideoCameraKind::y14:
-      return 14;
-    case VideoCameraKind::grey:
-      return 8;
-    default:
-      return 16;
-  }
+  return significant_bits(format_of_counts(kind));
 }
 
 UsbIdentity usb_identity(VideoCameraKind kind) {
@@ -113,16 +118,12 @@ UsbIdentity usb_identity(VideoCameraKind kind) {
 VideoWireFormat wire_format(const VideoCameraConfig& config) {
   const cv::Size size(config.width, config.height);
   switch (config.kind) {
-    case VideoCameraKind::y14:
-      return {fourcc("Y14 "), 2, {size}};
-    case VideoCameraKind::grey:
-      return {fourcc("GREY"), 1, {size}};
     case VideoCameraKind::lepton:
-      return {fourcc("Y16 "), 2, {size, {config.width, config.height + lepton_telemetry_rows(config.width)}}};
+      return {PixelFormat::mono16, {size, {config.width, config.height + lepton_telemetry_rows(config.width)}}};
     case VideoCameraKind::temperature_rows:
-      return {fourcc("YUYV"), 2, {size, {config.width, 2 * config.height}}};
+      return {PixelFormat::yuyv, {size, {config.width, 2 * config.height}}};
     default:
-      return {fourcc("Y16 "), 2, {size}};
+      return {format_of_counts(config.kind), {size}};
   }
 }
 
@@ -131,16 +132,11 @@ std::vector<std::uint8_t> wire_frame(const VideoCameraConfig& config, const cv::
   CV_Assert(counts.cols == config.width && counts.rows == config.height);
   std::vector<std::uint8_t> bytes;
   bytes.reserve(2 * static_cast<std::size_t>(size.area()));
-  if (config.kind == VideoCameraKind::grey) {
-    for (const auto count : counts) bytes.push_back(static_cast<std::uint8_t>(std::min<unsigned>(count, 255)));
-    return bytes;
+  if (config.kind == VideoCameraKind::temperature_rows) {
+    append(bytes, picture_for_people(counts), PixelFormat::yuyv);
+    if (size.height == config.height) return bytes;  // the picture alone
   }
-  if (config.kind == VideoCameraKind::temperature_rows) put_picture_for_people(bytes, counts);
-  const bool picture_alone = config.kind == VideoCameraKind::temperature_rows && size.height == config.height;
-  if (!picture_alone) {
-    const unsigned largest = (1U << significant_bits(config.kind)) - 1;
-    for (const auto count : counts) put_word(bytes, std::min<unsigned>(count, largest));
-  }
+  append(bytes, counts, format_of_counts(config.kind));
   if (config.kind == VideoCameraKind::lepton && size.height > config.height) {
     for (const auto word : encode_lepton_telemetry(telemetry_of(config, state))) put_word(bytes, word);
     bytes.resize(2 * static_cast<std::size_t>(size.area()), 0);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "acquisition/core/result.h"
+#include "acquisition/pixel_formats/pixel_formats.h"
 
 namespace todbench {
 
@@ -47,11 +48,12 @@ struct UsbIdentity {
 };
 [[nodiscard]] UsbIdentity usb_identity(VideoCameraKind kind);
 
-/// A format on the wire: four-character code, and the sizes that it is offered in, the one to measure last.
+/// A format on the wire, and the sizes that it is offered in, the one to measure last.
 struct VideoWireFormat {
-  std::uint32_t fourcc = 0;
-  int bytes_per_pixel = 2;
+  PixelFormat pixels = PixelFormat::mono16;
   std::vector<cv::Size> sizes;
+  [[nodiscard]] std::uint32_t fourcc() const { return fourcc_code(pixels); }
+  [[nodiscard]] int bytes_per_pixel() const { return facts_of(pixels).bytes_per_pixel; }
 };
 [[nodiscard]] VideoWireFormat wire_format(const VideoCameraConfig& config);
 

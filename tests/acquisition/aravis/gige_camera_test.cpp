@@ -4,7 +4,7 @@
 #include <chrono>
 #include <future>
 
-#include "tests/acquisition/aravis/gige_test_support.h"
+#include "tests/support/gige_test_support.h"
 
 namespace todbench {
 namespace {
@@ -21,15 +21,13 @@ TEST(GigeDiscovery, FindsTheCameraByVendorAndSerial) {
   const auto camera = start_camera(config);
   const auto backend = aravis_backend();
 
-  const auto cameras = backend->list();
+  const auto found = only_camera(*backend);
 
-  ASSERT_TRUE(cameras) << cameras.error().message;
-  ASSERT_EQ(cameras->size(), 1U);
-  EXPECT_EQ(cameras->front().id, "gige:Acme_Infrared_AB-48_0123");
-  EXPECT_EQ(cameras->front().vendor, "Acme Infrared AB");
-  EXPECT_EQ(cameras->front().model, "T-1");
-  EXPECT_EQ(cameras->front().serial, "48/0123");
-  EXPECT_EQ(cameras->front().address, "127.0.0.1");
+  EXPECT_EQ(found.id, "gige:Acme_Infrared_AB-48_0123");
+  EXPECT_EQ(found.vendor, "Acme Infrared AB");
+  EXPECT_EQ(found.model, "T-1");
+  EXPECT_EQ(found.serial, "48/0123");
+  EXPECT_EQ(found.address, "127.0.0.1");
 }
 
 TEST(GigeDiscovery, OpensByIdentityAndTellsTheSameIdentityWhenOpenedByAddress) {
@@ -55,16 +53,11 @@ TEST(GigeDiscovery, SaysWhichCamerasItSeesWhenTheIdentityIsAbsent) {
 
   const auto source = aravis_backend()->open("gige:todbench-OTHER");
 
-  ASSERT_FALSE(source);
-  EXPECT_EQ(source.error().code, ErrorCode::not_found);
-  EXPECT_THAT(source.error().message, HasSubstr("gige:todbench-TB0001"));
+  expect_not_found(source, "gige:todbench-TB0001");
 }
 
 TEST(GigeDiscovery, SaysNotFoundWhenNobodyAnswersAtTheAddress) {
-  const auto source = aravis_backend()->open("gige:127.0.0.1");
-
-  ASSERT_FALSE(source);
-  EXPECT_EQ(source.error().code, ErrorCode::not_found);
+  expect_not_found(aravis_backend()->open("gige:127.0.0.1"));
 }
 
 TEST(GigeDiscovery, RefusesAnIdOfAnotherScheme) {
@@ -81,9 +74,7 @@ TEST(GigeDiscovery, TellsASecondClientThatTheCameraIsBusy) {
 
   const auto second = aravis_backend()->open("gige:127.0.0.1");
 
-  ASSERT_FALSE(second);
-  EXPECT_EQ(second.error().code, ErrorCode::not_found);
-  EXPECT_THAT(second.error().message, HasSubstr("busy"));
+  expect_not_found(second, "busy");
 }
 
 TEST(UsbDiscovery, ListsWithoutAnyCameraAndSaysNotFoundForOne) {

@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-#include "tests/acquisition/aravis/gige_test_support.h"
+#include "tests/support/gige_test_support.h"
 
 namespace todbench {
 namespace {

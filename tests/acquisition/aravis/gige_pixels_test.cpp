@@ -7,7 +7,7 @@
 #include "acquisition/recording/flir_seq.h"
 #include "acquisition/recording/raw_recording.h"
 #include "sim_devices/sensor/sensor_model.h"
-#include "tests/acquisition/aravis/gige_test_support.h"
+#include "tests/support/gige_test_support.h"
 #include "tests/support/source_file.h"
 
 namespace todbench {

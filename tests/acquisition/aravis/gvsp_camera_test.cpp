@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "acquisition/aravis/glib_ptr.h"
-#include "tests/acquisition/aravis/gvsp_test_support.h"
+#include "tests/support/gvsp_test_support.h"
 
 namespace todbench {
 namespace {
@@ -42,8 +42,14 @@ Received receive(FrameSource& source, const GvspCameraConfig& config, int frames
   return out;
 }
 
-GvspCameraConfig quick() {
+/// With the counts of the model: the A series sends hundredths of a kelvin in 16 bits.
+GvspCameraConfig quick(CameraModel model = CameraModel::ax5) {
   GvspCameraConfig config;
+  config.model = model;
+  if (model == CameraModel::a_series || model == CameraModel::legacy_science) {
+    config.significant_bits = 16;
+    config.kelvin_per_count = 0.01;
+  }
   config.width = 160;
   config.height = 128;
   config.frame_rate_hz = 100;
@@ -171,10 +177,7 @@ TEST(Ax5, TakesItsRateFromTheVideoStandard) {
 }
 
 TEST(Families, ALegacyScienceCameraSendsTheHighByteFirstAndIsReadRight) {
-  auto config = quick();
-  config.model = CameraModel::legacy_science;
-  config.significant_bits = 16;
-  config.kelvin_per_count = 0.01;
+  const auto config = quick(CameraModel::legacy_science);
   const auto camera = start_gvsp_camera(config);
   const auto source = open_started();
   ASSERT_TRUE(source);
@@ -186,10 +189,7 @@ TEST(Families, ALegacyScienceCameraSendsTheHighByteFirstAndIsReadRight) {
 }
 
 TEST(Families, AnASeriesCameraDeliversHundredthsOfAKelvinWithoutNoiseReduction) {
-  auto config = quick();
-  config.model = CameraModel::a_series;
-  config.significant_bits = 16;
-  config.kelvin_per_count = 0.01;
+  const auto config = quick(CameraModel::a_series);
   const auto camera = start_gvsp_camera(config);
   const auto source = open_started();
   ASSERT_TRUE(source);
@@ -204,8 +204,7 @@ TEST(Families, AnASeriesCameraDeliversHundredthsOfAKelvinWithoutNoiseReduction) 
 }
 
 TEST(Families, ACameraNobodyKnowsWorksInCountsAndItsShutterIsFoundByName) {
-  auto config = quick();
-  config.model = CameraModel::unlisted;
+  const auto config = quick(CameraModel::unlisted);
   const auto camera = start_gvsp_camera(config);
   const auto source = open_started();
   ASSERT_TRUE(source);
@@ -221,8 +220,7 @@ TEST(Families, ACameraNobodyKnowsWorksInCountsAndItsShutterIsFoundByName) {
 }
 
 TEST(Families, ACameraNobodyKnowsTakesAScaleThatWasMeasuredOnTheBench) {
-  auto config = quick();
-  config.model = CameraModel::unlisted;
+  const auto config = quick(CameraModel::unlisted);
   const auto camera = start_gvsp_camera(config);
   const auto source = open_started();
   ASSERT_TRUE(source);

@@ -1,23 +1,15 @@
 // The USB3 Vision back end against an emulated camera: real Aravis on real libusb, on an emulated bus.
 #include <gmock/gmock.h>
 
-#include <cstring>
-
 #include "acquisition/aravis/aravis_backend.h"
+#include "acquisition/core/camera_id.h"
 #include "sim_devices/lab/usb/u3v_camera.h"
-#include "tests/acquisition/usb/usb_test_support.h"
-#include "tests/acquisition/v4l2/video_test_support.h"
+#include "tests/support/usb_test_support.h"
 
 namespace todbench {
 namespace {
 
-using namespace std::chrono_literals;
-using testing::HasSubstr;
-using testing_support::shared_system;
-using testing_support::video_picture;
-
-/// Far longer than any frame takes on a loaded machine; a test that waits this long has failed.
-constexpr auto patience = 20s;
+using namespace testing_support;
 
 U3vCameraConfig small() {
   U3vCameraConfig config;
@@ -27,28 +19,10 @@ U3vCameraConfig small() {
   return config;
 }
 
-struct U3vBench {
-  std::shared_ptr<U3vCamera> camera;
-  std::unique_ptr<PluggedUsbDevice> port;
-};
-
-U3vBench plug_u3v(const U3vCameraConfig& config) {
-  U3vBench bench;
-  auto camera = U3vCamera::create(config, [config](std::uint64_t index) {
-    return video_picture(index, config.width, config.height, config.significant_bits);
-  });
-  if (!camera) {
-    ADD_FAILURE() << camera.error().message;
-    return bench;
-  }
-  bench.camera = *camera;
-  auto port = PluggedUsbDevice::plug(shared_system(), bench.camera);
-  if (!port) {
-    ADD_FAILURE() << port.error().message;
-    return bench;
-  }
-  bench.port = std::move(*port);
-  return bench;
+UsbBench<U3vCamera> plug_u3v(const U3vCameraConfig& config) {
+  return plug(U3vCamera::create(config, [config](std::uint64_t index) {
+    return test_picture(index, config.width, config.height, config.significant_bits);
+  }));
 }
 
 std::unique_ptr<CameraBackend> backend() {
@@ -56,21 +30,7 @@ std::unique_ptr<CameraBackend> backend() {
 }
 
 std::unique_ptr<FrameSource> open_u3v(const U3vCameraConfig& config) {
-  auto source = backend()->open("u3v:" + config.vendor + "-" + config.serial);
-  if (!source) {
-    ADD_FAILURE() << source.error().message;
-    return nullptr;
-  }
-  return std::move(*source);
-}
-
-bool same_pixels(const cv::Mat1w& a, const cv::Mat1w& b) {
-  return a.size() == b.size() && cv::countNonZero(a != b) == 0;
-}
-
-/// Exposure since power-up of a frame, from the camera's clock.
-std::uint64_t exposure_of(const Frame& frame, double frame_rate_hz) {
-  return static_cast<std::uint64_t>(std::llround(static_cast<double>(frame.device_time_ns) * 1e-9 * frame_rate_hz)) - 1;
+  return opened(backend()->open(camera_id(camera_scheme::u3v, {config.vendor, config.serial})));
 }
 
 class U3vPixels : public testing::TestWithParam<int> {};
@@ -89,7 +49,7 @@ TEST_P(U3vPixels, AHundredFramesEqualTheirExposures) {
     ASSERT_EQ(frame->status, FrameStatus::complete);
     ASSERT_EQ(frame->sequence, k);
     ASSERT_EQ(frame->significant_bits, GetParam());
-    ASSERT_TRUE(same_pixels(frame->counts, video_picture(exposure_of(*frame, 200), 160, 120, GetParam())));
+    ASSERT_TRUE(same_pixels(frame->counts, test_picture(exposure_of(*frame, 200), 160, 120, GetParam())));
   }
 }
 
@@ -98,12 +58,10 @@ INSTANTIATE_TEST_SUITE_P(Bits, U3vPixels, testing::Values(14, 16), testing::Prin
 TEST(U3vCameras, AreListedByVendorAndSerial) {
   const auto bench = plug_u3v(small());
 
-  const auto cameras = backend()->list();
+  const auto camera = only_camera(*backend());
 
-  ASSERT_TRUE(cameras) << cameras.error().message;
-  ASSERT_EQ(cameras->size(), 1U);
-  EXPECT_EQ(cameras->front().id, "u3v:todbench-TB0001");
-  EXPECT_EQ(cameras->front().transport, "USB3 Vision");
+  EXPECT_EQ(camera.id, "u3v:todbench-TB0001");
+  EXPECT_EQ(camera.transport, "USB3 Vision");
 }
 
 TEST(U3vCameras, WithAZippedDescriptionAreReadToo) {
@@ -121,8 +79,7 @@ TEST(U3vCameras, WithAZippedDescriptionAreReadToo) {
 TEST(U3vCameras, ThatAreAbsentAreNotFound) {
   const auto source = backend()->open("u3v:Nobody-7");
 
-  ASSERT_FALSE(source);
-  EXPECT_EQ(source.error().code, ErrorCode::not_found);
+  expect_not_found(source);
 }
 
 TEST(U3vCameras, ASecondProgramCannotOpenABusyOne) {
@@ -132,8 +89,7 @@ TEST(U3vCameras, ASecondProgramCannotOpenABusyOne) {
 
   const auto second = backend()->open("u3v:todbench-TB0001");
 
-  ASSERT_FALSE(second);
-  EXPECT_EQ(second.error().code, ErrorCode::not_found);
+  expect_not_found(second);
 }
 
 TEST(U3vScale, IsLinearAsTheCameraSays) {
@@ -175,19 +131,8 @@ TEST(U3vStream, LostExposuresAreAGapOfTheirNumber) {
   const auto bench = plug_u3v(small());
   const auto source = open_u3v(small());
   ASSERT_TRUE(source && source->start());
-  auto last = source->next(patience);
-  ASSERT_TRUE(last);
 
-  bench.camera->lose_exposures(3);
-
-  std::uint64_t gap = 0;
-  for (int k = 0; k < 100 && gap == 0; ++k) {
-    const auto frame = source->next(patience);
-    ASSERT_TRUE(frame);
-    gap = frame->sequence - last->sequence - 1;
-    last = frame;
-  }
-  EXPECT_EQ(gap, 3U);
+  expect_gap_of_lost_exposures(*source, [&](unsigned count) { bench.camera->lose_exposures(count); });
 }
 
 TEST(U3vStream, AFrameWithMissingBytesIsNotComplete) {
@@ -198,13 +143,9 @@ TEST(U3vStream, AFrameWithMissingBytesIsNotComplete) {
 
   bench.camera->truncate_next_frame(1000);
 
-  FrameStatus status = FrameStatus::complete;
-  for (int k = 0; k < 100 && status == FrameStatus::complete; ++k) {
-    const auto frame = source->next(patience);
-    ASSERT_TRUE(frame) << frame.error().message;
-    status = frame->status;
-  }
-  EXPECT_NE(status, FrameStatus::complete);
+  const auto frame = next_damaged(*source);
+  ASSERT_TRUE(frame) << frame.error().message;
+  EXPECT_NE(frame->status, FrameStatus::complete);
 }
 
 TEST(U3vHotPlug, APulledCableIsDisconnected) {
@@ -215,8 +156,7 @@ TEST(U3vHotPlug, APulledCableIsDisconnected) {
 
   bench.port->unplug();
 
-  auto next = source->next(patience);
-  for (int k = 0; k < 1000 && next; ++k) next = source->next(patience);
+  const auto next = end_of(*source);
   ASSERT_FALSE(next);
   EXPECT_EQ(next.error().code, ErrorCode::disconnected);
 }

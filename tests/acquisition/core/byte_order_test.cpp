@@ -12,6 +12,7 @@
 #include "acquisition/recording/flir_seq.h"
 #include "acquisition/recording/raw_recording.h"
 #include "tests/support/source_file.h"
+#include "tests/support/swapped_bytes.h"
 
 namespace todbench {
 namespace {

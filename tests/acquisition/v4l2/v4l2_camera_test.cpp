@@ -1,25 +1,17 @@
 // The V4L2 back end against an emulated camera: real open, ioctl, mmap and udev calls of this process.
 #include <gmock/gmock.h>
 
-#include <future>
 #include <thread>
 
 #include "acquisition/core/host_clock.h"
-#include "tests/acquisition/v4l2/video_test_support.h"
 #include "tests/support/parameter_names.h"
+#include "tests/support/video_test_support.h"
 
 namespace todbench {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::HasSubstr;
-using testing_support::open_video;
-using testing_support::start_video;
-using testing_support::video_camera_id;
-using testing_support::video_picture;
-
-/// Far longer than any frame takes on a loaded machine; a test that waits this long has failed.
-constexpr auto patience = 20s;
+using namespace testing_support;
 
 VideoCameraConfig small(VideoCameraKind kind) {
   VideoCameraConfig config;
@@ -28,15 +20,6 @@ VideoCameraConfig small(VideoCameraKind kind) {
   config.height = 120;
   config.frame_rate_hz = 200;
   return config;
-}
-
-/// Exposure since power-up of a frame, from the camera's clock.
-std::uint64_t exposure_of(const Frame& frame, double frame_rate_hz) {
-  return static_cast<std::uint64_t>(std::llround(static_cast<double>(frame.device_time_ns) * 1e-9 * frame_rate_hz)) - 1;
-}
-
-bool same_pixels(const cv::Mat1w& a, const cv::Mat1w& b) {
-  return a.size() == b.size() && cv::countNonZero(a != b) == 0;
 }
 
 class V4l2Pixels : public testing::TestWithParam<VideoCameraKind> {};
@@ -53,7 +36,7 @@ TEST_P(V4l2Pixels, AHundredFramesEqualTheirExposures) {
     ASSERT_TRUE(frame) << frame.error().message;
     ASSERT_EQ(frame->status, FrameStatus::complete);
     ASSERT_TRUE(
-        same_pixels(frame->counts, video_picture(exposure_of(*frame, 200), 160, 120, significant_bits(config.kind))));
+        same_pixels(frame->counts, test_picture(exposure_of(*frame, 200), 160, 120, significant_bits(config.kind))));
   }
 }
 
@@ -73,13 +56,11 @@ TEST(V4l2Cameras, AreListedByVendorModelAndSerial) {
   config.serial = "8008001c";
   const auto bench = start_video(config);
 
-  const auto cameras = v4l2_backend()->list();
+  const auto camera = only_camera(*v4l2_backend());
 
-  ASSERT_TRUE(cameras) << cameras.error().message;
-  ASSERT_EQ(cameras->size(), 1U);
-  EXPECT_EQ(cameras->front().id, "v4l2:GroupGets-PureThermal__fw_v1.3.0_-8008001c");
-  EXPECT_EQ(cameras->front().serial, "8008001c");
-  EXPECT_EQ(cameras->front().address, bench.camera->node());
+  EXPECT_EQ(camera.id, "v4l2:GroupGets-PureThermal__fw_v1.3.0_-8008001c");
+  EXPECT_EQ(camera.serial, "8008001c");
+  EXPECT_EQ(camera.address, bench.camera->node());
 }
 
 TEST(V4l2Cameras, TwoOfAKindAreToldApartByTheirSerials) {
@@ -106,9 +87,7 @@ TEST(V4l2Cameras, AnAbsentCameraIsNotFoundAndThoseSeenAreNamed) {
 
   const auto source = v4l2_backend()->open("v4l2:Nobody-Nothing-7");
 
-  ASSERT_FALSE(source);
-  EXPECT_EQ(source.error().code, ErrorCode::not_found);
-  EXPECT_THAT(source.error().message, HasSubstr(video_camera_id(config)));
+  expect_not_found(source, video_camera_id(config));
 }
 
 TEST(V4l2Cameras, AFormatThatTheCameraDoesNotHaveIsRefusedWithThoseItHas) {
@@ -117,9 +96,7 @@ TEST(V4l2Cameras, AFormatThatTheCameraDoesNotHaveIsRefusedWithThoseItHas) {
 
   const auto source = v4l2_backend({.pixel_format = "Mono14"})->open(video_camera_id(config));
 
-  ASSERT_FALSE(source);
-  EXPECT_EQ(source.error().code, ErrorCode::not_found);
-  EXPECT_THAT(source.error().message, HasSubstr("Y16  160x120"));
+  expect_not_found(source, "Y16  160x120");
 }
 
 TEST(V4l2Cameras, ASecondProgramIsToldThatTheCameraIsBusy) {
@@ -130,9 +107,7 @@ TEST(V4l2Cameras, ASecondProgramIsToldThatTheCameraIsBusy) {
 
   const auto second = v4l2_backend()->open(video_camera_id(config));
 
-  ASSERT_FALSE(second);
-  EXPECT_EQ(second.error().code, ErrorCode::not_found);
-  EXPECT_THAT(second.error().message, HasSubstr("busy"));
+  expect_not_found(second, "busy");
 }
 
 TEST(V4l2Scale, OfALeptonIsWhatItsTelemetrySays) {
@@ -162,18 +137,8 @@ TEST(V4l2Scale, OfAPlainCameraIsWhatTheUserStates) {
   const auto bench = start_video(config);
   const auto source = open_video(config);
   ASSERT_TRUE(source);
-  EXPECT_FALSE(source->info().scale.calibrated());
 
-  ASSERT_TRUE(source->set("TemperatureLinearScale", "0.04"));
-  ASSERT_TRUE(source->set("TemperatureLinearOffset", "-10"));
-
-  ASSERT_TRUE(source->start());
-  const auto frame = source->next(patience);
-  ASSERT_TRUE(frame);
-  EXPECT_EQ(*frame->scale, RadiometricScale::linear({.kelvin_per_count = 0.04, .offset_k = -10}).value());
-  EXPECT_EQ(source->get("TemperatureLinearScale").value(), "0.04");
-  EXPECT_EQ(source->set("TemperatureLinearScale", "0").error().code, ErrorCode::invalid_input);
-  EXPECT_EQ(source->set("TemperatureLinearScale", "warm").error().code, ErrorCode::invalid_input);
+  expect_to_take_a_stated_scale(*source);
 }
 
 TEST(V4l2Stream, AFrameRateThatIsSetIsReadBack) {
@@ -192,19 +157,8 @@ TEST(V4l2Stream, LostExposuresAreAGapOfTheirNumber) {
   const auto bench = start_video(config);
   const auto source = open_video(config);
   ASSERT_TRUE(source && source->start());
-  auto last = source->next(patience);
-  ASSERT_TRUE(last);
 
-  bench.camera->lose_exposures(3);
-
-  std::uint64_t gap = 0;
-  for (int k = 0; k < 100 && gap == 0; ++k) {
-    const auto frame = source->next(patience);
-    ASSERT_TRUE(frame);
-    gap = frame->sequence - last->sequence - 1;
-    last = frame;
-  }
-  EXPECT_EQ(gap, 3U);
+  expect_gap_of_lost_exposures(*source, [&](unsigned count) { bench.camera->lose_exposures(count); });
 }
 
 TEST(V4l2Stream, AFrameWithMissingBytesIsIncompleteAndTheNextIsGood) {
@@ -216,9 +170,7 @@ TEST(V4l2Stream, AFrameWithMissingBytesIsIncompleteAndTheNextIsGood) {
 
   bench.camera->truncate_next_frame(100);
 
-  FrameStatus status = FrameStatus::complete;
-  for (int k = 0; k < 100 && status == FrameStatus::complete; ++k) status = source->next(patience).value().status;
-  EXPECT_EQ(status, FrameStatus::incomplete);
+  EXPECT_EQ(next_damaged(*source).value().status, FrameStatus::incomplete);
   EXPECT_EQ(source->next(patience).value().status, FrameStatus::complete);
 }
 
@@ -231,8 +183,8 @@ TEST(V4l2Stream, ACameraThatIsUnpluggedIsDisconnectedAndStaysDead) {
 
   bench.camera->unplug();
 
-  auto next = source->next(patience);
-  while (next) next = source->next(patience);
+  const auto next = end_of(*source);
+  ASSERT_FALSE(next);
   EXPECT_EQ(next.error().code, ErrorCode::disconnected);
   EXPECT_EQ(source->next(0ms).error().code, ErrorCode::disconnected);
   EXPECT_EQ(source->start().error().code, ErrorCode::disconnected);
@@ -246,7 +198,7 @@ TEST(V4l2Stream, ACameraThatIsPluggedInAgainIsFoundBySerialAtAnotherNode) {
   bench.camera.reset();
 
   auto camera =
-      EmulatedV4l2Camera::start(bench.system, config, [](std::uint64_t k) { return video_picture(k, 160, 120, 16); });
+      EmulatedV4l2Camera::start(bench.system, config, [](std::uint64_t k) { return test_picture(k, 160, 120, 16); });
 
   ASSERT_TRUE(camera) << camera.error().message;
   EXPECT_NE((*camera)->node(), first_node);
@@ -262,14 +214,8 @@ TEST(V4l2Stream, StopWakesAReaderThatWaitsForASlowCamera) {
   const auto source = open_video(config);
   ASSERT_TRUE(source && source->start());
   const auto nothing = source->next(1ms);
-  auto reader = std::async(std::launch::async, [&] {
-    auto next = source->next(10min);
-    while (next) next = source->next(10min);
-    return next;
-  });
 
-  source->stop();
-  const auto woken = reader.get();
+  const auto woken = woken_by_stop(*source);
 
   ASSERT_FALSE(nothing);
   EXPECT_EQ(nothing.error().code, ErrorCode::timeout);

@@ -2,15 +2,16 @@
 #pragma once
 
 #include "acquisition/aravis/aravis_backend.h"
+#include "acquisition/core/camera_id.h"
 #include "acquisition/core/control_text.h"
 #include "acquisition/usb/usb_backend.h"
 #include "acquisition/v4l2/v4l2_backend.h"
 #include "sim_devices/lab/usb/u3v_camera.h"
 #include "sim_devices/lab/v4l2_laboratory.h"
-#include "tests/acquisition/usb/usb_test_support.h"
-#include "tests/acquisition/v4l2/video_test_support.h"
 #include "tests/sim_devices/lab/driver_fault_matrix.h"
 #include "tests/support/parameter_names.h"
+#include "tests/support/usb_test_support.h"
+#include "tests/support/video_test_support.h"
 
 namespace todbench::test {
 
@@ -81,7 +82,7 @@ inline DriverCase u3v_case() {
     const auto camera = *U3vCamera::create(config, std::move(exposure));
     commands.lose = [raw = camera.get()] { raw->lose_exposures(1); };
     commands.truncate = [raw = camera.get()] { raw->truncate_next_frame(1000); };
-    return PluggedCamera{.id = camera_id("u3v", config.vendor, config.serial),
+    return PluggedCamera{.id = camera_id("u3v", {config.vendor, config.serial}),
                          .device = in_a_port(camera),
                          .settings = {},
                          .backend = aravis_backend({.transport = AravisTransport::usb3_vision}),

@@ -15,6 +15,7 @@
 
 #include "acquisition/core/byte_order.h"
 #include "acquisition/core/rng.h"
+#include "tests/support/swapped_bytes.h"
 #include "tests/tod/measurement/free_running_camera.h"
 #include "tests/tod/measurement/measurement_bench.h"
 

@@ -5,11 +5,15 @@
 #include <cmath>
 #include <random>
 
+#include "tests/tod/comparison/planning_reference.h"
 #include "tod/comparison/comparison.h"
 #include "tod/psychometric/psychometric_model.h"
 
 namespace todbench {
 namespace {
+
+using test::least_se_ln_threshold;
+using test::se_for_equivalence;
 
 std::vector<Level> ten_sizes(double trials_each, double first, double span) {
   std::vector<Level> out;

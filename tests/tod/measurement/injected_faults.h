@@ -11,6 +11,7 @@
 #include "acquisition/core/frame_source.h"
 #include "acquisition/core/integrity_gate.h"
 #include "acquisition/core/rng.h"
+#include "tests/support/swapped_bytes.h"
 
 namespace todbench::test {
 

@@ -6,6 +6,7 @@
 namespace todbench {
 namespace {
 
+using test::least_se_ln_threshold;
 using testing::psi_study;
 
 TEST(PsiPlacementStudy, ReachesEfficiencyAndCoverage) {

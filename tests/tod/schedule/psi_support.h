@@ -6,11 +6,13 @@
 #include <cmath>
 #include <vector>
 
-#include "tod/comparison/planning.h"
+#include "tests/tod/comparison/planning_reference.h"
 #include "tod/psychometric/psychometric_fit.h"
 #include "tod/schedule/psi_placement.h"
 
 namespace todbench::testing {
+
+using test::least_se_ln_threshold;
 
 struct PsiRunSettings {
   int trials = 160;

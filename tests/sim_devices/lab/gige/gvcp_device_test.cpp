@@ -1,12 +1,12 @@
 // The emulated GigE Vision camera without its sockets: control messages, packets, faults, pictures.
 #include <gmock/gmock.h>
 
+#include "acquisition/aravis/gev_registers.h"
+#include "sim_devices/lab/genicam/picture_encoder.h"
 #include "sim_devices/lab/gige/camera_models.h"
-#include "sim_devices/lab/gige/gev_registers.h"
 #include "sim_devices/lab/gige/gvcp_device.h"
 #include "sim_devices/lab/gige/gvsp_faults.h"
 #include "sim_devices/lab/gige/gvsp_packets.h"
-#include "sim_devices/lab/gige/picture_encoder.h"
 
 namespace todbench {
 namespace {
@@ -147,7 +147,7 @@ TEST(GvspPackets, OfAFrameCarryItsDataInOrderBetweenLeaderAndTrailer) {
   GvspFrame frame;
   frame.block_id = 0x1234;
   frame.timestamp_ns = 0x0102030405060708;
-  frame.pixel_format = pfnc_mono14;
+  frame.pixel_format = pfnc_code(PixelFormat::mono14);
   frame.width = 5;
   frame.height = 2;
   frame.bytes_per_packet = 8;
@@ -224,7 +224,8 @@ TEST(PictureEncoder, SendsARampInsteadOfThePictureAndTheHighestEightBits) {
   PictureEncoder encoder(0.01, 0, {366545, 1428, 1, 342});
 
   const Bytes ramp = encoder.encode(cv::Mat1w::zeros(1, 4), {.test_ramp = true});
-  const Bytes eight = encoder.encode(cv::Mat1w(1, 1, ushort{0x3F12}), {.significant_bits = 14, .bits_per_pixel = 8});
+  const Bytes eight =
+      encoder.encode(cv::Mat1w(1, 1, ushort{0x3F12}), {.significant_bits = 14, .format = PixelFormat::mono8});
 
   EXPECT_THAT(ramp, ElementsAre(0, 0, 1, 0, 2, 0, 3, 0));
   EXPECT_THAT(eight, ElementsAre(0xFC));

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "sim_devices/lab/gige/gvsp_camera.h"
-#include "tests/acquisition/aravis/gige_test_support.h"
+#include "tests/support/gige_test_support.h"
 #include "tests/tod/measurement/measurement_bench.h"
 
 namespace todbench::test {

@@ -1,5 +1,5 @@
 // The device's side of USB/IP, driven by the commands that the kernel's vhci-hcd sends.
-#include "sim_devices/lab/usb/usbip_server.h"
+#include "tests/support/usbip_server.h"
 
 #include <gmock/gmock.h>
 #include <poll.h>
@@ -9,7 +9,7 @@
 #include <array>
 #include <cerrno>
 
-#include "sim_devices/lab/usb/uvc_camera.h"
+#include "tests/support/uvc_camera.h"
 
 namespace todbench {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "acquisition/core/radiometric_scale.h"
-#include "sim_devices/lab/gige/big_endian.h"
+#include "acquisition/pixel_formats/pixel_formats.h"
 
 namespace todbench {
 
@@ -15,15 +15,16 @@ enum class SignalKind {
   linear,       ///< kelvin / `kelvin_per_signal`
   radiometric,  ///< by the Planck-like formula
   as_exposed,   ///< the exposure's own counts
+  tenths,       ///< a tenth of them
 };
 
 struct EncoderSettings {
   SignalKind signal = SignalKind::as_exposed;
   double kelvin_per_signal = 0.04;
-  unsigned significant_bits = 14;  ///< larger values are cut off
-  unsigned bits_per_pixel = 16;    ///< 16, or 8: the highest eight of the significant bits
-  bool test_ramp = false;          ///< pixel x of a row has the count x, modulo the full scale, instead of the picture
-  bool averages = false;           ///< with the picture before, as noise reduction does
+  unsigned significant_bits = 14;            ///< larger values are cut off, as those that the format does not hold
+  PixelFormat format = PixelFormat::mono16;  ///< of mono8 the highest eight of the significant bits
+  bool test_ramp = false;  ///< pixel x of a row has the count x, modulo the full scale, instead of the picture
+  bool averages = false;   ///< with the picture before, as noise reduction does
   bool big_endian = false;
   bool operator==(const EncoderSettings&) const = default;
 };
@@ -35,7 +36,7 @@ class PictureEncoder {
   PictureEncoder(double kelvin_per_count, double offset_k, PlanckScale radiometric)
       : kelvin_per_count_(kelvin_per_count), offset_k_(offset_k), radiometric_(radiometric) {}
 
-  [[nodiscard]] Bytes encode(const cv::Mat1w& counts, const EncoderSettings& settings);
+  [[nodiscard]] std::vector<std::uint8_t> encode(const cv::Mat1w& counts, const EncoderSettings& settings);
 
  private:
   void update_table(const EncoderSettings& settings);
@@ -48,6 +49,6 @@ class PictureEncoder {
 };
 
 /// Exchanges the bytes of every pair.
-void swap_bytes(Bytes& data);
+void swap_bytes(std::vector<std::uint8_t>& data);
 
 }  // namespace todbench

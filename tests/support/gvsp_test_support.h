@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "sim_devices/lab/gige/gvsp_camera.h"
-#include "tests/acquisition/aravis/gige_test_support.h"
+#include "tests/support/gige_test_support.h"
 
 namespace todbench::testing_support {
 

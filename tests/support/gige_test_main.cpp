@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "tests/acquisition/aravis/gige_test_support.h"
+#include "tests/support/gige_test_support.h"
 #include "tests/support/private_network.h"
 
 namespace {

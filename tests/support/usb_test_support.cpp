@@ -1,6 +1,4 @@
-#include "tests/acquisition/usb/usb_test_support.h"
-
-#include <gtest/gtest.h>
+#include "tests/support/usb_test_support.h"
 
 #include "acquisition/usb/usb_backend.h"
 
@@ -24,35 +22,17 @@ cv::Mat1w seek_picture(SeekModel model, std::uint64_t index) {
   return picture;
 }
 
-SeekBench plug_seek(const SeekCameraConfig& config, SeekCamera::Exposure exposure) {
-  SeekBench bench{.system = shared_system(), .camera = nullptr, .port = nullptr};
+UsbBench<SeekCamera> plug_seek(const SeekCameraConfig& config, SeekCamera::Exposure exposure) {
   if (!exposure) exposure = [model = config.model](std::uint64_t index) { return seek_picture(model, index); };
-  auto camera = SeekCamera::create(config, std::move(exposure));
-  if (!camera) {
-    ADD_FAILURE() << camera.error().message;
-    return bench;
-  }
-  bench.camera = *camera;
-  auto port = PluggedUsbDevice::plug(bench.system, bench.camera);
-  if (!port) {
-    ADD_FAILURE() << port.error().message;
-    return bench;
-  }
-  bench.port = std::move(*port);
-  return bench;
+  return plug(SeekCamera::create(config, std::move(exposure)));
 }
 
 std::string seek_id(const SeekCameraConfig& config) {
-  return "usb:SEEK-" + std::string(to_string(config.model)) + "-" + config.serial;
+  return seek_camera_id(config.model, config.serial);
 }
 
 std::unique_ptr<FrameSource> open_seek(const SeekCameraConfig& config) {
-  auto source = usb_backend()->open(seek_id(config));
-  if (!source) {
-    ADD_FAILURE() << source.error().message;
-    return nullptr;
-  }
-  return std::move(*source);
+  return opened(usb_backend()->open(seek_id(config)));
 }
 
 }  // namespace todbench::testing_support

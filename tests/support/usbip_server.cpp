@@ -1,4 +1,4 @@
-#include "sim_devices/lab/usb/usbip_server.h"
+#include "tests/support/usbip_server.h"
 
 #include <sys/socket.h>
 #include <unistd.h>

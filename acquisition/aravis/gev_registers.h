@@ -19,12 +19,11 @@ inline constexpr std::uint32_t device_version = 0x0088;     ///< 32 bytes
 inline constexpr std::uint32_t manufacturer_info = 0x00A8;  ///< 48 bytes
 inline constexpr std::uint32_t serial_number = 0x00D8;      ///< 16 bytes
 inline constexpr std::uint32_t first_url = 0x0200;          ///< 512 bytes
+inline constexpr std::uint32_t second_url = 0x0400;         ///< 512 bytes
 inline constexpr std::uint32_t network_interfaces = 0x0600;
-inline constexpr std::uint32_t message_channels = 0x0900;
 inline constexpr std::uint32_t stream_channels = 0x0904;
 inline constexpr std::uint32_t gvcp_capability = 0x0934;
 inline constexpr std::uint32_t heartbeat_timeout = 0x0938;  ///< ms
-inline constexpr std::uint32_t tick_frequency_high = 0x093C;
 inline constexpr std::uint32_t tick_frequency_low = 0x0940;
 inline constexpr std::uint32_t control_privilege = 0x0A00;
 inline constexpr std::uint32_t end_of_bootstrap = 0x0B00;
@@ -41,7 +40,6 @@ inline constexpr std::uint32_t control_access = 2;
 
 /// Bits of stream_packet_size.
 inline constexpr std::uint32_t fire_test_packet = 0x80000000;
-inline constexpr std::uint32_t do_not_fragment = 0x40000000;
 inline constexpr std::uint32_t pixels_big_endian = 0x20000000;
 inline constexpr std::uint32_t packet_size_mask = 0x0000FFFF;
 

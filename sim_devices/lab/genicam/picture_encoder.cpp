@@ -1,15 +1,18 @@
-#include "sim_devices/lab/gige/picture_encoder.h"
+#include "sim_devices/lab/genicam/picture_encoder.h"
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
+#include <cassert>
+#include <cmath>
 #include <utility>
 
 namespace todbench {
 namespace {
 
 std::uint16_t largest(const EncoderSettings& settings) {
-  return static_cast<std::uint16_t>((1U << settings.significant_bits) - 1);
+  const auto held = static_cast<unsigned>(significant_bits(settings.format));
+  const bool cut_below = settings.format == PixelFormat::mono8;
+  return static_cast<std::uint16_t>(
+      (1U << (cut_below ? settings.significant_bits : std::min(settings.significant_bits, held))) - 1);
 }
 
 cv::Mat1w ramp(cv::Size size, std::uint16_t full_scale) {
@@ -29,12 +32,13 @@ void PictureEncoder::update_table(const EncoderSettings& settings) {
     const double kelvin = offset_k_ + kelvin_per_count_ * static_cast<double>(count);
     double signal = static_cast<double>(count);
     if (settings.signal == SignalKind::linear) signal = kelvin / settings.kelvin_per_signal;
+    if (settings.signal == SignalKind::tenths) signal = std::floor((static_cast<double>(count) + 5) / 10);
     if (settings.signal == SignalKind::radiometric) signal = scale ? scale->counts(kelvin).value_or(0) : 0;
     table_[count] = std::min(cv::saturate_cast<std::uint16_t>(signal), largest(settings));
   }
 }
 
-Bytes PictureEncoder::encode(const cv::Mat1w& counts, const EncoderSettings& settings) {
+std::vector<std::uint8_t> PictureEncoder::encode(const cv::Mat1w& counts, const EncoderSettings& settings) {
   update_table(settings);
   cv::Mat1w sent(counts.size());
   if (settings.test_ramp) {
@@ -47,22 +51,19 @@ Bytes PictureEncoder::encode(const cv::Mat1w& counts, const EncoderSettings& set
     }
     previous_ = sent;
   }
-  const std::size_t pixels = sent.total();
-  if (settings.bits_per_pixel == 8) {
-    Bytes data(pixels);
-    const unsigned shift = settings.significant_bits > 8 ? settings.significant_bits - 8 : 0;
-    std::transform(sent.begin(), sent.end(), data.begin(),
-                   [&](std::uint16_t count) { return static_cast<std::uint8_t>(count >> shift); });
-    return data;
+  if (settings.format == PixelFormat::mono8 && settings.significant_bits > 8) {
+    sent = sent.clone();  // the picture before keeps its bits
+    for (auto& count : sent) count = static_cast<std::uint16_t>(count >> (settings.significant_bits - 8));
   }
-  static_assert(std::endian::native == std::endian::little, "pixels are copied as they lie in memory");
-  Bytes data(2 * pixels);
-  std::memcpy(data.data(), sent.data, data.size());
-  if (settings.big_endian) swap_bytes(data);
-  return data;
+  auto bytes = encode_pixels(sent, {.format = settings.format,
+                                    .order = settings.big_endian ? ByteOrder::big_endian : ByteOrder::little_endian,
+                                    .width = sent.cols,
+                                    .height = sent.rows});
+  assert(bytes && "the counts are cut to what the format holds");
+  return std::move(*bytes);
 }
 
-void swap_bytes(Bytes& data) {
+void swap_bytes(std::vector<std::uint8_t>& data) {
   for (std::size_t i = 0; i + 1 < data.size(); i += 2) std::swap(data[i], data[i + 1]);
 }
 

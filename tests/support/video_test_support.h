@@ -1,11 +1,11 @@
-// What tests with emulated video cameras share: main() under umockdev's preload library, a picture with a known value
-// everywhere.
+// What tests with emulated video cameras share: main() under umockdev's preload library.
 #pragma once
 
 #include <memory>
 
 #include "acquisition/v4l2/v4l2_backend.h"
 #include "sim_devices/lab/video/v4l2_camera.h"
+#include "tests/support/camera_passages.h"
 
 namespace todbench::testing_support {
 
@@ -15,14 +15,9 @@ struct VideoBench {
   std::unique_ptr<EmulatedV4l2Camera> camera;
 };
 
-/// Picture `index`: no pixel has the value of its neighbours, so that a shifted, torn, repeated or byte-swapped frame
-/// differs.
-[[nodiscard]] cv::Mat1w video_picture(std::uint64_t index, int width, int height, int bits);
-
-/// A camera that shows video_picture(); fails the test when it cannot start.
+/// A camera that shows test_picture(); fails the test when it cannot start.
 [[nodiscard]] VideoBench start_video(const VideoCameraConfig& config = {});
 
-/// "v4l2:VENDOR-MODEL-SERIAL" of a configuration whose names need no replacement but blanks.
 [[nodiscard]] std::string video_camera_id(const VideoCameraConfig& config);
 
 /// Opens by identity; fails the test when it cannot.

@@ -1,6 +1,7 @@
 // The registers of an emulated camera as a table, and the GenICam description that follows from it.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -13,7 +14,9 @@ enum class FeatureKind {
   enumeration,
   command,
   scaled,      ///< a float: raw value of the register times `per_raw`
-  ieee_float,  ///< a float in four bytes
+  rate,        ///< a float: 10^6 over the raw value, 0.1 ... 1000 Hz
+  ieee_float,  ///< a float in eight bytes, `real` at power-up
+  formula,     ///< a float: `formula` of VALUE, as ieee_float, and of CHOICE, the register of the feature `choice`
   text,        ///< `bytes` characters
   bit,         ///< a Boolean: bit `bit` of the register, counted from the highest as GenICam does for big-endian ones
   chunk_integer,  ///< in the chunk `chunk_id` behind every frame, eight bytes
@@ -22,8 +25,10 @@ enum class FeatureKind {
 
 enum class FeatureAccess { read_only, read_write, write_only };
 
-/// One feature of a camera and the register behind it. Registers are big-endian and have four bytes where `kind` does
-/// not say otherwise.
+/// Limits of `rate`.
+inline constexpr double least_rate_hz = 0.1, most_rate_hz = 1000;
+
+/// One feature of a camera and the register behind it, which has four bytes where `kind` does not say otherwise.
 struct CameraFeature {
   std::string name;
   FeatureKind kind = FeatureKind::integer;
@@ -31,21 +36,36 @@ struct CameraFeature {
   FeatureAccess access = FeatureAccess::read_write;
   std::uint32_t initial = 0;  ///< raw value at power-up; of a command: the value that executes it
   std::vector<std::pair<std::string, std::uint32_t>> entries = {};  ///< of an enumeration
-  double per_raw = 1;
-  std::int64_t least = 0, most = 0, step = 1;  ///< of an integer; least == most: no bounds
+  double per_raw = 1, real = 0;
+  std::int64_t least = 0, most = 0;  ///< of an integer; least == most: no bounds
   std::uint32_t bytes = 4;
   unsigned bit = 0;
   std::uint32_t chunk_id = 0;
   bool locked_while_streaming = false;
   std::string text = {};  ///< at power-up
   std::string about = {};
+  std::string formula = {}, choice = {};
 };
+
+/// Whether the feature has a register of its own: chunks lie behind frames, and a bit is a part of another register.
+[[nodiscard]] bool owns_register(const CameraFeature& feature);
+/// Bytes of its register.
+[[nodiscard]] std::uint32_t register_bytes(const CameraFeature& feature);
 
 struct CameraDescription {
   std::string vendor, model;  ///< as the description and discovery state them
   std::string file_name;      ///< of the description, as the camera's URL register states it
   std::vector<std::pair<std::string, std::vector<CameraFeature>>> categories;
+  std::string name_space = "GEV";        ///< "U3V" on USB
+  std::endian order = std::endian::big;  ///< of the registers
 };
+
+/// What a register holds at power-up, as it lies in memory.
+struct RegisterContent {
+  std::uint32_t address = 0;
+  std::vector<std::uint8_t> bytes;
+};
+[[nodiscard]] std::vector<RegisterContent> power_up_contents(const CameraDescription& description);
 
 /// GenApi 1.0 text. Names of features must be letters, digits and underscores; all texts are escaped.
 [[nodiscard]] std::string genicam_xml(const CameraDescription& description);

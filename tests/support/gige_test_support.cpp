@@ -1,4 +1,4 @@
-#include "tests/acquisition/aravis/gige_test_support.h"
+#include "tests/support/gige_test_support.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -7,22 +7,8 @@
 #include <unistd.h>
 
 #include <array>
-#include <cstring>
 
 namespace todbench::testing_support {
-
-cv::Mat1w test_picture(std::uint64_t index, int width, int height, int bits) {
-  const unsigned mask = (1U << bits) - 1;
-  cv::Mat1w picture(height, width);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const auto value =
-          257U * static_cast<unsigned>(index) + 7U * static_cast<unsigned>(x) + 1031U * static_cast<unsigned>(y);
-      picture(y, x) = static_cast<ushort>(value & mask);
-    }
-  }
-  return picture;
-}
 
 EmulatedGigeCamera::Exposure test_exposures(const EmulatedGigeCameraConfig& config) {
   return [width = config.width, height = config.height, bits = config.significant_bits](std::uint64_t index) {
@@ -40,17 +26,7 @@ std::unique_ptr<EmulatedGigeCamera> start_camera(const EmulatedGigeCameraConfig&
 }
 
 std::unique_ptr<FrameSource> open_camera(const AravisOptions& options) {
-  auto source = aravis_backend(options)->open("gige:127.0.0.1");
-  if (!source) {
-    ADD_FAILURE() << source.error().message;
-    return nullptr;
-  }
-  return std::move(*source);
-}
-
-bool same_pixels(const cv::Mat1w& a, const cv::Mat1w& b) {
-  return a.size() == b.size() && a.isContinuous() && b.isContinuous() &&
-         std::memcmp(a.data, b.data, a.total() * a.elemSize()) == 0;
+  return opened(aravis_backend(options)->open("gige:127.0.0.1"));
 }
 
 CameraProcess::CameraProcess(double frame_rate_hz) {

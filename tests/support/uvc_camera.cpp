@@ -1,4 +1,4 @@
-#include "sim_devices/lab/usb/uvc_camera.h"
+#include "tests/support/uvc_camera.h"
 
 #include <algorithm>
 #include <chrono>
@@ -88,15 +88,15 @@ UsbBytes stream_interface_descriptors(const VideoCameraConfig& config, const Vid
       .u8(0x04)
       .u8(1)
       .u8(static_cast<unsigned>(format.sizes.size()))
-      .all(format_guid(format.fourcc))
-      .u8(static_cast<unsigned>(8 * format.bytes_per_pixel))
+      .all(format_guid(format.fourcc()))
+      .u8(static_cast<unsigned>(8 * format.bytes_per_pixel()))
       .u8(1)
       .u8(0)
       .u8(0)
       .u8(0)
       .u8(0);
   for (std::size_t i = 0; i < format.sizes.size(); ++i) {
-    const auto bytes = static_cast<std::uint32_t>(format.sizes[i].area() * format.bytes_per_pixel);
+    const auto bytes = static_cast<std::uint32_t>(format.sizes[i].area() * format.bytes_per_pixel());
     const auto bits_per_second = static_cast<std::uint32_t>(8 * bytes * config.frame_rate_hz);
     formats.u8(30)
         .u8(0x24)
@@ -201,7 +201,7 @@ struct UvcCamera::State {
 };
 
 UsbBytes UvcCamera::State::streaming_parameters(std::size_t frame_index) const {
-  const auto bytes = static_cast<std::uint32_t>(size(frame_index).area() * format.bytes_per_pixel);
+  const auto bytes = static_cast<std::uint32_t>(size(frame_index).area() * format.bytes_per_pixel());
   return Bytes()
       .u16(1)
       .u8(1)

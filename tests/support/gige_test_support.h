@@ -1,5 +1,4 @@
-// What tests with an emulated GigE camera share: a private network, a picture with a known value everywhere, a camera
-// in a process of its own.
+// What tests with an emulated GigE camera share: a private network, a camera in a process of its own.
 #pragma once
 
 #include <sys/types.h>
@@ -12,15 +11,9 @@
 
 #include "acquisition/aravis/aravis_backend.h"
 #include "sim_devices/lab/gige/gige_camera.h"
+#include "tests/support/camera_passages.h"
 
 namespace todbench::testing_support {
-
-/// Far longer than any frame takes on a loaded machine; a test that waits this long has failed.
-inline constexpr std::chrono::seconds patience{20};
-
-/// Picture `index`: no two within 2^14 are alike, and no pixel has the value of its neighbours, so that a shifted,
-/// torn, repeated or byte-swapped frame differs.
-[[nodiscard]] cv::Mat1w test_picture(std::uint64_t index, int width, int height, int bits);
 
 /// The exposures of a camera that shows test_picture().
 [[nodiscard]] EmulatedGigeCamera::Exposure test_exposures(const EmulatedGigeCameraConfig& config);
@@ -30,9 +23,6 @@ inline constexpr std::chrono::seconds patience{20};
 
 /// Opens the camera on loopback by address, without waiting for a discovery; fails the test when it cannot.
 [[nodiscard]] std::unique_ptr<FrameSource> open_camera(const AravisOptions& options = {});
-
-/// True when both have the same geometry and the same bytes.
-[[nodiscard]] bool same_pixels(const cv::Mat1w& a, const cv::Mat1w& b);
 
 /// A camera with the default configuration, test_picture() and `frame_rate_hz` in another process.
 class CameraProcess {
