@@ -16,10 +16,6 @@ bool is_simulated(const QString& id) {
   return id.startsWith("sim:");
 }
 
-QString group_of(const CameraEntry& camera) {
-  return QString::fromStdString(camera.transport == "simulation" ? "Simulated sensors" : camera.transport);
-}
-
 std::vector<DeviceEntry> built_in_devices() {
   std::vector<DeviceEntry> entries;
 #ifdef TODBENCH_WITH_ARAVIS
@@ -117,9 +113,10 @@ void Workbench::rescan() {
       auto entries = built_in_devices();
       for (const auto& camera : listing.cameras) {
         // The emulated laboratory and the shipped sensors are in the list already.
-        if (camera.transport == "simulation" || camera.address.starts_with("127.")) continue;
-        entries.push_back({.id = QString::fromStdString(camera.id),
-                           .group = group_of(camera),
+        const QString id = QString::fromStdString(camera.id);
+        if (is_simulated(id) || camera.address.starts_with("127.")) continue;
+        entries.push_back({.id = id,
+                           .group = QString::fromStdString(camera.transport),
                            .label = QString::fromStdString(camera.vendor + " " + camera.model),
                            .detail = QString::fromStdString("serial " + camera.serial +
                                                             (camera.address.empty() ? "" : ", at " + camera.address)),
