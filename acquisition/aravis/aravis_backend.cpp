@@ -183,10 +183,11 @@ Result<std::unique_ptr<FrameSource>> AravisBackend::open(const std::string& id) 
   if (!camera) return fail(ErrorCode::not_found, "opening " + *name + ": " + error.message());
   SourceInfo info = identity(device.get());
   std::string address = address_of(device.get());
+  device.reset();
   auto source = AravisSource::create(std::move(camera), options_, std::move(info), std::move(address));
   if (!source) {
     // A camera that vanishes while it is being opened is not a camera lost in use.
-    return fail("opening " + *name, Error{ErrorCode::not_found, source.error().message});
+    return fail("opening " + *name, with_code(ErrorCode::not_found, source.error()));
   }
   return source;
 }

@@ -37,17 +37,12 @@ std::shared_ptr<ArvStream> shared(ArvStream* stream) {
 
 AravisSource::AravisSource(GObjectPtr<ArvCamera> camera, AravisOptions options, SourceInfo info,
                            std::string device_address)
-    : camera_(std::move(camera)),
+    : camera_(std::move(camera), [events = events_] { events->mark_lost(); }),
       options_(std::move(options)),
       info_(std::move(info)),
       device_address_(std::move(device_address)),
       loopback_(device_address_.starts_with("127.")),
-      can_resend_(says_it_can_resend(arv_camera_get_device(camera_.get()))) {
-  auto* shared_events = new std::shared_ptr<Events>(events_);
-  control_lost_handler_ = g_signal_connect_data(
-      arv_camera_get_device(camera_.get()), "control-lost", G_CALLBACK(&AravisSource::on_control_lost), shared_events,
-      [](void* data, GClosure*) { delete static_cast<std::shared_ptr<Events>*>(data); }, GConnectFlags{});
-}
+      can_resend_(says_it_can_resend(arv_camera_get_device(camera_.get()))) {}
 
 Result<std::unique_ptr<FrameSource>> AravisSource::create(GObjectPtr<ArvCamera> camera, AravisOptions options,
                                                           SourceInfo info, std::string device_address) {

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <optional>
-#include <thread>
 
 #include "acquisition/aravis/frame_buffers.h"
 #include "acquisition/aravis/genicam_features.h"
 #include "acquisition/aravis/gvcp_client.h"
+#include "acquisition/core/background.h"
 #include "acquisition/core/host_clock.h"
 
 namespace todbench {
@@ -32,15 +32,12 @@ FrameIdKind frame_id_kind(ArvDevice* device, AravisTransport transport) {
 
 AravisSource::~AravisSource() {
   stop();
-  g_signal_handler_disconnect(arv_camera_get_device(camera_.get()), control_lost_handler_);
   if (!is_lost() && !unreachable_stream_) return;
   // Aravis says goodbye to the camera with five attempts of 0.5 s for every register; nobody should wait for that when
   // the camera has gone, and nothing depends on its end.
-  std::thread([stream = std::move(unreachable_stream_),
-               camera = std::shared_ptr<ArvCamera>(std::move(camera_))]() mutable {
-    stream.reset();
-    camera.reset();
-  }).detach();
+  finish_in_background([camera = std::move(camera_), stream = std::move(unreachable_stream_)]() mutable {
+    stream.reset();  // it has a reference to the camera's device
+  });
 }
 
 void AravisSource::on_stream_event(void* data, ArvStreamCallbackType type, ArvBuffer*) {
@@ -55,13 +52,12 @@ void AravisSource::on_stream_event(void* data, ArvStreamCallbackType type, ArvBu
   events.changed.notify_all();
 }
 
-void AravisSource::on_control_lost(ArvDevice*, void* data) {
-  auto& events = **static_cast<std::shared_ptr<Events>*>(data);
+void AravisSource::Events::mark_lost() {
   {
-    const std::lock_guard lock(events.mutex);
-    events.lost = true;
+    const std::lock_guard lock(mutex);
+    lost = true;
   }
-  events.changed.notify_all();
+  changed.notify_all();
 }
 
 Result<void> AravisSource::start() {
@@ -208,11 +204,7 @@ bool AravisSource::is_lost() const {
 }
 
 void AravisSource::mark_lost() {
-  {
-    const std::lock_guard lock(events_->mutex);
-    events_->lost = true;
-  }
-  events_->changed.notify_all();
+  events_->mark_lost();
 }
 
 Error AravisSource::disconnected() const {

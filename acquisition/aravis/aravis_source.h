@@ -12,6 +12,7 @@
 #include "acquisition/aravis/camera_setup.h"
 #include "acquisition/aravis/frame_id.h"
 #include "acquisition/aravis/glib_ptr.h"
+#include "acquisition/aravis/watched_camera.h"
 #include "acquisition/core/frame_source.h"
 
 namespace todbench {
@@ -19,7 +20,7 @@ namespace todbench {
 class AravisSource : public FrameSource {
  public:
   /// `device_address`: IPv4 address of a GigE camera, empty for USB. `info` carries the identity; the rest is read from
-  /// the camera.
+  /// the camera. Nobody else keeps a reference to its device.
   [[nodiscard]] static Result<std::unique_ptr<FrameSource>> create(GObjectPtr<ArvCamera> camera, AravisOptions options,
                                                                    SourceInfo info, std::string device_address);
   ~AravisSource() override;
@@ -44,11 +45,12 @@ class AravisSource : public FrameSource {
     bool running = false;
     bool lost = false;
     int failed_pings = 0;
+
+    void mark_lost();
   };
 
   AravisSource(GObjectPtr<ArvCamera> camera, AravisOptions options, SourceInfo info, std::string device_address);
   static void on_stream_event(void* events, ArvStreamCallbackType type, ArvBuffer* buffer);
-  static void on_control_lost(ArvDevice* device, void* events);
 
   [[nodiscard]] Result<void> refresh();
   [[nodiscard]] Result<void> check_byte_order();
@@ -64,7 +66,8 @@ class AravisSource : public FrameSource {
   void mark_lost();
   [[nodiscard]] Error disconnected() const;
 
-  GObjectPtr<ArvCamera> camera_;
+  std::shared_ptr<Events> events_ = std::make_shared<Events>();
+  WatchedCamera camera_;  ///< before the streams, which go first
   AravisOptions options_;
   SourceInfo info_;
   std::string device_address_;
@@ -79,11 +82,9 @@ class AravisSource : public FrameSource {
   StreamFormat format_;
   std::shared_ptr<const RadiometricScale> scale_;
   FrameSequence sequence_{FrameIdKind::gvsp16};
-  gulong control_lost_handler_ = 0;
 
-  std::mutex control_;  ///< one conversation with the camera at a time; taken before events_->mutex
-  std::shared_ptr<Events> events_ = std::make_shared<Events>();
-  std::shared_ptr<ArvStream> stream_;              ///< guarded by events_->mutex; next() keeps it alive while it copies
+  std::mutex control_;                 ///< one conversation with the camera at a time; taken before events_->mutex
+  std::shared_ptr<ArvStream> stream_;  ///< guarded by events_->mutex; next() keeps it alive while it copies
   std::shared_ptr<ArvStream> unreachable_stream_;  ///< of a camera that did not answer at stop(); guarded by control_
 };
 

@@ -50,7 +50,7 @@ int run_fit(Console& console, const FitArguments& arguments) {
   auto levels = read_levels(arguments.file);
   if (!levels) return report_error(console, levels.error());
   auto fit = fit_psychometric(*levels, *options);
-  if (!fit) return report_error(console, {fit.error().code, arguments.file + ": " + fit.error().message});
+  if (!fit) return report_error(console, with_context(arguments.file, fit.error()));
   if (console.json()) {
     console.object(fit_json(*fit));
   } else {

@@ -143,7 +143,7 @@ int run_noise(Console& console, NoiseArguments arguments, const Program& program
     arguments.block_frames = count;
   }
   auto noise = recorded_noise(frames->pictures, arguments.block_frames);
-  if (!noise) return report_error(console, {noise.error().code, arguments.recording + ": " + noise.error().message});
+  if (!noise) return report_error(console, with_context(arguments.recording, noise.error()));
   if (moved(*noise)) {
     // Components and acuity would be those of the moving scene.
     console.note("neighbouring pixels change together: the scene or the camera moved, this is not the camera's noise");

@@ -94,7 +94,7 @@ int run_reproduce(Console& console, const ReproduceArguments& arguments, const P
   }
   std::vector<TableRow> rows;
   for (const auto& f : found->figures) {
-    const int decimals = f.unit == "%" || f.unit == "m" ? 0 : 1;
+    const int decimals = f.kind != FigureKind::amount || f.unit == "m" ? 0 : 1;
     rows.push_back(
         {f.quantity, f.published.empty() ? "–" : f.published,
          fixed(f.value && decimals == 0 ? std::optional(std::round(*f.value) + 0.0) : f.value, decimals) + " " + f.unit,

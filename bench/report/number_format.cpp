@@ -64,6 +64,10 @@ int decimals_for(std::optional<double> value, const Interval& interval) {
   return std::clamp(2 - static_cast<int>(std::floor(std::log10(scale))), 0, most_decimals);
 }
 
+bool anything_known(std::optional<double> value, const Interval& interval) {
+  return finite(value) || finite(interval.low) || finite(interval.high);
+}
+
 std::string with_interval(std::optional<double> value, const Interval& interval) {
   const int decimals = decimals_for(value, interval);
   const bool low = finite(interval.low);

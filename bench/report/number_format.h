@@ -30,6 +30,9 @@ namespace todbench {
 /// known.
 [[nodiscard]] std::string with_interval(std::optional<double> value, const Interval& interval);
 
+/// Whether there is a value or a bound.
+[[nodiscard]] bool anything_known(std::optional<double> value, const Interval& interval);
+
 /// 1 / value with the bounds exchanged: acuity from size. A bound that is not positive becomes open.
 [[nodiscard]] Interval reciprocal(const Interval& interval);
 [[nodiscard]] std::optional<double> reciprocal(std::optional<double> value);

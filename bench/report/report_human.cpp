@@ -7,8 +7,7 @@ namespace todbench {
 namespace {
 
 Markup threshold_cell(const PsychometricFit& fit) {
-  const std::string text = with_interval(fit.threshold, fit.ci95);
-  return text == "–" ? missing("not identified") : unbroken(text);
+  return interval_or_missing(fit.threshold, fit.ci95, "not identified");
 }
 
 /// What the same frames gave with the model observer: those of the camera, or of a simulated one.

@@ -1,9 +1,15 @@
 #include "bench/report/report_pieces.h"
 
+#include "bench/report/number_format.h"
+
 namespace todbench {
 
 Markup section(std::string_view title, const Markup& content) {
   return element("section", element("h2", escaped(title)) + literal("\n") + content) + literal("\n");
+}
+
+Markup interval_or_missing(std::optional<double> value, const Interval& interval, std::string_view reason) {
+  return anything_known(value, interval) ? unbroken(with_interval(value, interval)) : missing(reason);
 }
 
 Markup paragraph(const Markup& content, std::string_view css_class) {

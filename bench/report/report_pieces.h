@@ -1,6 +1,7 @@
 // The sections of a report and the words they share.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,10 @@ namespace todbench {
 [[nodiscard]] Markup section(std::string_view title, const Markup& content);
 [[nodiscard]] Markup paragraph(const Markup& content, std::string_view css_class = "");
 [[nodiscard]] Markup figure(const Result<Markup>& picture, std::string_view caption);
+
+/// with_interval(), or why there is neither a value nor a bound.
+[[nodiscard]] Markup interval_or_missing(std::optional<double> value, const Interval& interval,
+                                         std::string_view reason);
 
 /// A coloured word that also reads in black and white.
 enum class Mood { good, bad, open };

@@ -24,11 +24,6 @@ Markup optional_number(std::optional<double> value, int digits, std::string_view
   return value && std::isfinite(*value) ? cell(significant(*value, digits)) : missing(reason);
 }
 
-Markup interval_cell(std::optional<double> value, const Interval& interval, std::string_view reason) {
-  const std::string text = with_interval(value, interval);
-  return text == "–" ? missing(reason) : unbroken(text);
-}
-
 const TodCurve* pointer(const std::optional<TodCurve>& curve) {
   return curve ? &*curve : nullptr;
 }
@@ -77,8 +72,8 @@ std::vector<Markup> curve_row(const TodPoint& point, bool with_direct) {
   const std::string_view reason = fit.verdict == FitVerdict::no_data ? "no trials" : "not identified";
   std::vector<Markup> row{cell(stated(point.set_delta_t_k)),
                           contrast_cell(point),
-                          interval_cell(fit.threshold, fit.ci95, reason),
-                          interval_cell(reciprocal(fit.threshold), reciprocal(fit.ci95), reason),
+                          interval_or_missing(fit.threshold, fit.ci95, reason),
+                          interval_or_missing(reciprocal(fit.threshold), reciprocal(fit.ci95), reason),
                           optional_number(fit.slope, 3, reason),
                           lapse_cell(point),
                           trials_cell(fit),
@@ -145,8 +140,8 @@ Markup answers_table(const std::string& caption, const TodCurve& curve) {
       rows.rows.push_back({cell(stated(point.set_delta_t_k)),
                            cell(answers.size_mrad > 0 ? significant(answers.size_mrad, 4) : "0 (catch trials)"),
                            unbroken(shown(answers.correct, 0) + " / " + shown(answers.total, 0)),
-                           interval_cell(answers.correct / answers.total,
-                                         wilson_interval(answers.correct, answers.total), "no trials")});
+                           interval_or_missing(answers.correct / answers.total,
+                                               wilson_interval(answers.correct, answers.total), "no trials")});
     }
   }
   return table(rows);
@@ -210,7 +205,7 @@ Markup limits_section(const ReportData& data) {
   rows.header = {"Quantity", "Unit", "Limit", "Result [95 %]", "Verdict", "Reason"};
   for (const LimitLine& line : data.limits) {
     rows.rows.push_back({cell(line.quantity), line.unit.empty() ? cell("1") : cell(line.unit), limit_cell(line),
-                         interval_cell(line.value, line.ci95, "no value"),
+                         interval_or_missing(line.value, line.ci95, "no value"),
                          badge(in_words(line.verdict), mood_of(line.verdict)),
                          text_or_missing(line.reason, "none given")});
   }
@@ -303,8 +298,8 @@ Markup comparison_section(const ReportData& data) {
   for (const ComparisonPoint& point : data.comparison->points) {
     rows.rows.push_back({cell(stated(point.set_delta_t_k)),
                          unbroken(significant(point.delta_t_a_k, 3) + " / " + significant(point.delta_t_b_k, 3)),
-                         interval_cell(point.ratio, point.ratio_ci95, "a threshold is not identified"),
-                         interval_cell(point.ratio, point.ratio_ci90, "a threshold is not identified"),
+                         interval_or_missing(point.ratio, point.ratio_ci95, "a threshold is not identified"),
+                         interval_or_missing(point.ratio, point.ratio_ci90, "a threshold is not identified"),
                          point.p_difference ? cell(probability(*point.p_difference)) : missing("no test possible"),
                          point.p_equivalence ? cell(probability(*point.p_equivalence)) : missing("no test possible"),
                          cell(stated(point.margin_percent)), badge(in_words(point.verdict), mood_of(point.verdict))});

@@ -11,15 +11,18 @@ namespace todbench {
 namespace {
 
 bool percentage(const ReproducedFigure& figure) {
-  return figure.unit == "%";
+  return figure.kind != FigureKind::amount;
+}
+
+bool among(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 Markup ours(const ReproducedFigure& figure) {
   if (!figure.value) return missing("not found");
   const int decimals = percentage(figure) ? 0 : std::min(1, decimals_for(figure.value, figure.ci95));
   std::string text = shown(*figure.value, decimals);
-  if (figure.unit == "%" && figure.quantity.find("Correct at") == std::string::npos && *figure.value > 0)
-    text.insert(0, 1, '+');
+  if (figure.kind == FigureKind::change && *figure.value > 0) text.insert(0, 1, '+');
   if (figure.ci95.low && figure.ci95.high)
     text += " [" + shown(*figure.ci95.low, decimals) + ", " + shown(*figure.ci95.high, decimals) + "]";
   return unbroken(text + " " + figure.unit);
@@ -50,12 +53,12 @@ Plot curve_plot(const Reproduction& reproduction, const std::string& id, const s
     const std::string label = t.sensor + ", " + t.observer;
     auto series = std::find_if(plot.series.begin(), plot.series.end(), [&](const auto& s) { return s.label == label; });
     if (series == plot.series.end()) {
-      const bool hvs = t.observer.starts_with("hvs");
+      const bool model = t.observer == reproduction.model_observer;
       PlotSeries added;
       added.label = label;
       added.tone = tones[(sensor - sensors.begin()) % 3];
-      added.marker = hvs ? PlotMarker::disc : PlotMarker::square;
-      added.line = hvs ? PlotLine::solid : PlotLine::dashed;
+      added.marker = model ? PlotMarker::disc : PlotMarker::square;
+      added.line = model ? PlotLine::solid : PlotLine::dashed;
       series = plot.series.insert(plot.series.end(), added);
     }
     PlotPoint point;
@@ -78,12 +81,12 @@ Plot range_plot(const Reproduction& reproduction) {
   const PlotTone tones[] = {PlotTone::first, PlotTone::second, PlotTone::third, PlotTone::muted};
   std::size_t index = 0;
   for (const auto& range : reproduction.ranges) {
-    if (!range.observer.starts_with("hvs")) continue;  // as in the paper; four curves can be told apart
+    if (range.observer != reproduction.model_observer) continue;  // as in the paper; four curves can be told apart
     PlotSeries series;
     series.label = range.sensor + ", " + range.observer;
     series.tone = tones[index++ % 4];
     series.marker = PlotMarker::none;
-    series.line = range.sensor.starts_with("emulated") ? PlotLine::dashed : PlotLine::solid;
+    series.line = among(reproduction.cameras, range.sensor) ? PlotLine::dashed : PlotLine::solid;
     for (const auto& point : range.prediction.curve) {
       if (point.range_m > 1400) break;
       PlotPoint shown_point;
@@ -165,9 +168,11 @@ std::string render_reproduction(const Reproduction& reproduction) {
       "header", element("h1", escaped(reproduction.title)) + paragraph(escaped(reproduction.source), "subtitle"));
   body += figures_section(reproduction);
   const auto observers =
-      curve_plot(reproduction, "observers", "Observers on the simulated sensors", {"SC2000", "SC2000 + microscan"});
-  const auto sensors = curve_plot(reproduction, "cameras", "Emulated camera beside the simulation",
-                                  {"SC2000", "emulated camera, still", "emulated camera + DSR2"});
+      curve_plot(reproduction, "observers", "Observers on the simulated sensors", reproduction.simulated_sensors);
+  std::vector<std::string> beside = reproduction.simulated_sensors;
+  if (!beside.empty()) beside.resize(1);
+  beside.insert(beside.end(), reproduction.cameras.begin(), reproduction.cameras.end());
+  const auto sensors = curve_plot(reproduction, "cameras", "Emulated camera beside the simulation", beside);
   body += section("TOD curves", figure(svg_plot(observers),
                                        "Both observers on the simulated sensor, without and with 2 x 2 microscan "
                                        "(Figure 10 of the paper).") +

@@ -20,8 +20,16 @@ struct ReproducedThreshold {
   std::string method;  ///< how it was found
 };
 
+/// What a figure is: it decides how differences are said.
+enum class FigureKind {
+  amount,  ///< in its unit; a difference is relative
+  share,   ///< of all, in per cent; a difference is in points
+  change,  ///< of one against another, in per cent, with its sign; a difference is in points
+};
+
 /// One published figure with ours. Texts are plain.
 struct ReproducedFigure {
+  FigureKind kind = FigureKind::amount;
   std::string quantity, unit;
   std::string published;                  ///< as the paper states it; empty: the paper leaves it open
   std::optional<double> published_value;  ///< in `unit`, where the statement is a number
@@ -38,6 +46,9 @@ struct ReproducedRange {
 
 struct Reproduction {
   std::string title, source;
+  /// How curves are told apart: as named in thresholds and ranges. Other observers stand for people.
+  std::string model_observer;
+  std::vector<std::string> simulated_sensors, cameras;
   std::vector<ReproducedFigure> figures;
   std::vector<ReproducedThreshold> thresholds;
   std::vector<ReproducedRange> ranges;

@@ -11,8 +11,8 @@
 
 #include "acquisition/core/frame_source.h"
 #include "bench/plan/plan.h"
-#include "bench/run/operator_target.h"
 #include "hvs/shape/polygon.h"
+#include "tod/presentation/operator_request.h"
 #include "tod/registration/registration.h"
 
 namespace todbench {
@@ -56,7 +56,7 @@ struct AlignmentListener {
   std::function<void(const SourceInfo&)> on_open;
   std::function<void(const Frame&)> on_frame;
   std::function<void(const Alignment&)> on_alignment;
-  OperatorDialogue ask_operator;
+  AskOperator ask_operator;
 };
 
 /// What one averaged picture (kelvin) says. `first`: the registration of the first look, to see drift; `sides`: of the

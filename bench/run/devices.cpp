@@ -7,6 +7,7 @@
 #include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
 #include "bench/plan/resources.h"
+#include "tod/instruments/operator_terminal.h"
 #include "tod/instruments/prompt_target.h"
 #include "tod/instruments/scpi_target.h"
 #ifdef TODBENCH_WITH_ARAVIS
@@ -49,7 +50,7 @@ class SimulatedBackend final : public CameraBackend {
 
   [[nodiscard]] Result<std::unique_ptr<FrameSource>> open(const std::string& id) override {
     auto spec = load_sensor(camera_name(id, camera_scheme::sim).value_or(id));
-    if (!spec) return tl::unexpected(Error{ErrorCode::not_found, spec.error().message});
+    if (!spec) return tl::unexpected(with_code(ErrorCode::not_found, spec.error()));
     auto model = std::make_shared<const SensorModel>(*spec, full_plan(*spec, {}, {}), Accuracy::normal(), 1);
     return simulated_source(std::move(model), std::make_shared<SceneHolder>(empty_scene(2)), "1");
   }
@@ -81,13 +82,11 @@ TargetCapabilities times_of(const TargetPlan& plan) {
   return times;
 }
 
-Result<std::unique_ptr<Target>> open_target(const Plan& plan, std::stop_token stop,
-                                            const OperatorDialogue& ask_operator) {
+Result<std::unique_ptr<Target>> open_target(const Plan& plan, std::stop_token stop, const AskOperator& ask_operator) {
   if (plan.target.kind == TargetKind::prompt) {
     PromptTargetOptions options;
     options.times = times_of(plan.target);
-    if (ask_operator) return dialogue_target(ask_operator, options);
-    return prompt_target(std::cerr, descriptor_lines(0), options);
+    return prompt_target(ask_operator ? ask_operator : operator_at_terminal(std::cerr, descriptor_lines(0)), options);
   }
   ScpiTargetOptions options;
   options.black_body = plan.target.black_body;
@@ -152,7 +151,7 @@ OpenedBench simulated_bench(std::shared_ptr<const SensorModel> model, const std:
 }
 
 Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>& plates, std::stop_token stop,
-                               const OperatorDialogue& ask_operator) {
+                               const AskOperator& ask_operator) {
   if (plan.target.kind == TargetKind::scene) {
     const auto sensor = camera_name(plan.camera.id, camera_scheme::sim);
     if (!sensor) {

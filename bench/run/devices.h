@@ -10,11 +10,11 @@
 
 #include "acquisition/core/camera_registry.h"
 #include "bench/plan/plan.h"
-#include "bench/run/operator_target.h"
 #include "bench/run/reconnecting_source.h"
 #include "sim_devices/sensor/simulated_camera.h"
 #include "tod/measurement/frame_taker.h"
 #include "tod/measurement/measurement.h"
+#include "tod/presentation/operator_request.h"
 #include "tod/presentation/target.h"
 
 namespace todbench {
@@ -49,7 +49,7 @@ struct OpenedBench {
 /// that cannot work with this camera, a setting that is refused), `interrupted`.
 /// `ask_operator` answers for a target of kind prompt; none: the terminal.
 [[nodiscard]] Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>& plates,
-                                             std::stop_token stop, const OperatorDialogue& ask_operator = {});
+                                             std::stop_token stop, const AskOperator& ask_operator = {});
 
 /// Makes the camera of a bench one that is opened again by `reopen` when it was lost.
 void let_camera_come_back(OpenedBench& bench, ReopenCamera reopen, ReconnectionOptions options);

@@ -39,7 +39,7 @@ struct ExperimentListener {
   /// Lets a run rest between two presentations; null: it never does. Outlives the run.
   const Pause* pause = nullptr;
   /// Answers a request to a target of kind prompt; none: the terminal.
-  OperatorDialogue ask_operator{};
+  AskOperator ask_operator{};
 };
 
 struct ExperimentOptions {

@@ -1,11 +1,11 @@
 #include "bench/run/experiment_inputs.h"
 
-#include <algorithm>
 #include <string>
 
 #include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
 #include "bench/text/text.h"
+#include "tod/measurement/geometry.h"
 #include "tod/plate/test_pattern.h"
 
 namespace todbench {
@@ -14,18 +14,15 @@ namespace {
 /// Sizes that do not fit are named before anything is computed or moved, a few of them.
 Result<void> check_geometry(const MeasurementOptions& options, const ExperimentInputs& inputs, cv::Size picture) {
   TemplateObserver observer(inputs.observer, triangle_alternatives());
-  auto misfits = sizes_that_do_not_fit(options, observer, picture.width, picture.height);
+  auto misfits = find_misfits(options, observer, picture);
   if (!misfits) return tl::unexpected(misfits.error());
   if (misfits->empty()) return {};
-  // A plate larger than the picture explains the rest.
-  std::stable_partition(misfits->begin(), misfits->end(),
-                        [](const std::string& misfit) { return misfit.find("the picture has") != std::string::npos; });
   constexpr std::size_t named = 3;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(named, misfits->size()); ++i) text += (i == 0 ? "" : "; ") + (*misfits)[i];
-  if (misfits->size() > named) text += "; and " + std::to_string(misfits->size() - named) + " more";
-  return fail(ErrorCode::invalid_input,
-              "not measurable at " + number_text(options.distance_m) + " m ([target] distance_m): " + text);
+  const std::string distance = number_text(options.distance_m) + " m";
+  const std::string what = sentences(*misfits, named);
+  return tl::unexpected(Error{ErrorCode::invalid_input,
+                              "not measurable at " + distance + " ([target] distance_m): " + what,
+                              ErrorKey{"target.distance_m", "not measurable at " + distance + ": " + what}});
 }
 
 }  // namespace

@@ -4,8 +4,9 @@
 #include <cassert>
 #include <condition_variable>
 #include <optional>
-#include <thread>
 #include <utility>
+
+#include "acquisition/core/background.h"
 
 namespace todbench {
 namespace {
@@ -26,16 +27,16 @@ struct Outcome {
 };
 
 /// Runs `work` on a thread of its own and returns what it made, or nothing as soon as a stop is requested: then the
-/// work ends when it likes, and what it made is destroyed there.
+/// work ends when it likes, before the program does, and what it made is destroyed there.
 template <typename Value, typename Work>
 std::optional<Value> unless_stopped(const std::stop_token& stop, Work work) {
   const auto outcome = std::make_shared<Outcome<Value>>();
-  std::thread([outcome, work = std::move(work)]() mutable {
+  finish_in_background([outcome, work = std::move(work)]() mutable {
     Value made = work();
     const std::lock_guard lock(outcome->mutex);
     outcome->value = std::move(made);
     outcome->changed.notify_all();
-  }).detach();
+  });
   std::unique_lock lock(outcome->mutex);
   if (!outcome->changed.wait(lock, stop, [&] { return outcome->value.has_value(); })) return std::nullopt;
   return std::move(outcome->value);

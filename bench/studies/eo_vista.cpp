@@ -234,6 +234,9 @@ Result<Reproduction> reproduce_eo_vista(const EoVistaOptions& options) {
       "P. Bijl, M.A. Hogervorst and W.K. Vos, Modular Target Acquisition model & visualization tool (EO-VISTA), "
       "sections "
       "4.1 and 4.2";
+  reproduction.model_observer = hvs;
+  reproduction.simulated_sensors = {normal, microscan};
+  reproduction.cameras = {still, dsr2};
   for (const auto& thresholds : found)
     reproduction.thresholds.insert(reproduction.thresholds.end(), thresholds.begin(), thresholds.end());
   for (const auto& part : parts)

@@ -35,6 +35,7 @@ std::string at_contrast(double contrast_k) {
 ReproducedFigure gain(std::string quantity, const AcuityRatio& ratio) {
   const auto percent = [](std::optional<double> r) { return r ? std::optional(100 * (*r - 1)) : std::nullopt; };
   ReproducedFigure figure;
+  figure.kind = FigureKind::change;
   figure.quantity = std::move(quantity);
   figure.unit = std::string("%");
   figure.value = percent(ratio.value);
@@ -159,6 +160,7 @@ void range_figures(const std::vector<ReproducedRange>& ranges, std::vector<Repro
   row("75 % range, emulated camera + DSR2", dsr2, "", std::nullopt, "The real sensor judged by the HVS model.");
   const auto fraction = [&](const char* sensor, double range_m, const std::string& published) {
     ReproducedFigure figure;
+    figure.kind = FigureKind::share;
     figure.quantity = text({"Correct at ", number_text(range_m), " m, ", sensor});
     figure.unit = std::string("%");
     figure.published = published;

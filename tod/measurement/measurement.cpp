@@ -10,41 +10,11 @@
 #include <tuple>
 
 #include "tod/measurement/frame_taker.h"
+#include "tod/measurement/geometry.h"
 #include "tod/registration/patch_windows.h"
 
 namespace todbench {
 namespace {
-
-/// A plate of the plan with the observer prepared for each of its triangles.
-struct PreparedPlate {
-  TargetPlate plate;                                               ///< identity mounting
-  std::vector<std::shared_ptr<const PreparedObserver>> observers;  ///< per triangle; empty until the scale is known
-  std::vector<double> size_px;                                     ///< per triangle
-  [[nodiscard]] std::vector<int> sides() const {
-    std::vector<int> out;
-    for (const auto& o : observers) out.push_back(o->window_samples());
-    return out;
-  }
-};
-
-Result<void> prepare(PreparedPlate& plate, Observer& observer, double scale_px_per_mm, int samples_per_pitch) {
-  plate.observers.clear();
-  plate.size_px.clear();
-  for (const auto& t : plate.plate.triangles) {
-    const double size_px = t.size_mm * scale_px_per_mm;
-    auto prepared = observer.prepare(size_px, samples_per_pitch);
-    if (!prepared) return fail("plate " + plate.plate.name + ", " + t.name, prepared.error());
-    plate.observers.push_back(*prepared);
-    plate.size_px.push_back(size_px);
-  }
-  return {};
-}
-
-std::string joined(const std::vector<WindowProblem>& problems) {
-  std::string text;
-  for (const auto& p : problems) text += (text.empty() ? "" : "; ") + p.triangle + ": " + p.reason;
-  return text;
-}
 
 class Run {
  public:
@@ -251,8 +221,11 @@ class Run {
     current_contrast_ = state.delta_t_k;
     const auto problems = windows_out_of_picture(mounted_plate, registration, plate->sides(),
                                                  {source_.info().width, source_.info().height});
-    if (!problems.empty())
-      return fail(ErrorCode::calibration, "the plate is too near the edge of the picture: " + joined(problems));
+    if (!problems.empty()) {
+      std::string text;
+      for (const auto& problem : problems) text += (text.empty() ? "" : "; ") + sentence(problem);
+      return fail(ErrorCode::calibration, "the plate is too near the edge of the picture: " + text);
+    }
     auto frame = taker_.next(stop_);
     if (!frame) return tl::unexpected(frame.error());
     if (auto answered = answer(*plate, mounted_plate, registration, state, *frame); !answered) return answered;
@@ -391,44 +364,13 @@ class Run {
 
 }  // namespace
 
-Result<std::vector<std::string>> sizes_that_do_not_fit(const MeasurementOptions& options, Observer& observer,
-                                                       int frame_width, int frame_height) {
-  if (!(options.distance_m > 0) || !(options.ifov_mrad > 0)) {
-    return fail(ErrorCode::invalid_input, "distance and IFOV must be positive");
-  }
-  const double scale = 1 / (options.distance_m * options.ifov_mrad);
-  std::vector<std::string> out;
-  for (const auto& plate : options.plates) {
-    PreparedPlate prepared{plate, {}, {}};
-    if (auto ready = prepare(prepared, observer, scale, options.samples_per_pitch); !ready)
-      return tl::unexpected(ready.error());
-    const auto sides = prepared.sides();
-    const double search = prepared.observers.empty() ? 0 : prepared.observers.front()->search_samples();
-    for (const auto& problem : touching_windows(plate, scale, sides, search)) {
-      out.push_back("plate " + plate.name + ", " + problem.triangle + ": " + problem.reason);
-    }
-    if (plate.width_mm * scale > frame_width || plate.height_mm * scale > frame_height) {
-      char text[200];
-      std::snprintf(text, sizeof text,
-                    "plate %s: its %.0f x %.0f mm are %.0f x %.0f pixels at %.2f m, the picture has %d x %d",
-                    plate.name.c_str(), plate.width_mm, plate.height_mm, plate.width_mm * scale,
-                    plate.height_mm * scale, options.distance_m, frame_width, frame_height);
-      out.emplace_back(text);
-    }
-  }
-  return out;
-}
-
 Result<MeasurementResult> measure(FrameSource& source, Target& target, Observer& observer, TrialSchedule& schedule,
                                   const MeasurementOptions& options, const MeasurementListener& listener,
                                   std::stop_token stop) {
-  auto misfits = sizes_that_do_not_fit(options, observer, source.info().width, source.info().height);
+  auto misfits = find_misfits(options, observer, {source.info().width, source.info().height});
   if (!misfits) return tl::unexpected(misfits.error());
-  if (!misfits->empty()) {
-    std::string text;
-    for (const auto& misfit : *misfits) text += (text.empty() ? "" : "; ") + misfit;
-    return fail(ErrorCode::invalid_input, "not measurable at this distance: " + text);
-  }
+  if (!misfits->empty())
+    return fail(ErrorCode::invalid_input, "not measurable at this distance: " + sentences(*misfits, misfits->size()));
   return Run(source, target, observer, schedule, options, listener, std::move(stop))();
 }
 

@@ -109,12 +109,6 @@ struct MeasurementResult {
   std::optional<Error> ended_by;  ///< why it stopped early; the trials so far are valid
 };
 
-/// Sizes (name of triangle, reason) that cannot be measured with this geometry: a window with its search margin that
-/// touches a neighbour or leaves the frame. Empty: all fit.
-[[nodiscard]] Result<std::vector<std::string>> sizes_that_do_not_fit(const MeasurementOptions& options,
-                                                                     Observer& observer, int frame_width,
-                                                                     int frame_height);
-
 /// Runs a schedule. Fails only when nothing could be measured (plate not found, uncalibrated camera, sizes that do not
 /// fit); a run that ended early returns its trials with `ended_by`.
 [[nodiscard]] Result<MeasurementResult> measure(FrameSource& source, Target& target, Observer& observer,

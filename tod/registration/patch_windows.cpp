@@ -46,9 +46,25 @@ PatchWindow patch_window(cv::Point2d centroid_px, int side) {
           .phase = {centroid_px.x - left - 0.5, centroid_px.y - top - 0.5}};
 }
 
-std::vector<WindowProblem> touching_windows(const TargetPlate& plate, double scale_px_per_mm,
-                                            const std::vector<int>& sides, double search_px) {
-  std::vector<WindowProblem> problems;
+std::string sentence(const TouchingWindow& window) {
+  char text[120];
+  std::snprintf(text, sizeof text, ": its window of %d px comes within %.1f px of ", window.side_px, window.gap_px);
+  char needed[40];
+  std::snprintf(needed, sizeof needed, "; %.1f px are needed", window.least_gap_px);
+  return window.triangle + text + window.neighbour + needed;
+}
+
+std::string sentence(const WindowOutOfPicture& window) {
+  const cv::Rect& at = window.window;
+  char text[160];
+  std::snprintf(text, sizeof text, ": its window, columns %d to %d and rows %d to %d, leaves the picture of %d x %d",
+                at.x, at.x + at.width - 1, at.y, at.y + at.height - 1, window.picture.width, window.picture.height);
+  return window.triangle + text;
+}
+
+std::vector<TouchingWindow> touching_windows(const TargetPlate& plate, double scale_px_per_mm,
+                                             const std::vector<int>& sides, double search_px) {
+  std::vector<TouchingWindow> problems;
   for (std::size_t i = 0; i < plate.triangles.size(); ++i) {
     const cv::Point2d centre = plate.triangles[i].position_mm * scale_px_per_mm;
     const double half = sides[i] / 2.0 + search_px + 0.5;
@@ -60,28 +76,26 @@ std::vector<WindowProblem> touching_windows(const TargetPlate& plate, double sca
       const Polygon shape = triangle(other.size_mm * scale_px_per_mm, other.apex, other.position_mm * scale_px_per_mm);
       const double gap = distance(window, shape);
       if (gap >= blur_allowance_px) continue;
-      char reason[160];
-      std::snprintf(reason, sizeof reason, "its window of %d px comes within %.1f px of %s; %.1f px are needed",
-                    sides[i], gap, other.name.c_str(), blur_allowance_px);
-      problems.push_back({plate.triangles[i].name, reason});
+      problems.push_back({.triangle = plate.triangles[i].name,
+                          .neighbour = other.name,
+                          .side_px = sides[i],
+                          .gap_px = gap,
+                          .least_gap_px = blur_allowance_px});
       break;
     }
   }
   return problems;
 }
 
-std::vector<WindowProblem> windows_out_of_picture(const TargetPlate& mounted_plate, const Registration& registration,
-                                                  const std::vector<int>& sides, cv::Size picture) {
-  std::vector<WindowProblem> problems;
+std::vector<WindowOutOfPicture> windows_out_of_picture(const TargetPlate& mounted_plate,
+                                                       const Registration& registration, const std::vector<int>& sides,
+                                                       cv::Size picture) {
+  std::vector<WindowOutOfPicture> problems;
   const cv::Rect inner(1, 1, picture.width - 2, picture.height - 2);
   for (std::size_t i = 0; i < mounted_plate.triangles.size(); ++i) {
     const auto window = patch_window(registration.pixel(mounted_plate.triangles[i].position_mm), sides[i]).pixels;
     if ((window & inner) == window) continue;
-    char reason[160];
-    std::snprintf(reason, sizeof reason,
-                  "its window, columns %d to %d and rows %d to %d, leaves the picture of %d x %d", window.x,
-                  window.x + window.width - 1, window.y, window.y + window.height - 1, picture.width, picture.height);
-    problems.push_back({mounted_plate.triangles[i].name, reason});
+    problems.push_back({mounted_plate.triangles[i].name, window, picture});
   }
   return problems;
 }

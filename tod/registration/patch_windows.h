@@ -22,21 +22,34 @@ struct PatchWindow {
 /// Window of `side` pixels (even) round a centroid in pixel coordinates (pixel centres at integers).
 [[nodiscard]] PatchWindow patch_window(cv::Point2d centroid_px, int side);
 
-/// A triangle whose window cannot be used, and why.
-struct WindowProblem {
-  std::string triangle;
-  std::string reason;
+/// A triangle whose window comes too near another triangle.
+struct TouchingWindow {
+  std::string triangle, neighbour;
+  int side_px = 0;          ///< of the window
+  double gap_px = 0;        ///< between the window with its search and the neighbour
+  double least_gap_px = 0;  ///< what blur needs
 };
+
+/// A triangle whose window is not in the picture as a whole.
+struct WindowOutOfPicture {
+  std::string triangle;
+  cv::Rect window;
+  cv::Size picture;
+};
+
+/// "TRIANGLE: its window of 20 px comes within 0.3 px of ..."
+[[nodiscard]] std::string sentence(const TouchingWindow& window);
+[[nodiscard]] std::string sentence(const WindowOutOfPicture& window);
 
 /// Triangles of a mounted plate whose window, widened by the observer's search and half a pixel, touches a neighbour
 /// (whose edge counts 1.5 px further out for blur) at `scale_px_per_mm`. `sides` and `search` belong to the triangles
 /// in order.
-[[nodiscard]] std::vector<WindowProblem> touching_windows(const TargetPlate& plate, double scale_px_per_mm,
-                                                          const std::vector<int>& sides, double search_px);
+[[nodiscard]] std::vector<TouchingWindow> touching_windows(const TargetPlate& plate, double scale_px_per_mm,
+                                                           const std::vector<int>& sides, double search_px);
 
 /// Triangles whose window leaves a picture of this size, also when the plate moves by up to a pixel.
-[[nodiscard]] std::vector<WindowProblem> windows_out_of_picture(const TargetPlate& mounted_plate,
-                                                                const Registration& registration,
-                                                                const std::vector<int>& sides, cv::Size picture);
+[[nodiscard]] std::vector<WindowOutOfPicture> windows_out_of_picture(const TargetPlate& mounted_plate,
+                                                                     const Registration& registration,
+                                                                     const std::vector<int>& sides, cv::Size picture);
 
 }  // namespace todbench

@@ -76,15 +76,15 @@ ExperimentListener MeasurePresenter::listener() {
     inbox_.trials.push_back({curve, trial, std::move(kelvin)});
   };
   out.pause = &pause_;
-  out.ask_operator = [this](const std::string& request, const std::stop_token& stop) -> Result<std::string> {
+  out.ask_operator = [this](const OperatorRequest& request, const std::stop_token& stop) {
     desk_->clear();
-    bench_.post([this, text = QString::fromStdString(request).section("Enter when done", 0, 0).trimmed()] {
-      request_ = text;
+    bench_.post([this, request] {
+      request_ = request;
       emit updated();
     });
     auto answer = desk_->wait(stop);
     bench_.post([this] {
-      request_.clear();
+      request_.reset();
       emit updated();
     });
     return answer;
@@ -96,7 +96,7 @@ void MeasurePresenter::begin(const Plan& plan) {
   plan_ = plan;
   phase_ = "starting";
   notes_.clear();
-  request_.clear();
+  request_.reset();
   done_ = planned_ = 0;
   folder_.clear();
   trials_.clear();
@@ -283,7 +283,7 @@ void MeasurePresenter::conclude(const Result<ExperimentOutcome>& outcome) {
   collect();
   timer_.stop();
   away_.reset();
-  request_.clear();
+  request_.reset();
   if (outcome) {
     outcome_ = *outcome;
     folder_ = outcome->folder;

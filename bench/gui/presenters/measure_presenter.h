@@ -48,7 +48,7 @@ class MeasurePresenter final : public QObject {
   /// Ends the run within a second; what was measured stays.
   void abort();
   /// Answers the request of operator_request().
-  void operator_done() { desk_->answer(""); }
+  void operator_done() { desk_->answer(OperatorAnswer::done); }
 
   [[nodiscard]] RunState state() const { return state_; }
   [[nodiscard]] QString phase() const { return phase_; }
@@ -56,7 +56,8 @@ class MeasurePresenter final : public QObject {
   [[nodiscard]] std::size_t planned() const { return planned_; }
   /// "1 min 12 s left", from the presentations of this phase; empty when not known.
   [[nodiscard]] QString time_left() const;
-  [[nodiscard]] QString operator_request() const { return request_; }
+  /// What the run waits for the operator to do; nothing: it does not wait.
+  [[nodiscard]] const std::optional<OperatorRequest>& operator_request() const { return request_; }
   /// While a lost camera is waited for: what happened, how long it is still waited for; empty otherwise.
   [[nodiscard]] QString camera_away() const;
   [[nodiscard]] const QStringList& notes() const { return notes_; }
@@ -115,7 +116,8 @@ class MeasurePresenter final : public QObject {
   Workbench& bench_;
   Plan plan_;
   RunState state_ = RunState::idle;
-  QString phase_, request_;
+  QString phase_;
+  std::optional<OperatorRequest> request_;
   QStringList notes_;
   std::size_t done_ = 0, planned_ = 0, done_at_start_ = 0;
   QElapsedTimer in_phase_, since_fit_;

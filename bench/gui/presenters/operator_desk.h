@@ -6,10 +6,10 @@
 #include <mutex>
 #include <optional>
 #include <stop_token>
-#include <string>
 #include <utility>
 
 #include "acquisition/core/result.h"
+#include "tod/presentation/operator_request.h"
 
 namespace todbench {
 
@@ -17,7 +17,7 @@ namespace todbench {
 class OperatorDesk {
  public:
   /// Waits for answer(); `interrupted` as soon as stop is requested.
-  [[nodiscard]] Result<std::string> wait(const std::stop_token& stop) {
+  [[nodiscard]] Result<OperatorAnswer> wait(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     if (!answered_.wait(lock, stop, [this] { return answer_.has_value(); }))
       return fail(ErrorCode::interrupted, "stopped while waiting for the operator");
@@ -28,10 +28,10 @@ class OperatorDesk {
     const std::lock_guard lock(mutex_);
     answer_.reset();
   }
-  void answer(std::string line) {
+  void answer(OperatorAnswer answer) {
     {
       const std::lock_guard lock(mutex_);
-      answer_ = std::move(line);
+      answer_ = answer;
     }
     answered_.notify_all();
   }
@@ -39,7 +39,7 @@ class OperatorDesk {
  private:
   std::mutex mutex_;
   std::condition_variable_any answered_;
-  std::optional<std::string> answer_;
+  std::optional<OperatorAnswer> answer_;
 };
 
 }  // namespace todbench

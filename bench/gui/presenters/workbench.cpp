@@ -111,9 +111,10 @@ void Workbench::rescan() {
       auto entries = built_in_devices();
       for (const auto& camera : listing.cameras) {
         // The emulated laboratory and the shipped sensors are in the list already.
-        if (camera.transport == "simulation" || camera.address.starts_with("127.")) continue;
-        entries.push_back({.id = QString::fromStdString(camera.id),
-                           .group = group_of(camera),
+        const QString id = QString::fromStdString(camera.id);
+        if (is_simulated(id) || camera.address.starts_with("127.")) continue;
+        entries.push_back({.id = id,
+                           .group = QString::fromStdString(camera.transport),
                            .label = QString::fromStdString(camera.vendor + " " + camera.model),
                            .detail = QString::fromStdString("serial " + camera.serial +
                                                             (camera.address.empty() ? "" : ", at " + camera.address)),

@@ -19,6 +19,12 @@ QString text_of(std::string_view text) {
   return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
 }
 
+QString in_words(const OperatorRequest& request) {
+  QString text = "Please:";
+  for (const auto& step : request.steps) text += "\n  - " + QString::fromStdString(sentence(step));
+  return text;
+}
+
 /// Changes whenever a curve does: thresholds and numbers of trials.
 std::vector<double> key_of(const MeasurePresenter& presenter) {
   std::vector<double> key;
@@ -160,8 +166,9 @@ void MeasureView::show_all() {
   left_->setText(presenter_.time_left());
   progress_->setRange(0, std::max(1, static_cast<int>(presenter_.planned())));
   progress_->setValue(static_cast<int>(presenter_.done()));
-  operator_->setVisible(!presenter_.operator_request().isEmpty());
-  request_->setText(presenter_.operator_request());
+  const auto& request = presenter_.operator_request();
+  operator_->setVisible(request.has_value());
+  request_->setText(request ? in_words(*request) : QString());
   if (!isVisible()) return;
   show_curves();
   show_log();

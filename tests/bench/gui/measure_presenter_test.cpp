@@ -153,11 +153,14 @@ TEST(MeasurePresenter, AsksTheOperatorAndGoesOnWhenTheTargetIsChanged) {
   b.bench.set_plan(plan);
 
   b.presenter.start();
-  ASSERT_TRUE(wait_until([&] { return !b.presenter.operator_request().isEmpty(); }));
-  const QString request = b.presenter.operator_request();
+  ASSERT_TRUE(wait_until([&] { return b.presenter.operator_request().has_value(); }));
+  const OperatorRequest request = *b.presenter.operator_request();
   b.presenter.abort();
 
-  EXPECT_TRUE(request.contains("tcat-a")) << request.toStdString();
+  ASSERT_FALSE(request.steps.empty());
+  const auto* plate = std::get_if<PutInPlate>(&request.steps.front());
+  ASSERT_NE(plate, nullptr);
+  EXPECT_EQ(plate->plate, "tcat-a");
   EXPECT_TRUE(wait_until([&] { return b.idle(); })) << "a run that waits for a hand can be aborted";
 }
 

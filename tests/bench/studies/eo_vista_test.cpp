@@ -47,6 +47,9 @@ TEST(EoVistaFigures, WhatWasNotFoundIsMissingAndNotMadeUp) {
 TEST(ReproductionPage, ShowsEveryFigureAndEscapesTexts) {
   Reproduction reproduction;
   reproduction.title = "A < B";
+  reproduction.model_observer = eo_vista::hvs;
+  reproduction.simulated_sensors = {eo_vista::normal, eo_vista::microscan};
+  reproduction.cameras = {eo_vista::still, eo_vista::dsr2};
   reproduction.thresholds = thresholds(eo_vista::microscan, 1.5);
   reproduction.figures = eo_vista_figures(reproduction.thresholds, {});
 
@@ -56,6 +59,22 @@ TEST(ReproductionPage, ShowsEveryFigureAndEscapesTexts) {
   EXPECT_EQ(page.find("<script"), std::string::npos);
   for (const auto& figure : reproduction.figures)
     EXPECT_NE(page.find(escaped(figure.quantity).text), std::string::npos) << figure.quantity;
+}
+
+TEST(ReproductionPage, TellsAChangeFromAShareByItsKindWhateverItsWords) {
+  const auto said = [](FigureKind kind) {
+    Reproduction reproduction;
+    ReproducedFigure figure;
+    figure.kind = kind;
+    figure.quantity = "Correct at last";
+    figure.unit = "%";
+    figure.value = 12;
+    reproduction.figures = {figure};
+    return render_reproduction(reproduction);
+  };
+
+  EXPECT_NE(said(FigureKind::change).find(">+12"), std::string::npos);
+  EXPECT_EQ(said(FigureKind::share).find(">+12"), std::string::npos);
 }
 
 }  // namespace

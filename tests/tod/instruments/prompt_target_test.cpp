@@ -11,11 +11,13 @@
 
 #include "tests/tod/measurement/fake_clock.h"
 #include "tod/instruments/descriptor.h"
+#include "tod/instruments/operator_terminal.h"
 
 namespace todbench {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -37,7 +39,7 @@ class WrittenAnswers final : public LineSource {
 class PromptTargetTest : public ::testing::Test {
  protected:
   std::unique_ptr<Target> target(std::deque<std::string> answers) {
-    return prompt_target(out_, std::make_unique<WrittenAnswers>(std::move(answers)));
+    return prompt_target(operator_at_terminal(out_, std::make_shared<WrittenAnswers>(std::move(answers))));
   }
   // What was written since the last look.
   std::string said() {
@@ -140,9 +142,41 @@ TEST_F(PromptTargetTest, TheTimeOfTheOperatorIsTheSettlingTime) {
   FakeClock clock(12.5);
   PromptTargetOptions options;
   options.now = clock.now();
-  const auto hand = prompt_target(out_, std::make_unique<WrittenAnswers>(std::deque<std::string>{""}), options);
+  const auto hand = prompt_target([](const auto&, const auto&) { return OperatorAnswer::done; }, options);
 
   EXPECT_DOUBLE_EQ(hand->present(state_, {})->settling_s, 12.5);
+}
+
+/// Nobody reads a word: what is asked for and what is answered are values.
+TEST(PromptTarget, AsksInStepsAndIsAnsweredByAValue) {
+  std::vector<OperatorRequest> asked;
+  OperatorAnswer answer = OperatorAnswer::done;
+  const auto hand = prompt_target([&](const OperatorRequest& request, const std::stop_token&) {
+    asked.push_back(request);
+    return answer;
+  });
+  const TargetState first{"coarse", Mounting::identity, 2, {0, 0}};
+  const TargetState moved{"coarse", Mounting::identity, 2, {0.5, -0.25}};
+  const TargetState turned{"coarse", Mounting::rotated_180, -1, {0.5, -0.25}};
+
+  ASSERT_TRUE(hand->present(first, {}));
+  ASSERT_TRUE(hand->present(moved, {}));
+  answer = OperatorAnswer::stop;
+  const auto stopped = hand->present(turned, {});
+
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().code, ErrorCode::interrupted);
+  EXPECT_THAT(asked, ElementsAre(OperatorRequest{{PutInPlate{"coarse", Mounting::identity}, SetContrast{2}}},
+                                 OperatorRequest{{MoveSlightly{{0.5, -0.25}}}},
+                                 OperatorRequest{{Remount{Mounting::rotated_180}, SetContrast{-1}}}));
+}
+
+TEST(PromptTarget, AnErrorOfWhoeverAsksIsItsOwn) {
+  const auto hand = prompt_target([](const OperatorRequest&, const std::stop_token&) -> Result<OperatorAnswer> {
+    return fail(ErrorCode::disconnected, "the window is closed");
+  });
+
+  EXPECT_EQ(hand->present({"coarse", Mounting::identity, 1, {0, 0}}, {}).error().code, ErrorCode::disconnected);
 }
 
 class PipeTest : public ::testing::Test {
@@ -191,7 +225,7 @@ TEST_F(PipeTest, AStopRequestEndsTheWaitForTheOperator) {
 
 TEST_F(PipeTest, APromptOnAPipeIsAnsweredThroughIt) {
   std::ostringstream out;
-  const auto hand = prompt_target(out, std::move(lines_));
+  const auto hand = prompt_target(operator_at_terminal(out, std::move(lines_)));
   write("\n");
 
   EXPECT_TRUE(hand->present({"coarse", Mounting::identity, 1, {0, 0}}, {}));

@@ -1,0 +1,42 @@
+// A camera of Aravis that tells when its control is lost, and that is destroyed only where that is safe. Private to the
+// Aravis back end.
+//
+// Aravis emits "control-lost" on a thread of the device (heartbeat, USB events), and the destruction of the device
+// joins that thread. An emission holds a reference to the device; where it is the last one the thread joins itself and
+// GLib ends the program. So the owner is the last: he waits until no emission can be under way.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "acquisition/aravis/glib_ptr.h"
+
+namespace todbench {
+
+class WatchedCamera {
+ public:
+  /// `on_lost` is called on a thread of Aravis. It must not wait for the one that destroys this object.
+  WatchedCamera(GObjectPtr<ArvCamera> camera, std::function<void()> on_lost);
+  /// Destroys camera and device in this thread, after every emission of "control-lost" and after everybody else has
+  /// dropped his reference to the device: streams have to go first. Five seconds where the camera does not answer.
+  ~WatchedCamera();
+  WatchedCamera(WatchedCamera&&) noexcept = default;
+  WatchedCamera& operator=(WatchedCamera&&) = delete;
+  WatchedCamera(const WatchedCamera&) = delete;
+  WatchedCamera& operator=(const WatchedCamera&) = delete;
+
+  [[nodiscard]] ArvCamera* get() const { return camera_.get(); }
+
+ private:
+  class Flag;
+  struct Listener;
+  static void on_control_lost(ArvDevice* device, void* listener);
+  static void on_listener_gone(void* listener, GClosure* closure);
+  static void on_toggled(void* last, GObject* device, gboolean is_last);
+
+  GObjectPtr<ArvCamera> camera_;
+  std::shared_ptr<Flag> listener_gone_;
+  gulong handler_ = 0;
+};
+
+}  // namespace todbench

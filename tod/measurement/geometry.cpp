@@ -1,0 +1,75 @@
+#include "tod/measurement/geometry.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace todbench {
+namespace {
+
+std::string words(const PlateBeyondPicture& misfit) {
+  char text[200];
+  std::snprintf(text, sizeof text, ": its %.0f x %.0f mm are %.0f x %.0f pixels at %.2f m, the picture has %d x %d",
+                misfit.size_mm.width, misfit.size_mm.height, misfit.size_px.width, misfit.size_px.height,
+                misfit.distance_m, misfit.picture.width, misfit.picture.height);
+  return "plate " + misfit.plate + text;
+}
+
+std::string words(const TrianglesTooNear& misfit) {
+  return "plate " + misfit.plate + ", " + sentence(misfit.window);
+}
+
+}  // namespace
+
+std::vector<int> PreparedPlate::sides() const {
+  std::vector<int> out;
+  for (const auto& observer : observers) out.push_back(observer->window_samples());
+  return out;
+}
+
+Result<void> prepare(PreparedPlate& plate, Observer& observer, double scale_px_per_mm, int samples_per_pitch) {
+  plate.observers.clear();
+  plate.size_px.clear();
+  for (const auto& t : plate.plate.triangles) {
+    const double size_px = t.size_mm * scale_px_per_mm;
+    auto prepared = observer.prepare(size_px, samples_per_pitch);
+    if (!prepared) return fail("plate " + plate.plate.name + ", " + t.name, prepared.error());
+    plate.observers.push_back(*prepared);
+    plate.size_px.push_back(size_px);
+  }
+  return {};
+}
+
+Result<std::vector<Misfit>> find_misfits(const MeasurementOptions& options, Observer& observer, cv::Size picture) {
+  if (!(options.distance_m > 0) || !(options.ifov_mrad > 0))
+    return fail(ErrorCode::invalid_input, "distance and IFOV must be positive");
+  const double scale = 1 / (options.distance_m * options.ifov_mrad);
+  std::vector<Misfit> out;
+  for (const auto& plate : options.plates) {
+    PreparedPlate prepared{plate, {}, {}};
+    if (auto ready = prepare(prepared, observer, scale, options.samples_per_pitch); !ready)
+      return tl::unexpected(ready.error());
+    const double search = prepared.observers.empty() ? 0 : prepared.observers.front()->search_samples();
+    for (auto& window : touching_windows(plate, scale, prepared.sides(), search))
+      out.emplace_back(TrianglesTooNear{plate.name, std::move(window)});
+    const cv::Size2d size_px(plate.width_mm * scale, plate.height_mm * scale);
+    if (size_px.width > picture.width || size_px.height > picture.height)
+      out.emplace_back(
+          PlateBeyondPicture{plate.name, {plate.width_mm, plate.height_mm}, size_px, options.distance_m, picture});
+  }
+  std::stable_partition(out.begin(), out.end(),
+                        [](const Misfit& misfit) { return std::holds_alternative<PlateBeyondPicture>(misfit); });
+  return out;
+}
+
+std::string sentence(const Misfit& misfit) {
+  return std::visit([](const auto& one) { return words(one); }, misfit);
+}
+
+std::string sentences(const std::vector<Misfit>& misfits, std::size_t most) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, misfits.size()); ++i) text += (i == 0 ? "" : "; ") + sentence(misfits[i]);
+  if (misfits.size() > most) text += "; and " + std::to_string(misfits.size() - most) + " more";
+  return text;
+}
+
+}  // namespace todbench

@@ -1,0 +1,60 @@
+// What of a plate can be measured at a distance: the windows that observers need, and what does not fit.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "acquisition/core/result.h"
+#include "hvs/observer/observer.h"
+#include "tod/measurement/measurement.h"
+#include "tod/plate/target_plate.h"
+#include "tod/registration/patch_windows.h"
+
+namespace todbench {
+
+/// A plate of the plan with the observer prepared for each of its triangles.
+struct PreparedPlate {
+  TargetPlate plate;                                               ///< identity mounting
+  std::vector<std::shared_ptr<const PreparedObserver>> observers;  ///< per triangle; empty until the scale is known
+  std::vector<double> size_px;                                     ///< per triangle
+  /// Of the observers' windows, per triangle.
+  [[nodiscard]] std::vector<int> sides() const;
+};
+
+/// Prepares the observer for every triangle as the camera sees it at a scale. Errors: those of the observer.
+[[nodiscard]] Result<void> prepare(PreparedPlate& plate, Observer& observer, double scale_px_per_mm,
+                                   int samples_per_pitch);
+
+/// The picture does not hold the plate.
+struct PlateBeyondPicture {
+  std::string plate;
+  cv::Size2d size_mm;
+  cv::Size2d size_px;     ///< at `distance_m`
+  double distance_m = 0;  ///< entrance pupil to plate
+  cv::Size picture;
+};
+
+/// The observer's window round one triangle would see another.
+struct TrianglesTooNear {
+  std::string plate;
+  TouchingWindow window;
+};
+
+using Misfit = std::variant<PlateBeyondPicture, TrianglesTooNear>;
+
+/// What cannot be measured with this geometry; empty: all fits. Plates that are too large come first, because they
+/// explain the rest. Errors: `invalid_input` (no distance, no IFOV), those of the observer.
+[[nodiscard]] Result<std::vector<Misfit>> find_misfits(const MeasurementOptions& options, Observer& observer,
+                                                       cv::Size picture);
+
+/// "plate tcat-a: its 400 x 300 mm are 800 x 600 pixels at 2.00 m, the picture has 640 x 480"
+[[nodiscard]] std::string sentence(const Misfit& misfit);
+
+/// The first `most` in words, and how many more there are.
+[[nodiscard]] std::string sentences(const std::vector<Misfit>& misfits, std::size_t most);
+
+}  // namespace todbench

@@ -1,0 +1,63 @@
+#include "tod/presentation/operator_request.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace todbench {
+namespace {
+
+const char* words(Mounting mounting) {
+  switch (mounting) {
+    case Mounting::identity:
+      return "as drawn, front to the camera";
+    case Mounting::rotated_180:
+      return "front to the camera, upside down (turned by 180 degrees)";
+    case Mounting::mirrored_horizontally:
+      return "back to the camera, turned about its vertical axis (left and right swapped)";
+    case Mounting::mirrored_vertically:
+      return "back to the camera, turned about its horizontal axis (top and bottom swapped)";
+  }
+  return "as drawn";
+}
+
+std::string words(const PutInPlate& step) {
+  return "put in plate '" + step.plate + "', " + words(step.mounting);
+}
+
+std::string words(const Remount& step) {
+  return std::string("remount the plate: ") + words(step.mounting);
+}
+
+std::string words(const SetContrast& step) {
+  std::array<char, 64> kelvin{};
+  std::snprintf(kelvin.data(), kelvin.size(), "%+.3f K", step.delta_t_k);
+  return std::string("set the black body to ") + kelvin.data() + " against the plate and wait until it is stable";
+}
+
+std::string words(const MoveSlightly& step) {
+  std::array<char, 96> millimetres{};
+  std::snprintf(millimetres.data(), millimetres.size(), "%.1f mm %s and %.1f mm %s", std::abs(step.by_mm.x),
+                step.by_mm.x < 0 ? "left" : "right", std::abs(step.by_mm.y), step.by_mm.y < 0 ? "up" : "down");
+  return std::string("move the plate or the camera slightly, about ") + millimetres.data() +
+         " as the camera sees the plate; the amount is measured, it need not be exact";
+}
+
+}  // namespace
+
+OperatorRequest request_between(const std::optional<TargetState>& last, const TargetState& next) {
+  OperatorRequest request;
+  const bool other_plate = !last || last->plate != next.plate;
+  if (other_plate) request.steps.emplace_back(PutInPlate{next.plate, next.mounting});
+  if (!other_plate && last->mounting != next.mounting) request.steps.emplace_back(Remount{next.mounting});
+  if (!last || last->delta_t_k != next.delta_t_k) request.steps.emplace_back(SetContrast{next.delta_t_k});
+  if (last && request.steps.empty() && last->shift_mm != next.shift_mm)
+    request.steps.emplace_back(MoveSlightly{next.shift_mm - last->shift_mm});
+  return request;
+}
+
+std::string sentence(const OperatorStep& step) {
+  return std::visit([](const auto& one) { return words(one); }, step);
+}
+
+}  // namespace todbench
