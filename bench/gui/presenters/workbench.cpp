@@ -11,10 +11,6 @@
 namespace todbench {
 namespace {
 
-QString group_of(const CameraEntry& camera) {
-  return QString::fromStdString(camera.transport == "simulation" ? "Simulated sensors" : camera.transport);
-}
-
 std::vector<DeviceEntry> built_in_devices() {
   std::vector<DeviceEntry> entries;
 #ifdef TODBENCH_WITH_ARAVIS
@@ -112,7 +108,7 @@ void Workbench::rescan() {
       for (const auto& camera : listing.cameras) {
         // The emulated laboratory and the shipped sensors are in the list already.
         const QString id = QString::fromStdString(camera.id);
-        if (is_simulated(id) || camera.address.starts_with("127.")) continue;
+        if (camera_name(camera.id, camera_scheme::sim) || camera.address.starts_with("127.")) continue;
         entries.push_back({.id = id,
                            .group = QString::fromStdString(camera.transport),
                            .label = QString::fromStdString(camera.vendor + " " + camera.model),
