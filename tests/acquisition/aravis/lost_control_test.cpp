@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "acquisition/aravis/aravis_source.h"
-#include "tests/acquisition/aravis/gvsp_test_support.h"
+#include "tests/support/gvsp_test_support.h"
 
 namespace todbench {
 namespace {

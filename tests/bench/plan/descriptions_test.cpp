@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "sim_devices/sensor/effect_list.h"
 #include "sim_devices/sensor/sensor_key.h"
 #include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
@@ -144,7 +145,9 @@ TEST(Sensor, EveryKeyIsReadIsRequiredOrHasItsDefaultAndKeepsItsRange) {
     }
     const bool is_word = std::holds_alternative<DisplayReconstruction SensorSpec::*>(key.member);
     const auto wrong = parse_sensor({"s.toml", file_with(name, is_word ? "\"mirror\"" : "-1e300")});
-    if (key.range.low > -1e300 || is_word) EXPECT_THAT(wrong.error().message, HasSubstr("'" + name + "'"));
+    if (key.range.low > -1e300 || is_word) {
+      EXPECT_THAT(wrong.error().message, HasSubstr("'" + name + "'"));
+    }
   }
 }
 

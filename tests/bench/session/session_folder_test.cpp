@@ -65,31 +65,6 @@ Provenance full_provenance(const Plan& plan) {
   return provenance;
 }
 
-/// Trials of a unit with S75 of 2 mrad at 16.9 K, answers drawn from the psychometric function itself.
-std::vector<Trial> drawn_trials() {
-  const RandomStream stream(5, "drawn trials");
-  std::vector<Trial> trials;
-  std::uint64_t draw = 0;
-  for (int presentation = 0; presentation < 40; ++presentation) {
-    for (int i = 0; i < 10; ++i) {
-      Trial trial;
-      trial.presentation = presentation;
-      trial.plate = "tcat-a";
-      trial.triangle = "row " + std::to_string(i) + ", triangle 1";
-      trial.set_delta_t_k = trial.delta_t_k = 16.9;
-      trial.size_mrad = 1.2 * std::pow(1.15, i);
-      trial.size_mm = 2 * trial.size_mrad;
-      trial.size_px = trial.size_mrad / 1.3;
-      const double p = psychometric(PsychometricForm::size, trial.size_mrad, 2.0, 4.0, 0.0);
-      trial.truth = all_apexes[stream.below(4, draw++)];
-      const bool right = stream.uniform(draw++) < p;
-      trial.answer = right ? trial.truth : all_apexes[(static_cast<std::size_t>(trial.truth) + 1) % 4];
-      trials.push_back(trial);
-    }
-  }
-  return trials;
-}
-
 /// Writes a complete session and returns its folder.
 std::filesystem::path write_session(const testing::TemporaryFolder& parent, const std::vector<Trial>& trials) {
   Plan plan;
