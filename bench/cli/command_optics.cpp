@@ -7,7 +7,9 @@
 #include "bench/cli/commands.h"
 #include "bench/plan/descriptions.h"
 #include "bench/text/files.h"
+#include "sim_devices/sensor/effect_detector.h"
 #include "sim_devices/sensor/image_chain.h"
+#include "sim_devices/sensor/sensor_model.h"
 #include "sim_devices/sensor/transfer_functions.h"
 #include "tod/plate/test_pattern.h"
 
@@ -50,23 +52,26 @@ ImageChain::InfinitePlane degraded(const SensorSpec& spec, const SensorPlan& pla
   return image;
 }
 
-void add_noise(cv::Mat1d& values, const SensorSpec& spec, std::uint64_t seed) {
-  const double netd_k = spec.netd_k / std::sqrt(spec.exposures_per_sample());
-  std::vector<float> temporal(values.total());
-  RandomStream(seed, "render.temporal").fill_normal(temporal);
-  const int n = spec.samples_per_pitch();  // samples of one detector share its fixed pattern
-  const int detectors = (values.cols + n - 1) / n;
-  std::vector<float> fixed_pattern(static_cast<std::size_t>(detectors) * static_cast<std::size_t>(detectors));
-  RandomStream(seed, "render.fixed").fill_normal(fixed_pattern);
-  for (int j = 0; j < values.rows; ++j) {
-    for (int i = 0; i < values.cols; ++i) {
-      double& value = values(j, i);
-      value += netd_k * static_cast<double>(temporal[static_cast<std::size_t>(j * values.cols + i)]);
-      value += spec.fixed_pattern_k *
-               static_cast<double>(fixed_pattern[static_cast<std::size_t>(j / n * detectors + i / n)]);
-      value = std::nearbyint(value / spec.kelvin_per_count) * spec.kelvin_per_count;
-    }
-  }
+/// The same window as the simulated camera shows it: noise, defects, display and counts of a camera that looks at it
+/// with a margin for what display and dead detectors take from beyond.
+cv::Mat1d as_exposed(SensorSpec spec, const SensorPlan& plan, const Accuracy& accuracy, const RenderArguments& a,
+                     std::uint64_t seed) {
+  constexpr int margin = 8;  // detectors; the display reaches eight samples
+  const int n = spec.samples_per_pitch();
+  spec.width = spec.height = (a.window + n - 1) / n + 2 * margin;
+  const SensorModel camera(spec, plan, accuracy, seed);
+  const int before = (camera.size().width - a.window) / 2;
+  const double step = 1.0 / n;
+  const double first = -step * (before + a.window / 2);
+  const Polygon shape = triangle(a.size_pitch, *apex_from(a.apex), {a.x_pitch, a.y_pitch});
+  cv::Mat1f signal;
+  ImageChain(spec, plan, accuracy)
+      .infinite_plane(shape, {first, first}, step, camera.size())
+      .values.convertTo(signal, CV_32F);
+  const cv::Mat1f shown = camera.picture(signal, a.delta_t_k, spec.scene_temperature_k, 0);
+  cv::Mat1d window;
+  shown(cv::Rect(before, before, a.window, a.window)).convertTo(window, CV_64F);
+  return window;
 }
 
 /// Encoded in memory, so that a file is whole or not there.
@@ -86,10 +91,11 @@ int run_render(Console& console, RenderArguments a, std::uint64_t seed) {
   if (auto valid = validate(*spec); !valid) return report_error(console, valid.error());
   auto accuracy = Accuracy::named(a.accuracy);
   if (!accuracy) return report_error(console, accuracy.error());
-  auto image = degraded(*spec, full_plan(*spec, {}, {}), *accuracy, a);
+  const SensorPlan plan = full_plan(*spec, {}, {});
+  auto image = degraded(*spec, plan, *accuracy, a);
   image.values *= a.delta_t_k;
   image.max_error_estimate *= std::abs(a.delta_t_k);
-  if (a.noise == "on") add_noise(image.values, *spec, seed);
+  if (a.noise == "on") image.values = as_exposed(*spec, plan, *accuracy, a, seed);
   if (!a.tiff.empty()) {
     cv::Mat1f single;
     image.values.convertTo(single, CV_32F);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bench/plan/strict_toml.h"
+#include "sim_devices/sensor/sensor_key.h"
 
 namespace todbench {
 
@@ -45,6 +46,28 @@ void read_row(TomlReader& row, std::size_t number, TargetPlate& plate) {
   }
 }
 
+/// The fallback of a key that may be missing is what the parameter is without it.
+void read_key(TomlReader& reader, const SensorKey& key, SensorSpec& spec) {
+  const bool required = key.presence == KeyPresence::required;
+  const auto& [low, high, edge] = key.range;
+  if (const auto* number = std::get_if<double SensorSpec::*>(&key.member)) {
+    const auto low_edge = edge == KeyRange::Edge::included ? NumberRange::Edge::included : NumberRange::Edge::excluded;
+    spec.** number = reader.number(key.name, NumberRange{low, high, low_edge},
+                                   required ? std::nullopt : std::optional(spec.**number));
+  } else if (const auto* whole = std::get_if<int SensorSpec::*>(&key.member)) {
+    spec.** whole =
+        static_cast<int>(reader.whole(key.name, static_cast<std::int64_t>(low), static_cast<std::int64_t>(high),
+                                      required ? std::nullopt : std::optional<std::int64_t>(spec.**whole)));
+  } else {
+    static const std::vector<std::string> words = {std::string(to_string(DisplayReconstruction::sample_and_hold)),
+                                                   std::string(to_string(DisplayReconstruction::bilinear))};
+    const auto member = std::get<DisplayReconstruction SensorSpec::*>(key.member);
+    spec.*member = reader.choice(key.name, words, std::string(to_string(spec.*member))) == words[1]
+                       ? DisplayReconstruction::bilinear
+                       : DisplayReconstruction::sample_and_hold;
+  }
+}
+
 template <typename T>
 Result<T> load(ResourceKind kind, std::string_view reference, Result<T> (*parse)(const Resource&)) {
   const Result<Resource> resource = find_resource(kind, reference);
@@ -58,44 +81,9 @@ Result<SensorSpec> parse_sensor(const Resource& resource) {
   Result<TomlReader> reader = TomlReader::parse(resource.text, resource.origin);
   if (!reader) return tl::unexpected(reader.error());
   SensorSpec spec;
-  const NumberRange positive = NumberRange::positive();
-  const NumberRange not_negative = NumberRange::not_negative();
   spec.name = reader->text("name", std::nullopt);
   spec.description = reader->text("description", spec.description);
-  spec.width = static_cast<int>(reader->whole("width", 16, 16384, std::nullopt));
-  spec.height = static_cast<int>(reader->whole("height", 16, 16384, std::nullopt));
-  spec.pitch_um = reader->number("pitch_um", positive, std::nullopt);
-  spec.detector_um = reader->number("detector_um", positive, std::nullopt);
-  spec.focal_length_mm = reader->number("focal_length_mm", positive, std::nullopt);
-  spec.f_number = reader->number("f_number", positive, std::nullopt);
-  spec.wavelength_min_um = reader->number("wavelength_min_um", positive, std::nullopt);
-  spec.wavelength_max_um = reader->number("wavelength_max_um", positive, std::nullopt);
-  spec.optics_transmission =
-      reader->number("optics_transmission", NumberRange::above_to(0, 1), spec.optics_transmission);
-  spec.aberration_sigma_pitch =
-      reader->number("aberration_sigma_pitch", NumberRange::between(0, 10), spec.aberration_sigma_pitch);
-  spec.netd_k = reader->number("netd_k", not_negative, std::nullopt);
-  spec.fixed_pattern_k = reader->number("fixed_pattern_k", not_negative, spec.fixed_pattern_k);
-  spec.time_constant_ms = reader->number("time_constant_ms", NumberRange::between(0, 1000), spec.time_constant_ms);
-  spec.row_noise_k = reader->number("row_noise_k", not_negative, spec.row_noise_k);
-  spec.column_noise_k = reader->number("column_noise_k", not_negative, spec.column_noise_k);
-  spec.dead_pixel_share = reader->number("dead_pixel_share", NumberRange::between(0, 0.1), spec.dead_pixel_share);
-  spec.frames_averaged = static_cast<int>(reader->whole("frames_averaged", 1, 1024, spec.frames_averaged));
-  spec.super_resolution_frames =
-      static_cast<int>(reader->whole("super_resolution_frames", 0, 1024, spec.super_resolution_frames));
-  const std::vector<std::string> displays{"sample_and_hold", "bilinear"};
-  spec.display = reader->choice("display", displays, "sample_and_hold") == "bilinear"
-                     ? DisplayReconstruction::bilinear
-                     : DisplayReconstruction::sample_and_hold;
-  spec.display_blur_samples =
-      reader->number("display_blur_samples", NumberRange::between(0, 3), spec.display_blur_samples);
-  spec.microscan = static_cast<int>(reader->whole("microscan", 1, 4, spec.microscan));
-  spec.bits = static_cast<int>(reader->whole("bits", 8, 16, spec.bits));
-  spec.kelvin_per_count = reader->number("kelvin_per_count", positive, spec.kelvin_per_count);
-  spec.offset_k = reader->number("offset_k", NumberRange::any(), spec.offset_k);
-  spec.frame_rate_hz = reader->number("frame_rate_hz", positive, spec.frame_rate_hz);
-  spec.scene_temperature_k =
-      reader->number("scene_temperature_k", NumberRange::between(50, 5000), spec.scene_temperature_k);
+  for (const SensorKey& key : sensor_keys()) read_key(*reader, key, spec);
   return checked(*reader, resource, std::move(spec));
 }
 

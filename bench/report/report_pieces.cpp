@@ -1,5 +1,7 @@
 #include "bench/report/report_pieces.h"
 
+#include "sim_devices/sensor/effect_row.h"
+
 namespace todbench {
 
 Markup section(std::string_view title, const Markup& content) {
@@ -84,37 +86,7 @@ std::string_view in_words(Mounting mounting) {
 }
 
 std::string_view in_words(Effect effect) {
-  switch (effect) {
-    case Effect::diffraction:
-      return "Diffraction";
-    case Effect::spectral_band:
-      return "Spectral band";
-    case Effect::aberration:
-      return "Aberration of the lens";
-    case Effect::detector:
-      return "Detector footprint";
-    case Effect::motion:
-      return "Motion and time constant";
-    case Effect::microscan:
-      return "Microscan";
-    case Effect::temporal_noise:
-      return "Temporal noise";
-    case Effect::fixed_pattern:
-      return "Fixed pattern noise";
-    case Effect::row_column_noise:
-      return "Row and column noise";
-    case Effect::dead_pixels:
-      return "Dead pixels";
-    case Effect::frame_averaging:
-      return "Frame averaging";
-    case Effect::super_resolution:
-      return "Dynamic super-resolution";
-    case Effect::display:
-      return "Display reconstruction";
-    case Effect::quantisation:
-      return "Quantisation";
-  }
-  return "unknown";
+  return row_of(effect).title;
 }
 
 Mood mood_of(LimitVerdict verdict) {

@@ -216,14 +216,12 @@ Result<std::vector<DirectPoint>> direct_estimate(const SensorSpec& spec, const S
   if (conditions.sensor.super_resolution_frames == 0) conditions.sensor.microscan = conditions.samples_per_pitch;
   const SensorSpec sensor = conditions.sensor;
   SizeLadder ladder(chain, observer, std::move(conditions), options);
-  const double netd = sensor.netd_k * observer.spec().sensor_noise_factor / std::sqrt(sensor.exposures_per_sample());
-  const double step = plan.simulates(Effect::quantisation) ? spec.kelvin_per_count : 0;
+  const double white_k = std::sqrt(white_variance_k2(sensor, plan, observer.spec().sensor_noise_factor));
   std::vector<DirectPoint> points;
   for (const double contrast : delta_t_k) {
     const double magnitude = std::abs(contrast);
     if (!(magnitude > 0)) return fail(ErrorCode::invalid_input, "a contrast of 0 K has no threshold");
-    const WhiteNoise white{.sensor = std::sqrt(netd * netd + step * step / 12) / magnitude,
-                           .internal = observer.spec().internal_noise};
+    const WhiteNoise white{.sensor = white_k / magnitude, .internal = observer.spec().internal_noise};
     auto point = estimate_contrast(ladder, contrast, white, options.accuracy, [&](double s75) {
       return predicted_direct_seconds(observer.spec(), sensor, s75, Accuracy::max_noise_draws,
                                       options.accuracy.phases_per_axis);

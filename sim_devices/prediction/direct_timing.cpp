@@ -44,9 +44,8 @@ Result<double> measured_direct_seconds(const SensorSpec& spec, const SensorPlan&
                                    .search_step_samples = observer_spec.search_step_samples};
   TemplateObserver observer(observer_spec, triangle_alternatives());
   const ImageChain chain(spec, plan, accuracy, motion);
-  const WhiteNoise white{.sensor = sensor.netd_k * observer_spec.sensor_noise_factor /
-                                   std::sqrt(sensor.exposures_per_sample()) / std::abs(delta_t_k),
-                         .internal = observer_spec.internal_noise};
+  const double white_k = std::sqrt(white_variance_k2(sensor, plan, observer_spec.sensor_noise_factor));
+  const WhiteNoise white{.sensor = white_k / std::abs(delta_t_k), .internal = observer_spec.internal_noise};
   (void)chain.image(triangle(s75_pitch, Apex::up));  // tabulates the transfer function: timed with the first size
   const double t0 = thread_seconds();
   auto bank = observer.bank(s75_pitch * samples_per_pitch, samples_per_pitch);

@@ -1,21 +1,21 @@
 #include "sim_devices/prediction/effect_planner.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <map>
 #include <optional>
 
 #include "sim_devices/prediction/cued_estimate.h"
-#include "sim_devices/sensor/transfer_functions.h"
+#include "sim_devices/sensor/effect_row.h"
 #include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {
 
 constexpr int planning_wavelengths = 4;
-constexpr double budget_share = 0.8;      // of the tolerance; the rest is for numerical errors
-constexpr double strongest_motion = 0.5;  // pitches per time constant; beyond it the bound does not hold
+constexpr double budget_share = 0.8;  // of the tolerance; the rest is for numerical errors
 
 std::string formatted(const char* format, auto... values) {
   char text[256];
@@ -25,9 +25,9 @@ std::string formatted(const char* format, auto... values) {
 
 /// Variances per sample in units of the contrast squared.
 struct NoiseBudget {
-  double temporal = 0, quantisation = 0, internal = 0, pattern = 0, lines = 0;
-  [[nodiscard]] double white() const { return temporal + quantisation + internal; }
-  [[nodiscard]] double total() const { return white() + pattern + lines; }
+  std::array<double, all_effects.size()> by_effect{};
+  double white = 0;  ///< that of the observer included
+  double total = 0;
 };
 
 /// One contrast with everything that the criteria ask of it.
@@ -41,51 +41,52 @@ double squared(double contrast_k) {
   return std::pow(std::max(std::abs(contrast_k), 1e-100), 2);
 }
 
-NoiseBudget noise_of(const SensorSpec& sensor, const TemplateObserverSpec& observer, double contrast_k) {
-  const double c2 = squared(contrast_k);
-  const double netd = sensor.netd_k * observer.sensor_noise_factor;
-  const double step = sensor.kelvin_per_count;
-  return {.temporal = netd * netd / sensor.exposures_per_sample() / c2,
-          .quantisation = step * step / 12 / c2,
-          .internal = observer.internal_noise * observer.internal_noise,
-          .pattern = 0,
-          .lines = 0};
+NoiseBudget white_noise(const SensorSpec& sensor, const TemplateObserverSpec& observer, double contrast_k) {
+  NoiseBudget noise;
+  for (const Effect effect : all_effects) {
+    const EffectRow& row = row_of(effect);
+    if (row.white_variance_k2 == nullptr) continue;
+    const double variance = row.white_variance_k2(sensor, observer.sensor_noise_factor) / squared(contrast_k);
+    noise.by_effect[static_cast<std::size_t>(effect)] = variance;
+    noise.white += variance;
+  }
+  noise.white += observer.internal_noise * observer.internal_noise;
+  noise.total = noise.white;
+  return noise;
 }
 
-/// Fixed pattern and lines count as much white noise as they move the differences between templates. The search may
-/// find places where they move them more: half as much again; at least the bound n^2 for a pattern shared by n x n
-/// samples.
+/// Noise that is not white counts as much white noise as it moves the differences between templates.
 void add_coloured(NoiseBudget& noise, const SensorSpec& sensor, const SizeTrial& trial, double contrast_k) {
-  const double c2 = squared(contrast_k);
-  const double n2 = sensor.samples_per_pitch() * sensor.samples_per_pitch();
-  if (sensor.fixed_pattern_k > 0) noise.pattern = n2 * sensor.fixed_pattern_k * sensor.fixed_pattern_k / c2;
-  const double exposures = sensor.exposures_per_sample();
-  if (sensor.row_noise_k > 0)
-    noise.lines +=
-        1.5 * trial.variance_ratio(SizeTrial::Coloured::rows) * std::pow(sensor.row_noise_k, 2) / exposures / c2;
-  if (sensor.column_noise_k > 0)
-    noise.lines +=
-        1.5 * trial.variance_ratio(SizeTrial::Coloured::columns) * std::pow(sensor.column_noise_k, 2) / exposures / c2;
+  const NoiseScope scope{.spec = sensor, .contrast_k2 = squared(contrast_k), .variance_ratio = [&](SharedBy shared) {
+                           return trial.variance_ratio(shared);
+                         }};
+  for (const Effect effect : all_effects) {
+    const EffectRow& row = row_of(effect);
+    if (row.coloured_variance == nullptr) continue;
+    const double variance = row.coloured_variance(scope);
+    noise.by_effect[static_cast<std::size_t>(effect)] = variance;
+    noise.total += variance;
+  }
 }
 
 Result<Contrast> contrast_of(CuedEstimate& cued, const SensorSpec& sensor, const SensorPlan& everything,
                              const TemplateObserverSpec& observer, double delta_t_k) {
   Contrast out;
   out.outlook.delta_t_k = delta_t_k;
-  out.noise = noise_of(sensor, observer, delta_t_k);
-  out.outlook.q_eff = std::sqrt(out.noise.white());
+  out.noise = white_noise(sensor, observer, delta_t_k);
+  out.outlook.q_eff = std::sqrt(out.noise.white);
   auto size = cued.s75_pitch(out.outlook.q_eff);
   if (!size) return tl::unexpected(size.error());
   const auto trial = cued.trial(*size);
   if (!trial) return tl::unexpected(trial.error());
   add_coloured(out.noise, sensor, **trial, delta_t_k);
-  if (out.noise.total() > out.noise.white()) {
-    size = cued.s75_pitch(std::sqrt(out.noise.total()));
+  if (out.noise.total > out.noise.white) {
+    size = cued.s75_pitch(std::sqrt(out.noise.total));
     if (!size) return tl::unexpected(size.error());
   }
-  const auto exponent = cued.sensitivity(std::sqrt(out.noise.total()));
+  const auto exponent = cued.sensitivity(std::sqrt(out.noise.total));
   if (!exponent) return tl::unexpected(exponent.error());
-  const auto slope = cued.weibull_slope(std::sqrt(out.noise.total()));
+  const auto slope = cued.weibull_slope(std::sqrt(out.noise.total));
   if (!slope) return tl::unexpected(slope.error());
   out.outlook.weibull_slope = *slope;
   out.outlook.s75_pitch = *size;
@@ -97,12 +98,6 @@ Result<Contrast> contrast_of(CuedEstimate& cued, const SensorSpec& sensor, const
   };
   out.outlook.blur_exponent = (d(1.05) - d(1 / 1.05)) / (2 * std::log(1.05));
   return out;
-}
-
-/// Change of ln S75 when the variance changes by a share of what there is.
-double noise_change(const Contrast& c, double variance_change) {
-  const double share = std::max(variance_change / c.noise.total(), -1 + 1e-9);
-  return std::abs(c.outlook.noise_exponent * 0.5 * std::log1p(share));
 }
 
 SensorPlan without(SensorPlan plan, Effect effect) {
@@ -123,61 +118,18 @@ double discriminability_change(const Contrast& c, const SensorSpec& sensor, cons
 /// A bound on the change of ln S75 that skipping the effect makes at one contrast; nothing where none can be promised.
 std::optional<double> bound(Effect effect, const Contrast& c, const SensorSpec& sensor, const SensorPlan& everything,
                             SceneMotion motion) {
-  const double s2 = c.outlook.s75_pitch * c.outlook.s75_pitch;
-  const double n = sensor.samples_per_pitch();
-  switch (effect) {
-    case Effect::detector:
-    case Effect::microscan:
-    case Effect::super_resolution:
-      return std::nullopt;
-    case Effect::diffraction:
-      // An upper bound for the undersampled sensor, within 0.02 of the truth for a finer sampled one.
-      return discriminability_change(c, sensor, everything, effect) + (n > 1 ? 0.02 : 0);
-    case Effect::spectral_band:
-      return 2 * discriminability_change(c, sensor, everything, effect);
-    case Effect::aberration:
-      return 12 * sensor.aberration_sigma_pitch * sensor.aberration_sigma_pitch / s2;
-    case Effect::motion: {
-      const cv::Point2d smear = smear_pitch(sensor, everything, motion);
-      const double v_tau = std::hypot(smear.x, smear.y);
-      if (v_tau >= strongest_motion) return std::nullopt;
-      return 12 * v_tau * v_tau / 2 / s2;
-    }
-    case Effect::temporal_noise:
-      return noise_change(c, -c.noise.temporal);
-    case Effect::fixed_pattern:
-      return noise_change(c, -c.noise.pattern);
-    case Effect::row_column_noise:
-      return noise_change(c, -c.noise.lines);
-    case Effect::quantisation:
-      return noise_change(c, -c.noise.quantisation);
-    case Effect::frame_averaging:
-      // Without it the noise is larger: the bound has the sign the other way.
-      return noise_change(c, (sensor.frames_averaged - 1) * (c.noise.temporal + c.noise.lines));
-    case Effect::dead_pixels:
-      // What replaces a pixel at an edge is off by a third of the contrast, in all of a detector's samples. At high
-      // contrast that is no small noise: a dead detector on the target or next to it may cost all that is above chance,
-      // 0.5 of the answers, and the proportion rises by 1 per ln S.
-      return std::max(noise_change(c, sensor.dead_pixel_share * n * n / 9.0),
-                      0.5 * sensor.dead_pixel_share * std::pow(1.5 * c.outlook.s75_pitch + 2, 2));
-    case Effect::display:
-      // Twice what was found: 1.1 % for a blur of 0.2 samples and as its square; and 2.7 % for bilinear interpolation.
-      return 0.025 * std::pow(sensor.display_blur_samples / 0.2, 2) +
-             (sensor.display == DisplayReconstruction::bilinear ? 0.027 : 0);
-  }
-  return std::nullopt;
-}
-
-std::string_view why_never(Effect effect) {
-  switch (effect) {
-    case Effect::detector:
-      return "always simulated: without the footprint aliasing changes the acuity in either direction";
-    case Effect::microscan:
-    case Effect::super_resolution:
-      return "always simulated: it changes the sampling, for which there is no criterion";
-    default:
-      return "always simulated: half a pitch and more per time constant is beyond the criterion";
-  }
+  const EffectRow& row = row_of(effect);
+  if (row.bound == nullptr) return std::nullopt;
+  return row.bound({.spec = sensor,
+                    .everything = everything,
+                    .motion = motion,
+                    .s75_pitch = c.outlook.s75_pitch,
+                    .noise_exponent = c.outlook.noise_exponent,
+                    .noise_variance = c.noise.by_effect,
+                    .total_variance = c.noise.total,
+                    .discriminability_change = [&](Effect left_out) {
+                      return discriminability_change(c, sensor, everything, left_out);
+                    }});
 }
 
 struct Candidate {
@@ -288,11 +240,11 @@ Result<EffectPlan> plan_effects(const SceneSurvey& survey, const EffectPlannerOp
     }
     decision.predicted_change_percent = survey.change_percent[i];
     if (!decision.predicted_change_percent) {
-      decision.reason = why_never(decision.effect);
+      decision.reason = row_of(decision.effect).always;
       continue;
     }
-    if (decision.effect == Effect::diffraction) {
-      decision.reason = "simulated: it ends the band, so leaving it out would cost more than it saves";
+    if (row_of(decision.effect).when_bounded == WhenBounded::simulated) {
+      decision.reason = row_of(decision.effect).always;
       continue;
     }
     if (!contains(options.skip, decision.effect) && !contains(options.force, decision.effect))

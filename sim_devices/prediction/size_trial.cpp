@@ -8,7 +8,8 @@
 #include "hvs/observer/known_position.h"
 #include "hvs/observer/observer.h"
 #include "hvs/observer/score_maxima.h"
-#include "sim_devices/sensor/picture_stages.h"
+#include "sim_devices/sensor/effect_dead_pixels.h"
+#include "sim_devices/sensor/effect_display.h"
 #include "tod/plate/test_pattern.h"
 
 namespace todbench {
@@ -21,9 +22,18 @@ std::uint64_t white_part(std::uint64_t draw) {
 std::uint64_t pattern_part(std::uint64_t draw) {
   return 2 * draw + 1;
 }
-enum class Rare : std::uint64_t { rows, columns, dead };
-std::uint64_t rare_part(std::uint64_t draw, Rare part) {
-  return (std::uint64_t{1} << 40) + 3 * draw + static_cast<std::uint64_t>(part);
+/// For dead detectors and for lines, three a draw.
+std::uint64_t rare_part(std::uint64_t draw, std::uint64_t part) {
+  return (std::uint64_t{1} << 40) + 3 * draw + part;
+}
+
+/// The stream of that name of one draw.
+RandomStream named(const RandomStream& stream, std::uint64_t draw, std::string_view name) {
+  if (name == "fixed") return stream.sub(pattern_part(draw));
+  if (name == "rows") return stream.sub(rare_part(draw, 0));
+  if (name == "columns") return stream.sub(rare_part(draw, 1));
+  if (name == "dead") return stream.sub(rare_part(draw, 2));
+  return {stream.sub((std::uint64_t{1} << 41) + draw).stream(), name};
 }
 
 }  // namespace
@@ -32,12 +42,17 @@ SizeTrial::SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank
                      const TrialConditions& conditions, RandomStream stream)
     : bank_(std::move(bank)), conditions_(conditions), stream_(stream) {
   const SensorSpec& sensor = conditions_.sensor;
-  const bool lines = sensor.row_noise_k > 0 || sensor.column_noise_k > 0;
-  has_coloured_ = sensor.fixed_pattern_k > 0 || lines;
+  bool turns_alike = true;
+  for (const Effect effect : all_effects) {
+    const EffectRow& row = row_of(effect);
+    if (is_neutral(sensor, effect, conditions_.motion)) continue;
+    turns_alike = turns_alike && row.directions == Directions::alike;
+    const auto* noise = std::get_if<stage::Noise>(&row.stage);
+    if (noise != nullptr && noise->colour == stage::Colour::coloured) coloured_stages_.push_back(noise);
+  }
   if (has_display(sensor)) display_taps_ = taps_of([&](double f) { return display_response(sensor, f); });
-  // The sampling grid and everything else but motion and lines look the same from all four sides.
-  const bool alike = conditions_.orientations == ShownOrientations::as_needed && !lines &&
-                     !(conditions_.motion.moving() && sensor.time_constant_ms > 0);
+  // The sampling grid and most effects look the same from all four sides.
+  const bool alike = conditions_.orientations == ShownOrientations::as_needed && turns_alike;
   const int per_axis = std::max(1, conditions_.phases_per_axis / conditions_.samples_per_pitch);
   for (int truth = 0; truth < (alike ? 1 : bank_->alternatives()); ++truth) {
     const cv::Mat1d fine = chain.image(triangle(size_pitch, all_apexes[static_cast<std::size_t>(truth)]))
@@ -115,7 +130,7 @@ double SizeTrial::known_position_proportion(double noise, int nodes) const {
   return sum / static_cast<double>(responses_.size());
 }
 
-double SizeTrial::variance_ratio(Coloured kind) const {
+double SizeTrial::variance_ratio(SharedBy shared_by) const {
   const int n = conditions_.samples_per_pitch;
   double largest = 0;
   for (int first = 0; first < bank_->alternatives(); ++first) {
@@ -124,9 +139,9 @@ double SizeTrial::variance_ratio(Coloured kind) const {
       std::map<std::pair<int, int>, double> shared;  // samples with one common offset
       for (int row = 0; row < d.rows; ++row) {
         for (int column = 0; column < d.cols; ++column) {
-          const auto key = kind == Coloured::pattern ? std::pair(row / n, column / n)
-                           : kind == Coloured::rows  ? std::pair(row, column % n)
-                                                     : std::pair(column, row % n);
+          const auto key = shared_by == SharedBy::detector ? std::pair(row / n, column / n)
+                           : shared_by == SharedBy::row    ? std::pair(row, column % n)
+                                                           : std::pair(column, row % n);
           shared[key] += static_cast<double>(d(row, column));
         }
       }
@@ -157,29 +172,23 @@ cv::Mat1b SizeTrial::dead(std::uint64_t index) const {
   const double share = conditions_.sensor.dead_pixel_share;
   if (share == 0) return {};
   const int detectors = bank_->window_samples() / conditions_.samples_per_pitch;
-  cv::Mat1b map = dead_detectors({detectors, detectors}, share, stream_.sub(rare_part(index, Rare::dead)));
+  cv::Mat1b map = dead_detectors({detectors, detectors}, share, named(stream_, index, "dead"));
   return cv::countNonZero(map) > 0 ? map : cv::Mat1b();
 }
 
-/// Fixed pattern and lines of one draw, in kelvin.
+/// Noise that is not white, of one draw, in kelvin.
 cv::Mat1f SizeTrial::coloured(std::uint64_t index) const {
-  const SensorSpec& sensor = conditions_.sensor;
   const int window = bank_->window_samples();
-  const int n = conditions_.samples_per_pitch;
+  const double averaged = 1 / std::sqrt(static_cast<double>(conditions_.sensor.exposures_per_sample()));
+  const NoiseStreams streams = [&](std::string_view name, std::uint64_t ago) {
+    const RandomStream now = named(stream_, index, name);
+    return ago == 0 ? now : now.sub(ago);
+  };
   cv::Mat1f samples = cv::Mat1f::zeros(window, window);
-  if (sensor.fixed_pattern_k > 0) {
-    const int detectors = window / n;
-    std::vector<float> offsets(static_cast<std::size_t>(detectors) * static_cast<std::size_t>(detectors));
-    stream_.sub(pattern_part(index)).fill_normal(offsets);
-    const auto sd = static_cast<float>(sensor.fixed_pattern_k);
-    for (int row = 0; row < window; ++row) {
-      for (int column = 0; column < window; ++column)
-        samples(row, column) = sd * offsets[static_cast<std::size_t>(row / n * detectors + column / n)];
-    }
+  for (const stage::Noise* noise : coloured_stages_) {
+    const double weight = noise->recurrence == stage::Recurrence::fixed ? 1 : averaged;
+    noise->add(samples, conditions_.sensor, streams, weight);
   }
-  add_line_noise(samples, sensor, stream_.sub(rare_part(index, Rare::rows)),
-                 stream_.sub(rare_part(index, Rare::columns)),
-                 1 / std::sqrt(static_cast<double>(sensor.exposures_per_sample())));
   return samples;
 }
 
@@ -193,7 +202,7 @@ void SizeTrial::draw(std::uint64_t index) {
   cv::Mat1f white(window, window);
   stream_.sub(white_part(index)).fill_normal(std::span(white.ptr<float>(), white.total()));
   add(noise_, white, white_taps_);
-  if (has_coloured_) add(coloured_, coloured(index), display_taps_);
+  if (!coloured_stages_.empty()) add(coloured_, coloured(index), display_taps_);
 }
 
 Proportion SizeTrial::proportion(const WhiteNoise& white, double contrast_k, int draws) {
@@ -208,9 +217,10 @@ Proportion SizeTrial::proportion(const WhiteNoise& white, double contrast_k, int
   std::vector<float> mixed(bank_->padded_templates());
   for (std::size_t d = 0; d < static_cast<std::size_t>(draws); ++d) {
     std::span<const float> noise(noise_[d]);
-    if (has_coloured_ || total == 0) {
+    const bool has_coloured = !coloured_stages_.empty();
+    if (has_coloured || total == 0) {
       for (std::size_t t = 0; t < mixed.size(); ++t)
-        mixed[t] = own * noise_[d][t] + (has_coloured_ ? ratio * coloured_[d][t] : 0.0F);
+        mixed[t] = own * noise_[d][t] + (has_coloured ? ratio * coloured_[d][t] : 0.0F);
       noise = mixed;
     }
     const double p = correct_share(noise, scale, dead(d));

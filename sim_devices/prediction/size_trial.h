@@ -7,6 +7,7 @@
 
 #include "acquisition/core/rng.h"
 #include "hvs/observer/template_bank.h"
+#include "sim_devices/sensor/effect_row.h"
 #include "sim_devices/sensor/image_chain.h"
 
 namespace todbench {
@@ -52,10 +53,9 @@ class SizeTrial {
   /// relative to the contrast: exact, without draws (known_position.h).
   [[nodiscard]] double known_position_proportion(double noise, int nodes) const;
 
-  /// Variance of the difference between the true template's score and another's, for fixed pattern or line noise of
-  /// sd 1, over that for white noise of sd 1: the largest over the alternatives, at the middle of the search.
-  enum class Coloured { pattern, rows, columns };
-  [[nodiscard]] double variance_ratio(Coloured kind) const;
+  /// Variance of the difference between the true template's score and another's, for numbers of sd 1 that samples
+  /// share so, over that for white noise of sd 1: the largest over the alternatives, at the middle of the search.
+  [[nodiscard]] double variance_ratio(SharedBy shared) const;
 
  private:
   struct Response {
@@ -76,13 +76,13 @@ class SizeTrial {
   std::shared_ptr<const TemplateBank> bank_;
   TrialConditions conditions_;
   RandomStream stream_;
-  bool has_coloured_ = false;
-  std::vector<double> display_taps_;          ///< empty for sample and hold
+  std::vector<const stage::Noise*> coloured_stages_;  ///< what this sensor has of noise that is not white
+  std::vector<double> display_taps_;                  ///< empty for sample and hold
   std::vector<double> white_taps_;            ///< of sensor's and internal noise together; empty without display
   double white_ratio_ = -1;                   ///< for which white_taps_ are
   std::vector<Response> responses_;           ///< per orientation that counts and phase
   std::vector<std::vector<float>> noise_;     ///< per draw, unit white noise projected
-  std::vector<std::vector<float>> coloured_;  ///< per draw, fixed pattern and line noise in kelvin projected
+  std::vector<std::vector<float>> coloured_;  ///< per draw, noise that is not white, in kelvin projected
 };
 
 }  // namespace todbench

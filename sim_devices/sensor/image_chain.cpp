@@ -11,17 +11,14 @@
 namespace todbench {
 namespace {
 
-/// Highest frequency that matters, in cycles per pitch: where the optics end, or where aberration has taken the signal
-/// below the tolerance. Without either the spectrum of a sharp shape never ends; 16 cycles per pitch then leave an
-/// error near 1/(pi^2 16) at edges.
+/// Highest frequency that matters, in cycles per pitch: where the optics end, or where they have taken the signal below
+/// the tolerance. Without either the spectrum of a sharp shape never ends; 16 cycles per pitch then leave an error near
+/// 1/(pi^2 16) at edges.
 double needed_band(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy) {
   double band = 16;
-  if (plan.simulates(Effect::diffraction))
-    band = std::min(band, spec.pitch_um / (spec.wavelength_min_um * spec.f_number));
-  if (plan.simulates(Effect::aberration) && spec.aberration_sigma_pitch > 0) {
-    const double gaussian =
-        std::sqrt(-std::log(accuracy.band_tolerance) / 2) / (std::numbers::pi * spec.aberration_sigma_pitch);
-    band = std::min(band, std::max(gaussian, 0.5));
+  for (const Effect effect : all_effects) {
+    const EffectRow& row = row_of(effect);
+    if (row.band != nullptr && plan.simulates(effect)) band = std::min(band, row.band(spec, accuracy));
   }
   return band;
 }
@@ -36,41 +33,20 @@ double reach(const Polygon& shape) {
   return largest;
 }
 
-/// sensor_transfer() at the frequencies m / period, |m| <= band, to the last bit. Optics know only the radius and the
-/// detector is a product over the axes, so an eighth of the plane and one axis are computed.
-TransferFunction tabulated_transfer(FrequencyLattice lattice, const SensorSpec& spec, const SensorPlan& plan,
-                                    int wavelengths, cv::Point2d smear) {
-  const OpticsMtf optics(spec, plan, wavelengths);
-  const double ratio = plan.simulates(Effect::detector) ? spec.detector_pitch_ratio() : 0;
-  const double period = lattice.period;
-  const auto count = static_cast<std::size_t>(lattice.band) + 1;
-  std::vector<double> radial, axis;  // radial: [larger][smaller], a triangle
-  radial.reserve(count * (count + 1) / 2);
-  for (std::size_t larger = 0; larger < count; ++larger) {
-    const double u = static_cast<double>(larger) / period;
-    axis.push_back(detector_mtf(u, 0, ratio));
-    for (std::size_t smaller = 0; smaller <= larger; ++smaller)
-      radial.push_back(optics(std::hypot(u, static_cast<double>(smaller) / period)));
-  }
-  const auto still = [radial = std::move(radial), axis = std::move(axis), period](double u, double w) {
-    const auto m = static_cast<std::size_t>(std::llround(std::abs(u) * period));
-    const auto n = static_cast<std::size_t>(std::llround(std::abs(w) * period));
-    const std::size_t larger = std::max(m, n);
-    return std::complex<double>(radial[larger * (larger + 1) / 2 + std::min(m, n)] * (axis[m] * axis[n]));
-  };
-  if (smear == cv::Point2d(0, 0)) return still;
-  return [still, smear](double u, double w) { return still(u, w) * motion_transfer(u, w, smear); };
-}
-
 }  // namespace
 
 ImageChain::ImageChain(SensorSpec spec, SensorPlan plan, Accuracy accuracy, SceneMotion motion)
     : spec_(std::move(spec)),
       plan_(std::move(plan)),
       accuracy_(accuracy),
-      smear_pitch_(smear_pitch(spec_, plan_, motion)),
+      motion_(motion),
+      spread_(spread_of(scope())),
       band_per_pitch_(needed_band(spec_, plan_, accuracy_)) {
   points_per_pitch_ = 16 * static_cast<int>(std::ceil((2 * band_per_pitch_ + 0.1) / 16));
+}
+
+ChainScope ImageChain::scope() const {
+  return {.spec = spec_, .plan = plan_, .wavelengths = accuracy_.wavelengths, .motion = motion_};
 }
 
 FrequencyLattice ImageChain::lattice(double size_pitch) const {
@@ -80,8 +56,7 @@ FrequencyLattice ImageChain::lattice(double size_pitch) const {
   const double spot = spec_.wavelength_max_um * spec_.f_number / spec_.pitch_um;
   const double relative_spot = plan_.simulates(Effect::diffraction) ? std::max(1.0, spot / (13 / 47.5)) : 1.0;
   const double tails = 16 * std::cbrt(1.6e-4 * relative_area * relative_spot / accuracy_.wrap_tolerance);
-  // The tail of a moving target has fallen to e^-14, 1e-6, after fourteen smears.
-  const double body = 2 * size_pitch + 16 + 14 * std::hypot(smear_pitch_.x, smear_pitch_.y);
+  const double body = 2 * size_pitch + 16 + spread_.period;
   const int period = 8 * static_cast<int>(std::ceil(std::max(tails, body) / 8 - 1e-9));
   return {.period = period, .band = static_cast<int>(std::floor(band_per_pitch_ * period))};
 }
@@ -89,9 +64,7 @@ FrequencyLattice ImageChain::lattice(double size_pitch) const {
 std::shared_ptr<const FilterTable> ImageChain::filter(const FrequencyLattice& lattice) const {
   const std::scoped_lock lock(mutex_);
   auto& slot = filters_[lattice.period];
-  if (slot == nullptr)
-    slot = std::make_shared<const FilterTable>(
-        lattice, tabulated_transfer(lattice, spec_, plan_, accuracy_.wavelengths, smear_pitch_));
+  if (slot == nullptr) slot = std::make_shared<const FilterTable>(lattice, tabulated_transfer(lattice, scope()));
   return slot;
 }
 
@@ -105,8 +78,7 @@ ImageChain::InfinitePlane ImageChain::infinite_plane(const Polygon& shape_pitch,
   const cv::Point2d half_window(0.5 * step * (size.width - 1), 0.5 * step * (size.height - 1));
   const cv::Point2d centre = first + half_window;
   const Polygon shape = placed(shape_pitch, 1, -centre);
-  const double half_width = std::max(half_window.x, half_window.y) + near_field +
-                            14 * std::hypot(smear_pitch_.x, smear_pitch_.y) + 8 * spec_.aberration_sigma_pitch;
+  const double half_width = std::max(half_window.x, half_window.y) + near_field + spread_.window;
   if (reach(shape) <= std::numbers::sqrt2 * half_width) return extrapolated(shape_pitch, first, step, size);
   const Polygon near = clipped(shape, half_width);
   InfinitePlane out{cv::Mat1d::zeros(size), 0};
@@ -120,11 +92,9 @@ ImageChain::InfinitePlane ImageChain::infinite_plane(const Polygon& shape_pitch,
 /// that changes by 9 v / (2 r^2) of itself.
 void ImageChain::add_far_field(InfinitePlane& near, const Polygon& shape_pitch, cv::Point2d first, double step,
                                double half_width) const {
-  const OpticsMtf optics(spec_, plan_, accuracy_.wavelengths);
+  const OpticsMtf optics(scope());
   constexpr double small = 1e-4;  // cycles per pitch; the next terms are of second and third order
   const double cusp = (1 - optics(small)) / small / (4 * std::numbers::pi * std::numbers::pi);
-  const double detector = plan_.simulates(Effect::detector) ? spec_.detector_pitch_ratio() : 0;
-  const double variance = detector * detector / 12 + spec_.aberration_sigma_pitch * spec_.aberration_sigma_pitch;
   double largest = 0;
   for (int row = 0; row < near.values.rows; ++row) {
     for (int column = 0; column < near.values.cols; ++column) {
@@ -133,7 +103,7 @@ void ImageChain::add_far_field(InfinitePlane& near, const Polygon& shape_pitch, 
       largest = std::max(largest, added);
     }
   }
-  near.max_error_estimate += largest * (9 * (variance + 0.1) / (near_field * near_field) + 1e-5);
+  near.max_error_estimate += largest * (9 * (spread_.variance + 0.1) / (near_field * near_field) + 1e-5);
 }
 
 ImageChain::InfinitePlane ImageChain::extrapolated(const Polygon& shape_pitch, cv::Point2d first, double step,

@@ -7,6 +7,7 @@
 
 #include "acquisition/core/accuracy.h"
 #include "hvs/shape/polygon_image.h"
+#include "sim_devices/sensor/effect_row.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"
 
@@ -45,11 +46,13 @@ class ImageChain {
   void add_far_field(InfinitePlane& near, const Polygon& shape_pitch, cv::Point2d first, double step,
                      double half_width) const;
   [[nodiscard]] std::shared_ptr<const FilterTable> filter(const FrequencyLattice& lattice) const;
+  [[nodiscard]] ChainScope scope() const;
 
   SensorSpec spec_;
   SensorPlan plan_;
   Accuracy accuracy_;
-  cv::Point2d smear_pitch_;
+  SceneMotion motion_;
+  Spread spread_;
   double band_per_pitch_ = 0;
   int points_per_pitch_ = 16;
   mutable std::mutex mutex_;

@@ -9,8 +9,9 @@
 #include <tuple>
 #include <vector>
 
+#include "sim_devices/sensor/effect_quantisation.h"
+#include "sim_devices/sensor/effect_row.h"
 #include "sim_devices/sensor/image_chain.h"
-#include "sim_devices/sensor/picture_stages.h"
 
 namespace todbench {
 namespace {
@@ -44,32 +45,39 @@ struct SensorModel::State {
   SensorSpec spec;
   SensorPlan plan;
   Accuracy accuracy;
-  RandomStream temporal, fixed, rows, columns;
-  cv::Mat1f fixed_pattern;           ///< per picture element, kelvin; empty where it is not simulated
-  cv::Mat1b dead;                    ///< per detector; empty where none is
-  std::vector<double> display_taps;  ///< empty for sample and hold
+  std::uint64_t seed;
+  std::vector<const stage::Noise*> noises;  ///< new in every exposure
+  cv::Mat1f fixed_noise;                    ///< of all that is the same in every frame, kelvin; empty: none
+  std::vector<PictureStage> picture_stages;
   mutable std::mutex mutex;
   mutable std::deque<std::pair<PlateScene, std::shared_ptr<const cv::Mat1f>>> scenes;
   mutable std::map<ShapeKey, std::shared_ptr<const PolygonImage>> shapes;
   mutable std::map<std::pair<double, double>, std::unique_ptr<const ImageChain>> chains;  ///< by motion
 
-  State(SensorSpec s, SensorPlan p, Accuracy a, std::uint64_t seed)
-      : spec(as_planned(std::move(s), p)),
-        plan(std::move(p)),
-        accuracy(a),
-        temporal(seed, "sensor.temporal"),
-        fixed(seed, "sensor.fixed"),
-        rows(seed, "sensor.rows"),
-        columns(seed, "sensor.columns") {
-    if (spec.dead_pixel_share > 0)
-      dead = dead_detectors({spec.width, spec.height}, spec.dead_pixel_share, RandomStream(seed, "sensor.dead"));
-    if (has_display(spec)) display_taps = taps_of([this](double f) { return display_response(spec, f); });
+  State(SensorSpec s, SensorPlan p, Accuracy a, std::uint64_t seed_of_all)
+      : spec(as_planned(std::move(s), p)), plan(std::move(p)), accuracy(a), seed(seed_of_all) {
+    const NoiseStreams streams = [this](std::string_view name, std::uint64_t) { return stream(name); };
+    for (const Effect effect : all_effects) {
+      if (!plan.simulates(effect) || is_neutral(spec, effect)) continue;
+      const EffectRow& row = row_of(effect);
+      if (const auto* noise = std::get_if<stage::Noise>(&row.stage)) {
+        if (noise->recurrence == stage::Recurrence::every_exposure) {
+          noises.push_back(noise);
+        } else {
+          if (fixed_noise.empty()) fixed_noise = cv::Mat1f(size(), 0.0F);
+          noise->add(fixed_noise, spec, streams, 1);
+        }
+      }
+      if (const auto* own = std::get_if<stage::Picture>(&row.stage))
+        picture_stages.push_back(own->prepare(spec, streams));
+    }
   }
 
-  /// Whether the frame needs more than signal, temporal noise and fixed pattern.
-  [[nodiscard]] bool many_stages() const {
-    return spec.exposures_per_sample() > 1 || spec.row_noise_k > 0 || spec.column_noise_k > 0 || !dead.empty() ||
-           !display_taps.empty();
+  [[nodiscard]] RandomStream stream(std::string_view name) const { return {seed, "sensor." + std::string(name)}; }
+
+  [[nodiscard]] cv::Size size() const {
+    const int n = spec.samples_per_pitch();
+    return {spec.width * n, spec.height * n};
   }
 
   [[nodiscard]] const ImageChain& chain(SceneMotion motion) const {
@@ -110,21 +118,7 @@ struct SensorModel::State {
 };
 
 SensorModel::SensorModel(SensorSpec spec, SensorPlan plan, Accuracy accuracy, std::uint64_t seed)
-    : state_(std::make_unique<State>(std::move(spec), std::move(plan), accuracy, seed)) {
-  const SensorSpec& s = state_->spec;
-  if (s.fixed_pattern_k > 0) {
-    cv::Mat1f detectors(s.height, s.width);
-    state_->fixed.fill_normal(std::span(detectors.ptr<float>(), detectors.total()));
-    state_->fixed_pattern.create(size());
-    // The samples of one microscan cycle come from the same detector and share its offset.
-    for (int row = 0; row < state_->fixed_pattern.rows; ++row) {
-      for (int column = 0; column < state_->fixed_pattern.cols; ++column) {
-        state_->fixed_pattern(row, column) = static_cast<float>(s.fixed_pattern_k) *
-                                             detectors(row / s.samples_per_pitch(), column / s.samples_per_pitch());
-      }
-    }
-  }
-}
+    : state_(std::make_unique<State>(std::move(spec), std::move(plan), accuracy, seed)) {}
 
 SensorModel::~SensorModel() = default;
 
@@ -136,8 +130,7 @@ const SensorPlan& SensorModel::plan() const {
 }
 
 cv::Size SensorModel::size() const {
-  const int n = state_->spec.samples_per_pitch();
-  return {state_->spec.width * n, state_->spec.height * n};
+  return state_->size();
 }
 
 std::shared_ptr<const cv::Mat1f> SensorModel::unit_signal(const PlateScene& scene) const {
@@ -153,81 +146,51 @@ std::shared_ptr<const cv::Mat1f> SensorModel::unit_signal(const PlateScene& scen
 }
 
 cv::Mat1f SensorModel::State::analog(const cv::Mat1f& unit, double delta_t_k, std::uint64_t index) const {
-  cv::Mat1f out = unit * delta_t_k;
+  CV_Assert(unit.size() == size() && unit.isContinuous());
+  cv::Mat1f out(unit.size());
   const auto count = static_cast<std::size_t>(out.total());
-  float* pixels = out.ptr<float>();
+  const float* signal = unit.ptr<float>();
+  auto* pixels = out.ptr<float>();
+  const auto contrast = static_cast<float>(delta_t_k);
+  for (std::size_t i = 0; i < count; ++i) pixels[i] = contrast * signal[i];
   // A sample is the mean of so many exposures of the sequence.
   const auto exposures = static_cast<std::uint64_t>(spec.exposures_per_sample());
   const double weight = 1.0 / static_cast<double>(exposures);
   for (std::uint64_t k = 0; k < exposures; ++k) {
     const std::uint64_t exposure = index * exposures + k;
-    if (spec.netd_k > 0) {
-      std::vector<float> noise(count);
-      temporal.sub(exposure).fill_normal(noise);
-      const auto sd = static_cast<float>(weight * spec.netd_k);
-      for (std::size_t i = 0; i < count; ++i) pixels[i] += sd * noise[i];
-    }
-    add_line_noise(out, spec, rows.sub(exposure), columns.sub(exposure), weight);
+    const NoiseStreams streams = [&](std::string_view name, std::uint64_t ago) {
+      return stream(name).sub(exposure - ago);
+    };
+    for (const stage::Noise* noise : noises) noise->add(out, spec, streams, weight);
   }
-  if (!fixed_pattern.empty()) {
-    const float* pattern = fixed_pattern.ptr<float>();
-    for (std::size_t i = 0; i < count; ++i) pixels[i] += pattern[i];
+  if (!fixed_noise.empty()) {
+    const auto* fixed = fixed_noise.ptr<float>();
+    for (std::size_t i = 0; i < count; ++i) pixels[i] += fixed[i];
   }
-  if (!dead.empty()) replace_dead(out, dead, spec.samples_per_pitch());
-  return display_taps.empty() ? out : filtered(out, display_taps);
+  for (const PictureStage& stage : picture_stages) stage(out);
+  return out;
 }
 
 cv::Mat1f SensorModel::picture(const PlateScene& scene, std::uint64_t index) const {
-  cv::Mat1f out = state_->analog(*unit_signal(scene), scene.delta_t_k, index);
-  if (state_->plan.simulates(Effect::quantisation)) {
-    // Steps are those of the counts, wherever the surround lies between two of them.
-    const double step = state_->spec.kelvin_per_count;
-    const double base = (scene.background_k - state_->spec.offset_k) / step;
-    const auto count = static_cast<std::size_t>(out.total());
-    float* pixels = out.ptr<float>();
-    for (std::size_t i = 0; i < count; ++i) {
-      pixels[i] = static_cast<float>((std::nearbyint(base + static_cast<double>(pixels[i]) / step) - base) * step);
-    }
-  }
+  return picture(*unit_signal(scene), scene.delta_t_k, scene.background_k, index);
+}
+
+cv::Mat1f SensorModel::picture(const cv::Mat1f& unit_signal, double delta_t_k, double background_k,
+                               std::uint64_t index) const {
+  cv::Mat1f out = state_->analog(unit_signal, delta_t_k, index);
+  if (!state_->plan.simulates(Effect::quantisation)) return out;
+  const Quantiser quantiser(state_->spec, background_k);
+  for (float& pixel : out) pixel = quantiser.rounded(pixel);
   return out;
 }
 
 cv::Mat1w SensorModel::expose(const PlateScene& scene, std::uint64_t index) const {
-  const auto unit = unit_signal(scene);
-  const SensorSpec& spec = state_->spec;
-  const auto count = static_cast<std::size_t>(unit->total());
-  cv::Mat1w counts(unit->size());
-  const float* signal = unit->ptr<float>();
-  const auto contrast = static_cast<float>(scene.delta_t_k);
-  const float* pattern = state_->fixed_pattern.empty() ? nullptr : state_->fixed_pattern.ptr<float>();
-  const bool noisy = spec.netd_k > 0;
-  const auto sd = static_cast<float>(spec.netd_k);
-  const RandomStream stream = state_->temporal.sub(index);
-  const double per_kelvin = 1 / spec.kelvin_per_count;
-  const double base = (scene.background_k - spec.offset_k) * per_kelvin + 0.5;
-  const double full_scale = static_cast<double>((1u << spec.bits) - 1u) + 0.5;
-  auto* out = counts.ptr<std::uint16_t>();
-  if (state_->many_stages()) {
-    const cv::Mat1f analog = state_->analog(*unit, scene.delta_t_k, index);
-    const float* pixels = analog.ptr<float>();
-    for (std::size_t i = 0; i < count; ++i) {
-      const double level = base + static_cast<double>(pixels[i]) * per_kelvin;
-      out[i] = static_cast<std::uint16_t>(static_cast<int>(std::clamp(level, 0.0, full_scale)));
-    }
-    return counts;
-  }
-  constexpr std::size_t strip = 4096;  // noise of a strip stays in the first-level cache
-  float noise[strip] = {};
-  for (std::size_t first = 0; first < count; first += strip) {
-    const std::size_t n = std::min(strip, count - first);
-    if (noisy) stream.fill_normal(std::span(noise, n), first);
-    for (std::size_t i = 0; i < n; ++i) {
-      float value = contrast * signal[first + i] + sd * noise[i];
-      if (pattern != nullptr) value += pattern[first + i];
-      const double level = base + static_cast<double>(value) * per_kelvin;
-      out[first + i] = static_cast<std::uint16_t>(static_cast<int>(std::clamp(level, 0.0, full_scale)));
-    }
-  }
+  const cv::Mat1f kelvin = state_->analog(*unit_signal(scene), scene.delta_t_k, index);
+  const Quantiser quantiser(state_->spec, scene.background_k);
+  cv::Mat1w counts(kelvin.size());
+  const auto* from = kelvin.ptr<float>();
+  auto* to = counts.ptr<std::uint16_t>();
+  for (std::size_t i = 0; i < kelvin.total(); ++i) to[i] = quantiser.count(from[i]);
   return counts;
 }
 

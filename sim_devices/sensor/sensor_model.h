@@ -35,6 +35,10 @@ class SensorModel {
   /// Picture `index` in kelvin above the surround: signal, temporal and line noise, fixed pattern, dead
   /// pixels, display, quantisation; each as planned.
   [[nodiscard]] cv::Mat1f picture(const PlateScene& scene, std::uint64_t index) const;
+  /// The same for a signal that comes from elsewhere: size() kelvin per kelvin of contrast, before a surround of
+  /// `background_k`.
+  [[nodiscard]] cv::Mat1f picture(const cv::Mat1f& unit_signal, double delta_t_k, double background_k,
+                                  std::uint64_t index) const;
   /// Frame `index` as the camera delivers it: the picture in counts, rounded and clipped to the significant bits.
   /// Rounds also where the plan skips quantisation, because a frame holds whole counts.
   [[nodiscard]] cv::Mat1w expose(const PlateScene& scene, std::uint64_t index) const;

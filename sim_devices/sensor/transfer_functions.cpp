@@ -2,111 +2,92 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
-
-#include "hvs/shape/gauss_legendre.h"
+#include <cstdlib>
 
 namespace todbench {
-namespace {
 
-constexpr double second_radiation_constant_um_k = 14387.768775;  // hc/k, exact in SI 2019, to 10 digits
-
-/// dL/dT of a black body over wavelength, up to a factor: lambda^-6 e^x / (e^x - 1)^2, x = c2 / (lambda T).
-double planck_derivative(double wavelength_um, double temperature_k) {
-  const double x = second_radiation_constant_um_k / (wavelength_um * temperature_k);
-  const double e = std::exp(-x);
-  const double denominator = std::expm1(-x);
-  return std::pow(wavelength_um, -6) * e / (denominator * denominator);
-}
-
-double sinc(double x) {
-  const double y = std::numbers::pi * x;
-  return std::abs(y) < 1e-8 ? 1.0 : std::sin(y) / y;
-}
-
-}  // namespace
-
-double diffraction_mtf(double rho_per_pitch, double wavelength_um, double f_number, double pitch_um) {
-  const double x = std::abs(rho_per_pitch) * wavelength_um * f_number / pitch_um;
-  if (x >= 1) return 0;
-  return 2 / std::numbers::pi * (std::acos(x) - x * std::sqrt(1 - x * x));
-}
-
-std::vector<WavelengthNode> wavelength_nodes(const SensorSpec& spec, int count) {
-  const double middle = (spec.wavelength_min_um + spec.wavelength_max_um) / 2;
-  const double half = (spec.wavelength_max_um - spec.wavelength_min_um) / 2;
-  std::vector<WavelengthNode> nodes;
-  double sum = 0;
-  for (const auto& [x, weight] : gauss_legendre(count == 1 ? 16 : count)) {
-    const double wavelength = middle + half * x;
-    nodes.push_back({wavelength, weight * planck_derivative(wavelength, spec.scene_temperature_k)});
-    sum += nodes.back().weight;
+OpticsMtf::OpticsMtf(const ChainScope& scope) {
+  for (const Effect effect : all_effects) {
+    if (!scope.plan.simulates(effect)) continue;
+    if (const auto* optics = std::get_if<stage::Optics>(&row_of(effect).stage))
+      factors_.push_back(optics->factor(scope));
   }
-  double mean = 0;
-  for (auto& node : nodes) {
-    node.weight /= sum;
-    mean += node.weight * node.wavelength_um;
-  }
-  if (count == 1) return {{mean, 1.0}};
-  return nodes;
 }
-
-OpticsMtf::OpticsMtf(const SensorSpec& spec, const SensorPlan& plan, int wavelengths)
-    : nodes_(wavelength_nodes(spec, plan.simulates(Effect::spectral_band) ? wavelengths : 1)),
-      f_number_(spec.f_number),
-      pitch_um_(spec.pitch_um),
-      sigma_pitch_(plan.simulates(Effect::aberration) ? spec.aberration_sigma_pitch : 0),
-      diffraction_(plan.simulates(Effect::diffraction)) {}
 
 double OpticsMtf::operator()(double rho_per_pitch) const {
   double value = 1;
-  if (diffraction_) {
-    value = 0;
-    for (const auto& node : nodes_)
-      value += node.weight * diffraction_mtf(rho_per_pitch, node.wavelength_um, f_number_, pitch_um_);
-  }
-  if (sigma_pitch_ > 0) {
-    const double exponent = std::numbers::pi * sigma_pitch_ * rho_per_pitch;
-    value *= std::exp(-2 * exponent * exponent);
-  }
+  for (const auto& factor : factors_) value *= factor(rho_per_pitch);
   return value;
 }
 
-double OpticsMtf::cut_off_per_pitch() const {
-  if (!diffraction_) return std::numeric_limits<double>::infinity();
-  const auto shortest = std::min_element(
-      nodes_.begin(), nodes_.end(), [](const auto& a, const auto& b) { return a.wavelength_um < b.wavelength_um; });
-  return pitch_um_ / (shortest->wavelength_um * f_number_);
+FootprintMtf::FootprintMtf(const ChainScope& scope) : spec_(scope.spec) {
+  for (const Effect effect : all_effects) {
+    if (!scope.plan.simulates(effect)) continue;
+    if (const auto* own = std::get_if<stage::Footprint>(&row_of(effect).stage)) factors_.push_back(*own);
+  }
 }
 
-double detector_mtf(double u_per_pitch, double w_per_pitch, double detector_pitch_ratio) {
-  return sinc(u_per_pitch * detector_pitch_ratio) * sinc(w_per_pitch * detector_pitch_ratio);
+double FootprintMtf::operator()(double f_per_pitch) const {
+  double value = 1;
+  for (const auto& own : factors_) value *= own.factor(f_per_pitch, spec_);
+  return value;
 }
 
-std::complex<double> motion_transfer(double u_per_pitch, double w_per_pitch, cv::Point2d smear_pitch) {
-  const double phase = 2 * std::numbers::pi * (u_per_pitch * smear_pitch.x + w_per_pitch * smear_pitch.y);
-  return std::polar(1.0, -phase) / std::complex<double>(1, -phase);
-}
-
-cv::Point2d smear_pitch(const SensorSpec& spec, const SensorPlan& plan, SceneMotion motion) {
-  if (!plan.simulates(Effect::motion)) return {0, 0};
-  const double pitches_per_mrad_s = spec.time_constant_ms * 1e-3 / spec.ifov_mrad();
-  return {motion.x_mrad_s * pitches_per_mrad_s, motion.y_mrad_s * pitches_per_mrad_s};
+std::vector<TransferFunction> other_transfers(const ChainScope& scope) {
+  std::vector<TransferFunction> transfers;
+  for (const Effect effect : all_effects) {
+    const auto* own = std::get_if<stage::Transfer>(&row_of(effect).stage);
+    if (own == nullptr || !scope.plan.simulates(effect)) continue;
+    if (TransferFunction transfer = own->factor(scope)) transfers.push_back(std::move(transfer));
+  }
+  return transfers;
 }
 
 TransferFunction sensor_transfer(const SensorSpec& spec, const SensorPlan& plan, int wavelengths, SceneMotion motion) {
-  const OpticsMtf optics(spec, plan, wavelengths);
-  const double ratio = plan.simulates(Effect::detector) ? spec.detector_pitch_ratio() : 0;
-  const cv::Point2d smear = smear_pitch(spec, plan, motion);
-  if (smear == cv::Point2d(0, 0)) {
-    return [optics, ratio](double u, double w) -> std::complex<double> {
-      return optics(std::hypot(u, w)) * detector_mtf(u, w, ratio);
-    };
-  }
-  return [optics, ratio, smear](double u, double w) -> std::complex<double> {
-    return optics(std::hypot(u, w)) * detector_mtf(u, w, ratio) * motion_transfer(u, w, smear);
+  const ChainScope scope{.spec = spec, .plan = plan, .wavelengths = wavelengths, .motion = motion};
+  return [optics = OpticsMtf(scope), footprint = FootprintMtf(scope), others = other_transfers(scope)](double u,
+                                                                                                       double w) {
+    std::complex<double> value = optics(std::hypot(u, w)) * (footprint(u) * footprint(w));
+    for (const auto& other : others) value *= other(u, w);
+    return value;
   };
+}
+
+TransferFunction tabulated_transfer(FrequencyLattice lattice, const ChainScope& scope) {
+  const OpticsMtf optics(scope);
+  const FootprintMtf footprint(scope);
+  const double period = lattice.period;
+  const auto count = static_cast<std::size_t>(lattice.band) + 1;
+  std::vector<double> radial, axis;  // radial: [larger][smaller], a triangle
+  radial.reserve(count * (count + 1) / 2);
+  for (std::size_t larger = 0; larger < count; ++larger) {
+    const double u = static_cast<double>(larger) / period;
+    axis.push_back(footprint(u));
+    for (std::size_t smaller = 0; smaller <= larger; ++smaller)
+      radial.push_back(optics(std::hypot(u, static_cast<double>(smaller) / period)));
+  }
+  return [radial = std::move(radial), axis = std::move(axis), others = other_transfers(scope), period](double u,
+                                                                                                       double w) {
+    const auto m = static_cast<std::size_t>(std::llround(std::abs(u) * period));
+    const auto n = static_cast<std::size_t>(std::llround(std::abs(w) * period));
+    const std::size_t larger = std::max(m, n);
+    std::complex<double> value = radial[larger * (larger + 1) / 2 + std::min(m, n)] * (axis[m] * axis[n]);
+    for (const auto& other : others) value *= other(u, w);
+    return value;
+  };
+}
+
+Spread spread_of(const ChainScope& scope) {
+  Spread sum;
+  for (const Effect effect : all_effects) {
+    const EffectRow& row = row_of(effect);
+    if (row.spread == nullptr || !scope.plan.simulates(effect)) continue;
+    const Spread own = row.spread(scope);
+    sum.period += own.period;
+    sum.window += own.window;
+    sum.variance += own.variance;
+  }
+  return sum;
 }
 
 }  // namespace todbench

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "sim_devices/sensor/sensor_key.h"
 #include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
 
@@ -110,6 +111,49 @@ TEST(Sensor, AMissingOrMisspeltParameterIsRefusedWithItsLine) {
   EXPECT_THAT(parse_sensor({"s.toml", without}).error().message, HasSubstr("s.toml:1: missing key 'netd_k'"));
   EXPECT_THAT(parse_sensor({"s.toml", misspelt}).error().message,
               HasSubstr("unknown key 'ntd_k', did you mean 'netd_k'?"));
+}
+
+/// Text of the parameter that the key sets.
+std::string value_text(const SensorSpec& spec, const SensorKey& key) {
+  if (const auto* number = std::get_if<double SensorSpec::*>(&key.member)) return std::to_string(spec.**number);
+  if (const auto* whole = std::get_if<int SensorSpec::*>(&key.member)) return std::to_string(spec.**whole);
+  return '"' + std::string(to_string(spec.*std::get<DisplayReconstruction SensorSpec::*>(key.member))) + '"';
+}
+
+/// A sensor file of all required keys, with `text` for one key; nothing: without it.
+std::string file_with(std::string_view name, const std::optional<std::string>& text) {
+  std::string file = "name = \"s\"\n";
+  for (const SensorKey& key : sensor_keys()) {
+    if (key.name == name) {
+      if (text) file += std::string(name) + " = " + *text + "\n";
+    } else if (key.presence == KeyPresence::required) {
+      file += std::string(key.name) + " = " + value_text(SensorSpec{}, key) + "\n";
+    }
+  }
+  return file;
+}
+
+TEST(Sensor, EveryKeyIsReadIsRequiredOrHasItsDefaultAndKeepsItsRange) {
+  for (const SensorKey& key : sensor_keys()) {
+    const std::string name(key.name);
+    const auto absent = parse_sensor({"s.toml", file_with(name, std::nullopt)});
+    if (key.presence == KeyPresence::required) {
+      EXPECT_THAT(absent.error().message, HasSubstr("missing key '" + name + "'"));
+    } else {
+      EXPECT_EQ(value_text(absent.value(), key), value_text(SensorSpec{}, key)) << name;
+    }
+    const bool is_word = std::holds_alternative<DisplayReconstruction SensorSpec::*>(key.member);
+    const auto wrong = parse_sensor({"s.toml", file_with(name, is_word ? "\"mirror\"" : "-1e300")});
+    if (key.range.low > -1e300 || is_word) EXPECT_THAT(wrong.error().message, HasSubstr("'" + name + "'"));
+  }
+}
+
+TEST(Sensor, EveryKeyIsInTheDocument) {
+  const std::string document = testing::content_of(source_file("docs/sensor-model.md"));
+
+  for (const SensorKey& key : sensor_keys()) EXPECT_THAT(document, HasSubstr("`" + std::string(key.name) + "`"));
+  for (const Effect effect : all_effects)
+    EXPECT_THAT(document, HasSubstr("| `" + std::string(to_string(effect)) + "`"));
 }
 
 TEST(ObserverFile, Hvs1IsTheDefaultOfTheStruct) {

@@ -4,10 +4,13 @@
 #include <cmath>
 
 #include "sim_devices/prediction/direct_estimate.h"
-#include "sim_devices/sensor/picture_stages.h"
+#include "sim_devices/sensor/effect_dead_pixels.h"
+#include "sim_devices/sensor/effect_display.h"
+#include "sim_devices/sensor/effect_motion.h"
+#include "sim_devices/sensor/effect_quantisation.h"
+#include "sim_devices/sensor/effect_row.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "sim_devices/sensor/super_resolution.h"
-#include "sim_devices/sensor/transfer_functions.h"
 #include "tests/sim_devices/prediction/effect_grid.h"
 
 namespace todbench {
@@ -38,57 +41,79 @@ bool same(const cv::Mat1f& a, const cv::Mat1f& b) {
   return a.size() == b.size() && cv::norm(a, b, cv::NORM_INF) == 0;
 }
 
-SensorSpec neutralised(SensorSpec spec, Effect effect) {
-  switch (effect) {
-    case Effect::aberration:
-      spec.aberration_sigma_pitch = 0;
-      break;
-    case Effect::motion:
-      spec.time_constant_ms = 0;
-      break;
-    case Effect::microscan:
-      spec.microscan = 1;
-      break;
-    case Effect::temporal_noise:
-      spec.netd_k = 0;
-      break;
-    case Effect::fixed_pattern:
-      spec.fixed_pattern_k = 0;
-      break;
-    case Effect::row_column_noise:
-      spec.row_noise_k = spec.column_noise_k = 0;
-      break;
-    case Effect::dead_pixels:
-      spec.dead_pixel_share = 0;
-      break;
-    case Effect::frame_averaging:
-      spec.frames_averaged = 1;
-      break;
-    case Effect::super_resolution:
-      spec.super_resolution_frames = 0;
-      break;
-    case Effect::display:
-      spec.display_blur_samples = 0;
-      break;
-    default:
-      break;
+std::vector<Effect> effects_with(bool (*wanted)(const EffectRow&)) {
+  std::vector<Effect> found;
+  for (const Effect effect : all_effects) {
+    if (wanted(row_of(effect))) found.push_back(effect);
   }
+  return found;
+}
+
+/// A sensor whose effects have parameters drawn from their ranges, in the part of them in which cameras are.
+SensorSpec drawn_sensor(const RandomStream& stream) {
+  SensorSpec spec = small();
+  std::uint64_t at = 0;
+  do {
+    for (const Effect effect : all_effects) {
+      const EffectRow& row = row_of(effect);
+      if (row.neutralise == nullptr) continue;  // the optics stay those of the sensor
+      for (const SensorKey& key : row.keys) {
+        const double width = key.range.high - key.range.low;
+        if (const auto* number = std::get_if<double SensorSpec::*>(&key.member))
+          spec.** number = key.range.low + stream.uniform(at++) * (width > 1e6 ? 0.1 : width / 100);
+        if (const auto* whole = std::get_if<int SensorSpec::*>(&key.member))
+          spec.** whole = static_cast<int>(key.range.low) + static_cast<int>(stream.below(5, at++));
+        if (const auto* display = std::get_if<DisplayReconstruction SensorSpec::*>(&key.member))
+          spec.** display =
+              stream.below(2, at++) == 0 ? DisplayReconstruction::sample_and_hold : DisplayReconstruction::bilinear;
+      }
+    }
+  } while (!validate(spec));
   return spec;
 }
 
-TEST(Effects, EveryOneSkippedEqualsItsNeutralValueSimulated) {
-  SensorSpec super = small();
-  super.super_resolution_frames = 8;
-  for (const SensorSpec& spec : {small(1), small(2), super}) {
-    for (const Effect effect : all_effects) {
-      if (effect == Effect::diffraction || effect == Effect::spectral_band || effect == Effect::detector ||
-          effect == Effect::quantisation) {
-        continue;  // without a parameter that has a neutral value
-      }
-      EXPECT_TRUE(same(picture(spec, {effect}), picture(neutralised(spec, effect), {}, {effect}))) << to_string(effect);
-    }
+class EveryEffect : public testing::TestWithParam<Effect> {};
+
+TEST_P(EveryEffect, HasARowThatIsWhole) {
+  const EffectRow& row = row_of(GetParam());
+
+  EXPECT_FALSE(row.title.empty());
+  EXPECT_EQ(effect_from(to_string(GetParam())), GetParam());
+  EXPECT_EQ(row.is_neutral == nullptr, row.neutralise == nullptr);
+  EXPECT_EQ(row.neutral.empty(), row.neutralise == nullptr);
+  EXPECT_TRUE(row.bound != nullptr || !row.always.empty());
+  EXPECT_FALSE(row.keys.empty());
+  for (const SensorKey& key : row.keys) EXPECT_FALSE(key.meaning.empty()) << key.name;
+  const auto* noise = std::get_if<stage::Noise>(&row.stage);
+  EXPECT_EQ(noise != nullptr && noise->colour == stage::Colour::coloured, row.coloured_variance != nullptr);
+}
+
+INSTANTIATE_TEST_SUITE_P(Effects, EveryEffect, testing::ValuesIn(all_effects),
+                         [](const auto& effect) { return std::string(to_string(effect.param)); });
+
+class EffectWithANeutralValue : public testing::TestWithParam<Effect> {};
+
+TEST_P(EffectWithANeutralValue, IsNeutralOnceNeutralised) {
+  SensorSpec spec = small();
+  row_of(GetParam()).neutralise(spec);
+
+  EXPECT_TRUE(is_neutral(spec, GetParam(), scene().motion));
+}
+
+TEST_P(EffectWithANeutralValue, SkippedEqualsItsNeutralValueBitForBit) {
+  for (std::uint64_t draw = 0; draw < 4; ++draw) {
+    const SensorSpec spec = drawn_sensor(RandomStream(17, to_string(GetParam())).sub(draw));
+    SensorSpec neutral = spec;
+    row_of(GetParam()).neutralise(neutral);
+
+    EXPECT_TRUE(same(picture(spec, {GetParam()}), picture(neutral, {}, {GetParam()}))) << draw;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Effects, EffectWithANeutralValue, testing::ValuesIn(effects_with([](const EffectRow& row) {
+                           return row.neutralise != nullptr;
+                         })),
+                         [](const auto& effect) { return std::string(to_string(effect.param)); });
 
 TEST(Effects, EveryOneChangesThePicture) {
   const SensorSpec spec = small(2);
@@ -107,8 +132,11 @@ TEST(Effects, LeavingOneOutLeavesTheNoiseOfTheOthers) {
   // What is linear and additive: the difference to the picture without another noise is that noise alone.
   SensorSpec spec = small();
   const std::vector<Effect> plain{Effect::quantisation, Effect::dead_pixels, Effect::display};
-  for (const Effect out : {Effect::temporal_noise, Effect::fixed_pattern, Effect::row_column_noise}) {
-    for (const Effect other : {Effect::temporal_noise, Effect::fixed_pattern, Effect::row_column_noise}) {
+  const auto noises =
+      effects_with([](const EffectRow& row) { return std::holds_alternative<stage::Noise>(row.stage); });
+  ASSERT_GE(noises.size(), 3U);
+  for (const Effect out : noises) {
+    for (const Effect other : noises) {
       if (out == other) continue;
       const auto skipping = [&](std::vector<Effect> effects) {
         for (const Effect effect : plain) effects.push_back(effect);
@@ -133,6 +161,31 @@ TEST(Effects, FramesEqualTheRoundedPictureWithAllStages) {
       EXPECT_NEAR(spec.offset_k + spec.kelvin_per_count * counts(row, column) - 300,
                   static_cast<double>(kelvin(row, column)), 1e-4);
   }
+}
+
+TEST(Effects, TheQuantiserRoundsHalvesUpAndClipsCountsOnly) {
+  SensorSpec spec = test::sc2000();
+  spec.kelvin_per_count = 0.25;
+  spec.offset_k = 300;
+  spec.bits = 8;
+  const Quantiser quantiser(spec, 300);
+
+  EXPECT_EQ(quantiser.count(0.125F), 1);
+  EXPECT_EQ(quantiser.count(0.124F), 0);
+  EXPECT_EQ(quantiser.rounded(-0.125F), 0.0F);
+  EXPECT_EQ(quantiser.rounded(-0.126F), -0.25F);
+  EXPECT_EQ(quantiser.count(-5), 0);
+  EXPECT_EQ(quantiser.count(1000), 255);
+  EXPECT_EQ(quantiser.rounded(1000), 1000.0F);
+}
+
+TEST(Effects, APictureOfAnotherSignalHasTheSameStages) {
+  const SensorSpec spec = small(2);
+  const SensorModel model(spec, full_plan(spec, {}, {}, scene().motion), Accuracy::draft(), 1);
+
+  const cv::Mat1f direct = model.picture(*model.unit_signal(scene()), scene().delta_t_k, scene().background_k, 5);
+
+  EXPECT_TRUE(same(direct, model.picture(scene(), 5)));
 }
 
 TEST(Effects, AveragingDividesTemporalAndLineNoiseByTheRootOfTheFrames) {

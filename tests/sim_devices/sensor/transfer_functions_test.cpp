@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "sim_devices/sensor/effect_detector.h"
+#include "sim_devices/sensor/effect_diffraction.h"
 #include "tests/sim_devices/reference.h"
 
 namespace todbench {

@@ -1,0 +1,26 @@
+// Reconstruction and blur of the display, as a filter on samples.
+#pragma once
+
+#include <functional>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "sim_devices/sensor/sensor_spec.h"
+
+namespace todbench {
+
+/// Taps -r .. r of a symmetric separable filter on samples whose response at f cycles per sample is response(f):
+/// integrals over |f| <= 1/2, normalised to sum 1.
+[[nodiscard]] std::vector<double> taps_of(const std::function<double(double)>& response);
+
+/// Response of the display beyond the sample and hold that observers assume: exp(-2 pi^2 sigma^2 f^2), times sinc(f)
+/// for bilinear interpolation.
+[[nodiscard]] double display_response(const SensorSpec& spec, double f_per_sample);
+/// Whether the display differs from sample and hold.
+[[nodiscard]] bool has_display(const SensorSpec& spec);
+
+/// Filters rows and columns with the taps; beyond its edges a picture is mirrored. The middle of a larger picture is
+/// what it would be alone within half the taps of it.
+[[nodiscard]] cv::Mat1f filtered(const cv::Mat1f& picture, const std::vector<double>& taps);
+
+}  // namespace todbench

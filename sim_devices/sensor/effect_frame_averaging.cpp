@@ -1,0 +1,28 @@
+// The mean of several exposures (SensorSpec::exposures_per_sample): temporal and line noise fall, the pattern does not.
+#include "sim_devices/sensor/effect_row.h"
+
+namespace todbench {
+
+EffectRow effect_rows::frame_averaging() {
+  EffectRow row;
+  row.title = "Frame averaging";
+  row.keys = {{"frames_averaged", &SensorSpec::frames_averaged, KeyRange::between(1, 1024), KeyPresence::optional,
+               "exposures averaged into one frame"}};
+  row.is_neutral = [](const SensorSpec& spec, SceneMotion) { return spec.frames_averaged == 1; };
+  row.neutralise = [](SensorSpec& spec) { spec.frames_averaged = 1; };
+  row.neutral = "frames_averaged is 1";
+  row.stage = stage::Parameter{};
+  // Without it the noise is larger: the bound has the sign the other way.
+  row.bound = [](const ExpectedScene& scene) -> std::optional<double> {
+    double averaged = 0;
+    for (const Effect effect : all_effects) {
+      const auto* noise = std::get_if<stage::Noise>(&row_of(effect).stage);
+      if (noise != nullptr && noise->recurrence == stage::Recurrence::every_exposure)
+        averaged += scene.variance_of(effect);
+    }
+    return scene.noise_change((scene.spec.frames_averaged - 1) * averaged);
+  };
+  return row;
+}
+
+}  // namespace todbench

@@ -1,0 +1,42 @@
+// The effects of the sensor chain in its order: the table. Each line is a row that the file effect_NAME.cpp fills in.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+// NOLINTBEGIN(cppcoreguidelines-macro-usage)
+#define TODBENCH_EFFECTS(EFFECT) \
+  EFFECT(diffraction)            \
+  EFFECT(spectral_band)          \
+  EFFECT(aberration)             \
+  EFFECT(detector)               \
+  EFFECT(motion)                 \
+  EFFECT(microscan)              \
+  EFFECT(temporal_noise)         \
+  EFFECT(fixed_pattern)          \
+  EFFECT(row_column_noise)       \
+  EFFECT(dead_pixels)            \
+  EFFECT(frame_averaging)        \
+  EFFECT(super_resolution)       \
+  EFFECT(display)                \
+  EFFECT(quantisation)
+// NOLINTEND(cppcoreguidelines-macro-usage)
+
+namespace todbench {
+
+/// A stage of the sensor chain. An effect at its neutral value equals the effect left out, bit for bit. What it is, is
+/// in its row (effect_row.h).
+#define TODBENCH_EFFECT_NAME(name) name,
+enum class Effect { TODBENCH_EFFECTS(TODBENCH_EFFECT_NAME) };
+#undef TODBENCH_EFFECT_NAME
+
+#define TODBENCH_EFFECT_NAME(name) Effect::name,
+inline constexpr std::array all_effects{TODBENCH_EFFECTS(TODBENCH_EFFECT_NAME)};
+#undef TODBENCH_EFFECT_NAME
+
+/// The name in plans, options and files: that of the enumerator.
+[[nodiscard]] std::string_view to_string(Effect effect);
+[[nodiscard]] std::optional<Effect> effect_from(std::string_view name);
+
+}  // namespace todbench

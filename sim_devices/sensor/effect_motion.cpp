@@ -1,0 +1,60 @@
+#include "sim_devices/sensor/effect_motion.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "sim_devices/sensor/effect_row.h"
+
+namespace todbench {
+namespace {
+
+constexpr double strongest_motion = 0.5;  // pitches per time constant; beyond it the bound does not hold
+
+double length_of(const SensorSpec& spec, SceneMotion motion) {
+  const cv::Point2d smear = smear_pitch(spec, motion);
+  return std::hypot(smear.x, smear.y);
+}
+
+}  // namespace
+
+std::complex<double> motion_transfer(double u_per_pitch, double w_per_pitch, cv::Point2d smear_pitch) {
+  const double phase = 2 * std::numbers::pi * (u_per_pitch * smear_pitch.x + w_per_pitch * smear_pitch.y);
+  return std::polar(1.0, -phase) / std::complex<double>(1, -phase);
+}
+
+cv::Point2d smear_pitch(const SensorSpec& spec, SceneMotion motion) {
+  const double pitches_per_mrad_s = spec.time_constant_ms * 1e-3 / spec.ifov_mrad();
+  return {motion.x_mrad_s * pitches_per_mrad_s, motion.y_mrad_s * pitches_per_mrad_s};
+}
+
+EffectRow effect_rows::motion() {
+  EffectRow row;
+  row.title = "Motion and time constant";
+  row.keys = {{"time_constant_ms", &SensorSpec::time_constant_ms, KeyRange::between(0, 1000), KeyPresence::optional,
+               "of the bolometer; 0 for a detector without memory"}};
+  row.is_neutral = [](const SensorSpec& spec, SceneMotion motion) {
+    return spec.time_constant_ms == 0 || !motion.moving();
+  };
+  row.neutralise = [](SensorSpec& spec) { spec.time_constant_ms = 0; };
+  row.neutral = "time_constant_ms is 0 or nothing moves";
+  row.directions = Directions::different;
+  row.stage = stage::Transfer{[](const ChainScope& scope) -> TransferFunction {
+    const cv::Point2d smear = smear_pitch(scope.spec, scope.motion);
+    if (smear == cv::Point2d(0, 0)) return {};
+    return [smear](double u, double w) { return motion_transfer(u, w, smear); };
+  }};
+  // The tail of a moving target has fallen to e^-14, 1e-6, after fourteen smears.
+  row.spread = [](const ChainScope& scope) {
+    const double tail = 14 * length_of(scope.spec, scope.motion);
+    return Spread{.period = tail, .window = tail, .variance = 0};
+  };
+  row.bound = [](const ExpectedScene& scene) -> std::optional<double> {
+    const double v_tau = length_of(scene.spec, scene.motion);
+    if (v_tau >= strongest_motion) return std::nullopt;
+    return 12 * v_tau * v_tau / 2 / (scene.s75_pitch * scene.s75_pitch);
+  };
+  row.always = "always simulated: half a pitch and more per time constant is beyond the criterion";
+  return row;
+}
+
+}  // namespace todbench

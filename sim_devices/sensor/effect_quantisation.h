@@ -1,0 +1,39 @@
+// Whole counts: the one place that rounds a picture.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "sim_devices/sensor/sensor_spec.h"
+
+namespace todbench {
+
+/// Rounds kelvin above the surround to the counts of a sensor, halves upwards. A count has the same limits for every
+/// pixel, wherever the surround lies between two of them. A value, any thread.
+class Quantiser {
+ public:
+  Quantiser(const SensorSpec& spec, double background_k)
+      : step_k_(spec.kelvin_per_count),
+        per_kelvin_(1 / spec.kelvin_per_count),
+        background_((background_k - spec.offset_k) * per_kelvin_),
+        half_up_(background_ + 0.5),
+        full_scale_(static_cast<double>((1u << spec.bits) - 1u) + 0.5) {}
+
+  /// The count, clipped to the significant bits.
+  [[nodiscard]] std::uint16_t count(float kelvin) const {
+    return static_cast<std::uint16_t>(static_cast<int>(std::clamp(level(kelvin), 0.0, full_scale_)));
+  }
+  /// The temperature of the count above the surround, not clipped.
+  [[nodiscard]] float rounded(float kelvin) const {
+    return static_cast<float>((std::floor(level(kelvin)) - background_) * step_k_);
+  }
+
+ private:
+  /// Its whole part is the count.
+  [[nodiscard]] double level(float kelvin) const { return half_up_ + static_cast<double>(kelvin) * per_kelvin_; }
+
+  double step_k_, per_kelvin_, background_, half_up_, full_scale_;
+};
+
+}  // namespace todbench
