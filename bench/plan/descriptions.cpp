@@ -51,13 +51,14 @@ void read_key(TomlReader& reader, const SensorKey& key, SensorSpec& spec) {
   const bool required = key.presence == KeyPresence::required;
   const auto& [low, high, edge] = key.range;
   if (const auto* number = std::get_if<double SensorSpec::*>(&key.member)) {
+    double& value = spec.*(*number);
     const auto low_edge = edge == KeyRange::Edge::included ? NumberRange::Edge::included : NumberRange::Edge::excluded;
-    spec.** number = reader.number(key.name, NumberRange{low, high, low_edge},
-                                   required ? std::nullopt : std::optional(spec.**number));
+    value = reader.number(key.name, NumberRange{low, high, low_edge}, required ? std::nullopt : std::optional(value));
   } else if (const auto* whole = std::get_if<int SensorSpec::*>(&key.member)) {
-    spec.** whole =
-        static_cast<int>(reader.whole(key.name, static_cast<std::int64_t>(low), static_cast<std::int64_t>(high),
-                                      required ? std::nullopt : std::optional<std::int64_t>(spec.**whole)));
+    int& value = spec.*(*whole);
+    const auto fallback = required ? std::nullopt : std::optional<std::int64_t>(value);
+    value = static_cast<int>(
+        reader.whole(key.name, static_cast<std::int64_t>(low), static_cast<std::int64_t>(high), fallback));
   } else {
     static const std::vector<std::string> words = {std::string(to_string(DisplayReconstruction::sample_and_hold)),
                                                    std::string(to_string(DisplayReconstruction::bilinear))};

@@ -172,17 +172,24 @@ cv::Mat1d corner_of_inverse(const SplitMatrix& folded, int points, cv::Size size
   return out;
 }
 
-/// In-place complex-to-real inverse transform of n x n points. FFTW_ESTIMATE, so that results repeat bit for bit.
-void inverse_in_place(fftw_complex* data, int n) {
+/// Complex-to-real inverse transform of n x n points in place, of which only the first `columns` columns of each row
+/// are not zero. FFTW_ESTIMATE, so that results repeat bit for bit.
+void inverse_in_place(fftw_complex* data, int n, int columns) {
   static std::mutex planner;  // FFTW's planner is not thread-safe; executing a plan is
-  fftw_plan plan = nullptr;
+  const int half = n / 2 + 1;
+  fftw_plan down = nullptr, along = nullptr;
   {
     const std::scoped_lock lock(planner);
-    plan = fftw_plan_dft_c2r_2d(n, n, data, reinterpret_cast<double*>(data), FFTW_ESTIMATE);
+    down = fftw_plan_many_dft(1, &n, columns, data, nullptr, half, 1, data, nullptr, half, 1, FFTW_BACKWARD,
+                              FFTW_ESTIMATE);
+    along = fftw_plan_many_dft_c2r(1, &n, n, data, nullptr, 1, half, reinterpret_cast<double*>(data), nullptr, 1,
+                                   2 * half, FFTW_ESTIMATE);
   }
-  fftw_execute(plan);
+  fftw_execute(down);
+  fftw_execute(along);
   const std::scoped_lock lock(planner);
-  fftw_destroy_plan(plan);
+  fftw_destroy_plan(down);
+  fftw_destroy_plan(along);
 }
 
 }  // namespace
@@ -263,7 +270,9 @@ cv::Mat1d PolygonImage::fine_image(int per_unit) const {
   CV_Assert(n > 2 * band);
   // Transformed in place: rows of n / 2 + 1 complex numbers become rows of n real ones with padding behind.
   const int half = n / 2 + 1;
-  cv::Mat1d data(n, 2 * half, 0.0);
+  cv::Mat1d data(n, 2 * half);
+  data.colRange(2 * (band + 1), 2 * half) = 0;
+  data(cv::Range(band + 1, n - band), cv::Range(0, 2 * (band + 1))) = 0;
   for (int row = 0; row < re_.rows; ++row) {
     const double* re = re_[row];
     const double* im = im_[row];
@@ -273,7 +282,7 @@ cv::Mat1d PolygonImage::fine_image(int per_unit) const {
       target[2 * m + 1] = im[m];
     }
   }
-  inverse_in_place(reinterpret_cast<fftw_complex*>(data.ptr<double>()), n);
+  inverse_in_place(reinterpret_cast<fftw_complex*>(data.ptr<double>()), n, band + 1);
   cv::Mat1d out = data.colRange(0, n);
   const double scale = 1.0 / (static_cast<double>(lattice_.period) * lattice_.period);
   for (int row = 0; row < n; ++row) {

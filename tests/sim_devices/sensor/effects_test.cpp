@@ -60,11 +60,11 @@ SensorSpec drawn_sensor(const RandomStream& stream) {
       for (const SensorKey& key : row.keys) {
         const double width = key.range.high - key.range.low;
         if (const auto* number = std::get_if<double SensorSpec::*>(&key.member))
-          spec.** number = key.range.low + stream.uniform(at++) * (width > 1e6 ? 0.1 : width / 100);
+          spec.*(*number) = key.range.low + stream.uniform(at++) * (width > 1e6 ? 0.1 : width / 100);
         if (const auto* whole = std::get_if<int SensorSpec::*>(&key.member))
-          spec.** whole = static_cast<int>(key.range.low) + static_cast<int>(stream.below(5, at++));
+          spec.*(*whole) = static_cast<int>(key.range.low) + static_cast<int>(stream.below(5, at++));
         if (const auto* display = std::get_if<DisplayReconstruction SensorSpec::*>(&key.member))
-          spec.** display =
+          spec.*(*display) =
               stream.below(2, at++) == 0 ? DisplayReconstruction::sample_and_hold : DisplayReconstruction::bilinear;
       }
     }
