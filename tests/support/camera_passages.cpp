@@ -10,6 +10,9 @@ namespace todbench::testing_support {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
+/// More than a source keeps for a slow reader (a Seek: 128), so that what happens now comes through behind them.
+constexpr int most_frames = 1000;
+
 cv::Mat1w test_picture(std::uint64_t index, int width, int height, int bits) {
   const unsigned mask = (1U << static_cast<unsigned>(bits)) - 1;
   cv::Mat1w picture(height, width);
@@ -57,7 +60,7 @@ void expect_gap_of_lost_exposures(FrameSource& source, const std::function<void(
   lose(3);
 
   std::uint64_t gap = 0;
-  for (int k = 0; k < 100 && gap == 0; ++k) {
+  for (int k = 0; k < most_frames && gap == 0; ++k) {
     const auto frame = source.next(patience);
     ASSERT_TRUE(frame);
     gap = frame->sequence - last->sequence - 1;
@@ -68,13 +71,13 @@ void expect_gap_of_lost_exposures(FrameSource& source, const std::function<void(
 
 Result<Frame> next_damaged(FrameSource& source) {
   auto frame = source.next(patience);
-  for (int k = 0; k < 100 && frame && frame->status == FrameStatus::complete; ++k) frame = source.next(patience);
+  for (int k = 0; k < most_frames && frame && frame->status == FrameStatus::complete; ++k) frame = source.next(patience);
   return frame;
 }
 
 Result<Frame> end_of(FrameSource& source) {
   auto next = source.next(patience);
-  for (int k = 0; k < 1000 && next; ++k) next = source.next(patience);
+  for (int k = 0; k < most_frames && next; ++k) next = source.next(patience);
   return next;
 }
 

@@ -42,7 +42,7 @@ void expect_not_found(const OpenedSource& source, const std::string& told = "");
 /// A started source shows as a gap of three what `lose` is told to lose.
 void expect_gap_of_lost_exposures(FrameSource& source, const std::function<void(unsigned)>& lose);
 
-/// The next frame that is not complete, within a hundred.
+/// The next frame that is not complete, within a thousand.
 [[nodiscard]] Result<Frame> next_damaged(FrameSource& source);
 
 /// How a source whose device goes ends, within a thousand frames.

@@ -22,6 +22,21 @@ struct ThermalCameraOptions {
   double kelvin_per_count = 0.01, offset_k = 0;
 };
 
+/// Those of the configuration of a camera.
+template <typename Config>
+[[nodiscard]] ThermalCameraOptions options_of(const Config& config) {
+  return {.vendor = config.vendor,
+          .model = config.model,
+          .serial = config.serial,
+          .firmware = config.firmware,
+          .width = config.width,
+          .height = config.height,
+          .significant_bits = config.significant_bits,
+          .frame_rate_hz = config.frame_rate_hz,
+          .kelvin_per_count = config.kelvin_per_count,
+          .offset_k = config.offset_k};
+}
+
 /// Builders of rows. Addresses are those of the registers.
 namespace features {
 

@@ -68,16 +68,7 @@ std::uint32_t raw_temperature(double temperature_c) {
 /// The camera of thermal_camera() and what only this one has.
 CameraDescription described(const EmulatedGigeCameraConfig& c) {
   using namespace features;
-  auto camera = thermal_camera(registers_of_this, {.vendor = c.vendor,
-                                                   .model = c.model,
-                                                   .serial = c.serial,
-                                                   .firmware = c.firmware,
-                                                   .width = c.width,
-                                                   .height = c.height,
-                                                   .significant_bits = c.significant_bits,
-                                                   .frame_rate_hz = c.frame_rate_hz,
-                                                   .kelvin_per_count = c.kelvin_per_count,
-                                                   .offset_k = c.offset_k});
+  auto camera = thermal_camera(registers_of_this, options_of(c));
   const auto width = static_cast<std::uint32_t>(c.width), height = static_cast<std::uint32_t>(c.height);
   more_of(camera, "DeviceControl")
       .push_back(

@@ -52,16 +52,7 @@ constexpr ThermalRegisters registers_of_this{.vendor = abrm_vendor,
                                              .nuc_action = own(reg_nuc)};
 
 CameraDescription described(const U3vCameraConfig& c) {
-  auto camera = thermal_camera(registers_of_this, {.vendor = c.vendor,
-                                                   .model = c.model,
-                                                   .serial = c.serial,
-                                                   .firmware = c.firmware,
-                                                   .width = c.width,
-                                                   .height = c.height,
-                                                   .significant_bits = c.significant_bits,
-                                                   .frame_rate_hz = c.frame_rate_hz,
-                                                   .kelvin_per_count = c.kelvin_per_count,
-                                                   .offset_k = c.offset_k});
+  auto camera = thermal_camera(registers_of_this, options_of(c));
   camera.name_space = "U3V";
   camera.order = std::endian::little;
   return camera;
