@@ -41,7 +41,8 @@ Json rows_of(const cv::Mat1d& values) {
 ImageChain::InfinitePlane degraded(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy,
                                    const RenderArguments& a) {
   const double step = 1.0 / spec.samples_per_pitch();
-  const double first = -step * (a.window / 2);
+  const int half_window = a.window / 2;
+  const double first = -step * half_window;
   const Polygon shape = triangle(a.size_pitch, *apex_from(a.apex), {a.x_pitch, a.y_pitch});
   auto image = ImageChain(spec, plan, accuracy).infinite_plane(shape, {first, first}, step, {a.window, a.window});
   // The band's wavelengths: what twice as many nodes change.
@@ -84,7 +85,7 @@ Result<void> write_tiff(const std::string& file, const cv::Mat1f& kelvin) {
   return write_file_atomically(file, {reinterpret_cast<const char*>(encoded.data()), encoded.size()});
 }
 
-int run_render(Console& console, RenderArguments a, std::uint64_t seed) {
+int run_render(Console& console, const RenderArguments& a, std::uint64_t seed) {
   auto spec = load_sensor(a.sensor);
   if (!spec) return report_error(console, spec.error());
   if (a.microscan > 0) spec->microscan = a.microscan;

@@ -154,7 +154,7 @@ int run_demo(Console& console, const RunArguments& arguments, const std::string&
   console.phase("starting the emulated laboratory");
   auto laboratory = start_laboratory(emulation);
   if (!laboratory) return report_error(console, laboratory.error());
-  *plan = with_laboratory(*std::move(plan), **laboratory);
+  *plan = with_laboratory(*plan, **laboratory);
   if (camera != "gige") plan->unit = "emulated " + camera + " camera";
   if (arguments.record_frames) plan->measurement.record_frames = true;
   auto outcome = measure_plan(*plan, folder_of(arguments, *plan), listener_of(console), program.stop->token());

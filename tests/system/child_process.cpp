@@ -30,6 +30,7 @@ constexpr std::chrono::milliseconds look_again{5};
 /// Between fork and exec: only what may be called there.
 void prepare_child(const ChildOptions& options) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  ::signal(SIGINT, SIG_DFL);  // ignored in programs that a shell started in the background
   if (!options.folder.empty() && ::chdir(options.folder.c_str()) != 0) ::_exit(126);
   for (const auto& [name, value] : options.setenv) ::setenv(name.c_str(), value.c_str(), 1);
   if (options.largest_file_bytes) {

@@ -49,7 +49,7 @@ class Matcher {
  private:
   /// Pairs of triangles, the farthest apart first: they fix scale and rotation best. A bounded number, because each is
   /// tried with every pair of blobs; 60 are all pairs of eleven triangles.
-  std::vector<std::pair<std::size_t, std::size_t>> baselines() const {
+  [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> baselines() const {
     constexpr std::size_t most = 60;
     std::vector<std::pair<std::size_t, std::size_t>> all;
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
@@ -63,7 +63,7 @@ class Matcher {
     return all;
   }
 
-  bool compatible(std::size_t triangle, const Blob& blob, double scale) const {
+  [[nodiscard]] bool compatible(std::size_t triangle, const Blob& blob, double scale) const {
     const double ratio = blob.size_px / (triangles_[triangle].size_mm * scale);
     return ratio > 0.55 && ratio < 1.7;
   }
@@ -103,7 +103,7 @@ class Matcher {
     best_error_ = error;
   }
 
-  LayoutMatch paired(const cv::Matx33d& hypothesis, double strength) const {
+  [[nodiscard]] LayoutMatch paired(const cv::Matx33d& hypothesis, double strength) const {
     LayoutMatch match;
     match.plate_to_pixel = hypothesis;
     const double scale = scale_of(hypothesis);
@@ -131,7 +131,7 @@ class Matcher {
     return match;
   }
 
-  double squared_error(const LayoutMatch& match) const {
+  [[nodiscard]] double squared_error(const LayoutMatch& match) const {
     double sum = 0;
     for (const auto& [t, b] : match.pairs) {
       const cv::Point2d d = blobs_[b].centre - map(match.plate_to_pixel, triangles_[t].position_mm);

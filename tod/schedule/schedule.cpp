@@ -30,7 +30,7 @@ class Nesting {
   }
 
  private:
-  std::size_t length(std::size_t dimension) const {
+  [[nodiscard]] std::size_t length(std::size_t dimension) const {
     switch (dimension) {
       case plate_dimension:
         return options_.plates.size();

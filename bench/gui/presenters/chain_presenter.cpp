@@ -75,9 +75,9 @@ cv::Mat1d sharp(const Setting& s) {
         continue;
       int inside = 0;
       for (int k = 0; k < places * places; ++k) {
-        const cv::Point2f point(
-            static_cast<float>(middle.x + ((k % places + 0.5) / places - 0.5) / fine),
-            static_cast<float>(middle.y + (static_cast<double>(k / places) + 0.5) / places / fine - 0.5 / fine));
+        const int across = k % places, down = k / places;
+        const cv::Point2f point(static_cast<float>(middle.x + ((across + 0.5) / places - 0.5) / fine),
+                                static_cast<float>(middle.y + (down + 0.5) / places / fine - 0.5 / fine));
         inside += cv::pointPolygonTest(outline, point, false) >= 0 ? 1 : 0;
       }
       out(row, column) = static_cast<double>(inside) / (places * places);

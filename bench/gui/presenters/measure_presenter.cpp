@@ -1,6 +1,7 @@
 #include "bench/gui/presenters/measure_presenter.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "bench/plan/plan_options.h"
@@ -306,7 +307,7 @@ void MeasurePresenter::conclude(const Result<ExperimentOutcome>& outcome) {
 QString MeasurePresenter::time_left() const {
   if (state_ != RunState::running || !in_phase_.isValid() || done_ <= done_at_start_ + 2 || planned_ < done_) return {};
   const double per_presentation = in_phase_.elapsed() / 1000.0 / static_cast<double>(done_ - done_at_start_);
-  const int seconds = static_cast<int>(per_presentation * static_cast<double>(planned_ - done_) + 0.5);
+  const int seconds = static_cast<int>(std::lround(per_presentation * static_cast<double>(planned_ - done_)));
   return seconds < 60 ? QString("%1 s left").arg(seconds)
                       : QString("%1 min %2 s left").arg(seconds / 60).arg(seconds % 60);
 }

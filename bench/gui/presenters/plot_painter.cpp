@@ -150,7 +150,8 @@ class PlotPainting {
     for (auto series = plot_.series.rbegin(); series != plot_.series.rend(); ++series) {
       if (series->label.empty()) continue;
       const double left = 66 + column_width * (number % 3);
-      const double middle = 14 + 20.0 * (number / 3);
+      const int row = number / 3;
+      const double middle = 14 + 20.0 * row;
       const QColor colour = colours_.of(series->tone);
       const PlotLine line = series->line != PlotLine::none ? series->line : series->legend_line;
       painter_.setPen(QPen(colour, 1.8, pen_style(line)));

@@ -86,12 +86,12 @@ PlotView::PlotView(QWidget* parent) : QCustomPlot(parent) {
 void PlotView::show_plot(const Plot& plot) {
   if (plot.x.scale != plot_.x.scale || plot.y.scale != plot_.y.scale) zoomed_ = false;
   plot_ = plot;
-  draw();
+  draw_plot();
 }
 
 void PlotView::changeEvent(QEvent* event) {
   QCustomPlot::changeEvent(event);
-  if (event->type() == QEvent::PaletteChange && validate(plot_.x)) draw();
+  if (event->type() == QEvent::PaletteChange && validate(plot_.x)) draw_plot();
 }
 
 void PlotView::mouseDoubleClickEvent(QMouseEvent* event) {
@@ -140,7 +140,7 @@ void PlotView::shift(double right, double up) {
 
 void PlotView::show_all() {
   zoomed_ = false;
-  draw();
+  draw_plot();
 }
 
 void PlotView::focusInEvent(QFocusEvent* event) {
@@ -216,7 +216,7 @@ void PlotView::add_series(const PlotSeries& series) {
   if (series.label.empty()) curve->removeFromLegend();
 }
 
-void PlotView::draw() {
+void PlotView::draw_plot() {
   const PlotColours colours = plot_colours_of(theme_of(palette()));
   clearPlottables();
   clearItems();

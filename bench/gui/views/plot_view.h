@@ -35,7 +35,7 @@ class PlotView final : public QCustomPlot {
   void zoom(double factor);
   void shift(double right, double up);
   void show_all();
-  void draw();
+  void draw_plot();
   void set_axis(QCPAxis& axis, const PlotAxis& description, bool keep_range);
   void add_series(const PlotSeries& series);
   void add_intervals(const PlotSeries& series, const QColor& colour);

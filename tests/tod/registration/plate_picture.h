@@ -18,7 +18,7 @@
 namespace todbench::testing {
 
 inline TargetPlate shipped_plate(const std::string& name) {
-  const toml::table file = toml::parse_file(source_file("tod/plates/") + name + ".toml");
+  const toml::table file = toml::parse_file(source_file("tod/plate/") + name + ".toml");
   TargetPlate plate;
   plate.name = file["name"].value<std::string>().value();
   plate.description = file["description"].value<std::string>().value();
