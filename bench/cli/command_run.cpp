@@ -4,6 +4,8 @@
 
 #include "bench/cli/commands.h"
 #include "bench/cli/simulation_plan.h"
+#include "bench/judgement/demand_kinds.h"
+#include "bench/judgement/verdict_record.h"
 #include "bench/plan/resources.h"
 #include "bench/run/emulation.h"
 #include "bench/run/experiment.h"
@@ -76,17 +78,28 @@ void print_effects(const Console& console, const SensorPlan& effects) {
   console.table({"effect", "decision", "reason"}, rows);
 }
 
-/// A run that ended early has no verdict: what is missing could have changed it.
+/// A run that ended early says that in place of a verdict. A threshold that was found and has no limit stands in the
+/// table of the curve.
 void print_verdict(const Console& console, const ExperimentOutcome& outcome) {
   if (outcome.ended_by) return;
-  if (!outcome.verdict.items.empty()) console.text("");
-  for (const auto& item : outcome.verdict.items) {
-    console.text(std::string(to_string(item.kind)) + ": " + item.demand +
-                 (item.reason.empty() ? "" : "; " + item.reason));
+  const Verdict& verdict = outcome.verdict;
+  std::vector<std::string> lines;
+  for (const Demand& demand : verdict.demands) {
+    if (demand.kind == DemandKind::identified && demand.decision == VerdictKind::pass) continue;
+    lines.push_back(std::string(to_string(demand.decision)) + ": " + in_words(demand) +
+                    (demand.reason.empty() ? "" : "; " + demand.reason));
   }
+  if (!lines.empty()) console.text("");
+  for (const std::string& line : lines) console.text(line);
   console.text("");
-  console.text("verdict: " + std::string(to_string(outcome.verdict.overall)) +
-               (outcome.verdict.items.empty() ? " (no limits were asked for, every threshold was found)" : ""));
+  console.text("verdict: " + std::string(to_string(verdict.decision)) +
+               (lines.empty() ? " (" + verdict.reason + ")" : ""));
+}
+
+/// What every run says in JSON beside its numbers.
+void add_verdict(Json& json, const Verdict& verdict) {
+  json["verdict"] = to_string(verdict.decision);
+  json["judgement"] = verdict_json(verdict);
 }
 
 int finish(Console& console, const ExperimentOutcome& outcome) {
@@ -96,7 +109,7 @@ int finish(Console& console, const ExperimentOutcome& outcome) {
                   outcome.folder.string());
     return exit_code(outcome.ended_by->code);
   }
-  return exit_code(outcome.verdict.overall);
+  return exit_code(outcome.verdict.decision);
 }
 
 int run_measure(Console& console, const RunArguments& arguments, const Program& program) {
@@ -113,7 +126,9 @@ int run_measure(Console& console, const RunArguments& arguments, const Program& 
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
   if (console.json()) {
-    console.object(curve_json(outcome->curve, outcome->effects, outcome->figures));
+    Json json = curve_json(outcome->curve, outcome->effects, outcome->figures);
+    add_verdict(json, outcome->verdict);
+    console.object(json);
   } else {
     print_curve(console, outcome->curve);
     if (outcome->comparison) {
@@ -133,7 +148,9 @@ int run_simulate(Console& console, SimulateArguments arguments, const Program& p
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
   if (console.json()) {
-    console.object(curve_json(outcome->curve, outcome->effects, outcome->figures));
+    Json json = curve_json(outcome->curve, outcome->effects, outcome->figures);
+    add_verdict(json, outcome->verdict);
+    console.object(json);
   } else {
     print_curve(console, outcome->curve);
     console.text("");
@@ -161,11 +178,12 @@ int run_demo(Console& console, const RunArguments& arguments, const std::string&
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
   if (console.json()) {
-    console.object({{"measured", curve_json(outcome->curve, {}, outcome->figures)},
-                    {"simulated", outcome->twin ? curve_json(*outcome->twin, outcome->effects, {}) : Json()},
-                    {"comparison", outcome->comparison ? comparison_json(*outcome->comparison) : Json()},
-                    {"verdict", to_string(outcome->verdict.overall)},
-                    {"session", outcome->folder.string()}});
+    Json json{{"measured", curve_json(outcome->curve, {}, outcome->figures)},
+              {"simulated", outcome->twin ? curve_json(*outcome->twin, outcome->effects, {}) : Json()},
+              {"comparison", outcome->comparison ? comparison_json(*outcome->comparison) : Json()}};
+    add_verdict(json, outcome->verdict);
+    json["session"] = outcome->folder.string();
+    console.object(json);
   } else {
     if (outcome->comparison) print_comparison(console, *outcome);
     print_verdict(console, *outcome);
@@ -208,6 +226,7 @@ int run_replay(Console& console, const std::string& session, const RunArguments&
   const auto said = [](const std::optional<bool>& same) { return same ? (*same ? "the same" : "DIFFERENT") : "none"; };
   if (console.json()) {
     Json json = curve_json(outcome->run.curve, outcome->run.effects, outcome->run.figures);
+    add_verdict(json, outcome->run.verdict);
     json["same_trials"] = outcome->same_trials;
     json["same_fits"] = outcome->same_fits ? Json(*outcome->same_fits) : Json();
     json["session"] = outcome->run.folder.string();

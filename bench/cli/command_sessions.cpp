@@ -27,18 +27,6 @@ Result<TodCurve> curve_of(const std::string& folder) {
   return *session->curve;
 }
 
-int exit_of(ComparisonVerdict verdict) {
-  switch (verdict) {
-    case ComparisonVerdict::equivalent:
-      return exit_code(VerdictKind::pass);
-    case ComparisonVerdict::different:
-      return exit_code(VerdictKind::fail);
-    case ComparisonVerdict::inconclusive:
-      return exit_code(VerdictKind::inconclusive);
-  }
-  return exit_code(VerdictKind::inconclusive);
-}
-
 int run_compare(Console& console, const CompareArguments& arguments) {
   auto session = read_session(arguments.a);
   if (!session) return report_error(console, session.error());
@@ -54,7 +42,7 @@ int run_compare(Console& console, const CompareArguments& arguments) {
   if (!outlook.empty()) console.note(outlook);
   if (console.json()) {
     console.object(comparison_json(*comparison));
-    return exit_of(comparison->verdict);
+    return exit_code(decision_of(comparison->verdict));
   }
   std::vector<TableRow> rows;
   for (const auto& p : comparison->points) {
@@ -64,7 +52,7 @@ int run_compare(Console& console, const CompareArguments& arguments) {
   console.table({"dT A [K]", "dT B [K]", "acuity A / B", "95 %", "p difference", "p equivalence", "verdict"}, rows);
   console.text("margin " + fixed(options.margin_percent, 1) +
                " %; verdict: " + std::string(to_string(comparison->verdict)));
-  return exit_of(comparison->verdict);
+  return exit_code(decision_of(comparison->verdict));
 }
 
 int run_report(Console& console, const std::string& folder) {
@@ -79,13 +67,20 @@ int run_report(Console& console, const std::string& folder) {
   const auto file = path / "report.html";
   if (auto written = write_file_atomically(file, render_report(*data)); !written)
     return report_error(console, written.error());
+  if (!session->verdict) {
+    if (auto kept = keep_verdict(path, *data->verdict); !kept) return report_error(console, kept.error());
+  }
   // A run that was cut off has no manifest; there is nothing to bring up to date then.
   if (std::error_code none; std::filesystem::exists(path / "manifest.json", none)) {
     if (auto refreshed = refresh_manifest(path, {"report.html"}); !refreshed)
       return report_error(console, refreshed.error());
   }
+  const bool afterwards = data->verdict->judged == JudgedWhen::afterwards;
+  if (afterwards) console.note(std::string(remark_on(data->verdict->judged)));
   if (console.json()) {
-    console.object({{"report", file.string()}});
+    Json json{{"report", file.string()}};
+    if (afterwards) json["judged"] = to_string(data->verdict->judged);
+    console.object(json);
   } else {
     console.text(file.string());
   }

@@ -1,4 +1,5 @@
-// Pass, fail or inconclusive: the limits of a plan against what was measured, and the exit code of the program.
+// Pass, fail or inconclusive: the limits of a plan against what was measured, as a value that is stored with the
+// session, and the exit code of the program.
 #pragma once
 
 #include <optional>
@@ -15,38 +16,70 @@ namespace todbench {
 enum class VerdictKind { pass, fail, inconclusive };
 [[nodiscard]] std::string_view to_string(VerdictKind kind);
 
-/// One demand with what was found.
-struct VerdictItem {
-  std::string demand;           ///< "acuity at 16.9 K at least 0.4 1/mrad"
-  double delta_t_k = 0;         ///< 0 where the demand is not about one contrast
-  std::optional<double> limit;  ///< in the unit of the demand
-  std::optional<double> value;  ///< measured
-  Interval interval;            ///< 95 %
-  VerdictKind kind = VerdictKind::inconclusive;
-  std::string reason;  ///< a sentence
+/// How an interval and a limit make a decision.
+enum class DecisionRule {
+  /// Guarded acceptance and guarded rejection with the 95 % confidence interval of the result as guard band
+  /// (ILAC-G8:09/2019, 4.2; JCGM 106:2012, 8.3).
+  guarded_acceptance_and_rejection,
+};
+[[nodiscard]] std::string_view to_string(DecisionRule rule);
+[[nodiscard]] std::string in_words(DecisionRule rule);
+
+/// When a verdict was made.
+enum class JudgedWhen {
+  at_end_of_run,
+  afterwards,  ///< the run stored none: an older program, or a run that was cut off
+};
+[[nodiscard]] std::string_view to_string(JudgedWhen when);
+/// A sentence for a verdict that its run did not make; empty for one that it made.
+[[nodiscard]] std::string_view remark_on(JudgedWhen when);
+
+/// One demand with what was found. Its unit and its words follow from the kind (demand_kinds.h).
+struct Demand {
+  DemandKind kind = DemandKind::identified;
+  std::optional<double> delta_t_k{};  ///< set contrast; nothing where the demand is not about one contrast
+  std::optional<double> limit{};      ///< nothing: the demand is no number
+  std::optional<double> result{};
+  Interval interval{};
+  int interval_percent = 95;  ///< confidence of the interval
+  VerdictKind decision = VerdictKind::inconclusive;
+  std::string reason{};  ///< a sentence
 };
 
+/// verdict.json of a session. Made once, by judge(); everything else shows it.
 struct Verdict {
-  VerdictKind overall = VerdictKind::pass;  ///< fail if any item fails, else inconclusive if any is, else pass
-  std::vector<VerdictItem> items;           ///< empty: nothing was demanded and every threshold was identified
-  std::string rule;                         ///< the decision rule in words
+  VerdictKind decision = VerdictKind::inconclusive;
+  std::string reason{};  ///< of the decision, a sentence
+  DecisionRule rule = DecisionRule::guarded_acceptance_and_rejection;
+  std::string rule_in_words{};
+  std::vector<Demand> demands{};
+  std::optional<std::string> ended_early{};  ///< why the run did
+  JudgedWhen judged = JudgedWhen::at_end_of_run;
 };
 
-/// The decision rule: guarded acceptance and guarded rejection with the 95 % confidence interval of the result as guard
-/// band (ILAC-G8:09/2019, 4.2; JCGM 106:2012, 8.3).
-[[nodiscard]] std::string decision_rule();
+/// What is judged. Borrows for the call.
+struct Evidence {
+  const LimitsPlan& limits;
+  const TodCurve& curve;  ///< without points where the run ended before there was one
+  const std::optional<Comparison>& comparison;
+  std::optional<std::string> ended_early{};
+  JudgedWhen judged = JudgedWhen::at_end_of_run;
+};
+
+/// Judges every kind of demand. The whole fails if one demand fails, is inconclusive if one is, if nothing was measured
+/// or if the run ended early (what is missing could have changed it), and passes otherwise. The only place that
+/// decides.
+[[nodiscard]] Verdict judge(const Evidence& evidence);
+
+/// The plan has limits. Without any a verdict says only whether every threshold was found.
+[[nodiscard]] bool limits_asked(const Verdict& verdict);
 
 /// A fit says where the threshold is: it has a point and both sides of its interval, and its slope is not at the lower
 /// bound.
 [[nodiscard]] bool threshold_identified(const PsychometricFit& fit);
 
-/// Judges the limits of a plan. A limit on acuity passes when the whole 95 % interval is at or above it (exactly on the
-/// limit passes), fails when the whole interval is below it, and is inconclusive otherwise; a one-sided limit of the
-/// fit decides in its direction. Where a free lapse explains the data significantly better, both fits have to agree:
-/// the union of their intervals counts. Demanded equivalence passes, fails or stays open as the comparison says. A
-/// contrast without a limit whose threshold cannot be identified is inconclusive.
-[[nodiscard]] Verdict judge(const LimitsPlan& limits, const TodCurve& curve,
-                            const std::optional<Comparison>& comparison);
+/// A comparison as the answer to a demanded equivalence.
+[[nodiscard]] VerdictKind decision_of(ComparisonVerdict verdict);
 
 /// Exit codes: 0 pass, 1 fail, 3 inconclusive.
 [[nodiscard]] int exit_code(VerdictKind kind);

@@ -87,6 +87,14 @@ struct FitPlan {
   bool operator==(const FitPlan&) const = default;
 };
 
+/// What can be demanded of a unit. bench/judgement/demand_kinds.cpp has a row for each: its name, how it is judged, how
+/// it is shown.
+enum class DemandKind {
+  acuity,       ///< the 75 % acuity at a contrast, [[limits.acuity]]
+  identified,   ///< a threshold with both sides of its interval, at every contrast without a limit on acuity
+  equivalence,  ///< agreement with the simulated twin, [limits] equivalence_margin_percent
+};
+
 /// [[limits.acuity]]: the 75 % acuity demanded at a contrast.
 struct AcuityLimit {
   double delta_t_k = 0;

@@ -26,14 +26,11 @@ std::string page_label(const ReportData& data) {
 }  // namespace
 
 ReportVerdict report_verdict(const ReportData& data) {
-  const auto any = [&](LimitVerdict verdict) {
-    return std::any_of(data.limits.begin(), data.limits.end(),
-                       [&](const LimitLine& line) { return line.verdict == verdict; });
-  };
-  if (any(LimitVerdict::fail)) return ReportVerdict::fail;
+  if (data.verdict && data.verdict->decision == VerdictKind::fail) return ReportVerdict::fail;
   if (data.interrupted) return ReportVerdict::interrupted;
-  if (data.limits.empty()) return ReportVerdict::not_judged;
-  return any(LimitVerdict::inconclusive) ? ReportVerdict::inconclusive : ReportVerdict::pass;
+  if (!data.verdict) return ReportVerdict::not_judged;
+  if (data.verdict->decision == VerdictKind::inconclusive) return ReportVerdict::inconclusive;
+  return limits_asked(*data.verdict) ? ReportVerdict::pass : ReportVerdict::not_judged;
 }
 
 std::vector<Plot> report_plots(const ReportData& data) {

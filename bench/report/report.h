@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "acquisition/core/frame_source.h"
+#include "bench/judgement/verdict.h"
 #include "bench/report/svg_plot.h"
 #include "sim_devices/prediction/cost_frontier.h"
 #include "sim_devices/sensor/sensor_plan.h"
@@ -19,24 +20,8 @@
 
 namespace todbench {
 
-enum class LimitVerdict { pass, fail, inconclusive };
-
-/// One limit and what the data say about it, as decided elsewhere: the report shows decisions, it makes none.
-struct LimitLine {
-  enum class Side { at_least, at_most };
-  std::string quantity;  ///< "Acuity at 16.9 K"
-  std::string unit;      ///< "1/mrad"; empty for a pure number
-  Side side = Side::at_least;
-  std::optional<double> limit;  ///< nothing: the demand is no number, such as equivalence or an identified threshold
-  std::optional<double> value;
-  Interval ci95;
-  LimitVerdict verdict = LimitVerdict::inconclusive;
-  std::string reason;  ///< a sentence
-  std::optional<double>
-      acuity_at_delta_t_k;  ///< for a limit on acuity: its set contrast, to draw it into the TOD curve
-};
-
-/// The verdict of a report over its limits. A run that was interrupted, or limits without any line, cannot pass.
+/// What stands over a report: its verdict, as decided elsewhere. The report shows decisions, it makes none. A run that
+/// was interrupted, or without limits, does not say "pass".
 enum class ReportVerdict {
   pass,          ///< every limit is met
   fail,          ///< a limit is not met
@@ -71,8 +56,7 @@ struct ReportData {
   std::optional<TodCurve> human;         ///< a person's answers to patches of the camera's frames
   std::optional<Comparison> comparison;  ///< A is measured, B is simulated
 
-  std::string decision_rule;  ///< named and in words
-  std::vector<LimitLine> limits;
+  std::optional<Verdict> verdict;  ///< of the session
 
   std::optional<SensorSpec> simulated_sensor;
   SensorPlan plan;                   ///< of the simulated sensor
@@ -89,7 +73,7 @@ struct ReportData {
   std::vector<Interruption> interruptions;  ///< losses of the camera after which the run went on
 };
 
-/// fail > interrupted > inconclusive > pass; not_judged without limits.
+/// The verdict's decision; of an interrupted run only a failure; not_judged in place of a pass without limits.
 [[nodiscard]] ReportVerdict report_verdict(const ReportData& data);
 
 /// The TOD curve of the report, then one psychometric function per contrast: what stands in the page as figures, in its

@@ -64,18 +64,6 @@ std::string_view in_words(ComparisonVerdict verdict) {
   return "unknown";
 }
 
-std::string_view in_words(LimitVerdict verdict) {
-  switch (verdict) {
-    case LimitVerdict::pass:
-      return "pass";
-    case LimitVerdict::fail:
-      return "fail";
-    case LimitVerdict::inconclusive:
-      return "inconclusive";
-  }
-  return "unknown";
-}
-
 std::string_view in_words(Mounting mounting) {
   switch (mounting) {
     case Mounting::identity:
@@ -94,8 +82,8 @@ std::string_view in_words(Effect effect) {
   return row_of(effect).title;
 }
 
-Mood mood_of(LimitVerdict verdict) {
-  return verdict == LimitVerdict::pass ? Mood::good : verdict == LimitVerdict::fail ? Mood::bad : Mood::open;
+Mood mood_of(VerdictKind verdict) {
+  return verdict == VerdictKind::pass ? Mood::good : verdict == VerdictKind::fail ? Mood::bad : Mood::open;
 }
 
 Mood mood_of(ComparisonVerdict verdict) {

@@ -26,10 +26,9 @@ enum class Mood { good, bad, open };
 /// What a verdict means, for a reader who does not know the program.
 [[nodiscard]] std::string_view in_words(FitVerdict verdict);
 [[nodiscard]] std::string_view in_words(ComparisonVerdict verdict);
-[[nodiscard]] std::string_view in_words(LimitVerdict verdict);
 [[nodiscard]] std::string_view in_words(Mounting mounting);
 [[nodiscard]] std::string_view in_words(Effect effect);
-[[nodiscard]] Mood mood_of(LimitVerdict verdict);
+[[nodiscard]] Mood mood_of(VerdictKind verdict);
 [[nodiscard]] Mood mood_of(ComparisonVerdict verdict);
 
 /// The style sheet of the page; `page_label` and the page number stand at the foot of every printed page.

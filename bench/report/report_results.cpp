@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/judgement/demand_kinds.h"
 #include "bench/report/number_format.h"
 #include "bench/report/report_pieces.h"
 #include "bench/report/tod_figures.h"
@@ -40,11 +41,12 @@ std::string simulated_name(const ReportData& data) {
 /// Limits on acuity, at the contrast the camera saw where it was measured: there the point to compare with is drawn.
 std::vector<DrawnLimit> acuity_limits(const ReportData& data) {
   std::vector<DrawnLimit> limits;
-  for (const LimitLine& line : data.limits) {
-    if (!line.limit || !line.acuity_at_delta_t_k || line.side != LimitLine::Side::at_least) continue;
-    const TodPoint* point = data.measured ? point_at(*data.measured, *line.acuity_at_delta_t_k) : nullptr;
+  if (!data.verdict) return limits;
+  for (const Demand& demand : data.verdict->demands) {
+    if (demand.kind != DemandKind::acuity || !demand.limit || !demand.delta_t_k) continue;
+    const TodPoint* point = data.measured ? point_at(*data.measured, *demand.delta_t_k) : nullptr;
     const bool seen = point != nullptr && point->delta_t_k != 0;
-    limits.push_back({seen ? point->delta_t_k : *line.acuity_at_delta_t_k, *line.limit});
+    limits.push_back({seen ? point->delta_t_k : *demand.delta_t_k, *demand.limit});
   }
   return limits;
 }
@@ -125,10 +127,18 @@ std::string form_in_words(const ReportData& data) {
   return form + ", " + lapse + ", fitted by maximum likelihood; S₇₅ is the size at which ψ = 0.75 exactly.";
 }
 
-Markup limit_cell(const LimitLine& line) {
-  if (!line.limit || !std::isfinite(*line.limit)) return missing("no number");
-  const std::string sign = line.side == LimitLine::Side::at_least ? "≥ " : "≤ ";
-  return unbroken(sign + stated(*line.limit));
+Markup limit_cell(const Demand& demand) {
+  const LimitSide side = row_of(demand.kind).side;
+  if (side == LimitSide::none || !demand.limit || !std::isfinite(*demand.limit)) return missing("no number");
+  return unbroken((side == LimitSide::at_least ? "≥ " : "≤ ") + stated(*demand.limit));
+}
+
+/// The column says 95 %; another confidence stands with the number.
+Markup result_cell(const Demand& demand) {
+  if (demand.interval_percent == 95 || (!demand.interval.low && !demand.interval.high))
+    return interval_cell(demand.result, demand.interval, "no value");
+  return unbroken(with_interval(demand.result, demand.interval) + " (" + std::to_string(demand.interval_percent) +
+                  " %)");
 }
 
 Markup answers_table(const std::string& caption, const TodCurve& curve) {
@@ -191,7 +201,10 @@ Markup verdict_box(const ReportData& data) {
   const Headline words_of_verdict = headline(verdict);
   Markup content = paragraph(escaped(words_of_verdict.word), "word") + paragraph(escaped(words_of_verdict.sentence));
   if (verdict != ReportVerdict::not_judged)
-    content += paragraph(literal("<b>Decision rule:</b> ") + text_or_missing(data.decision_rule, "not stated"));
+    content += paragraph(literal("<b>Decision rule:</b> ") +
+                         text_or_missing(data.verdict ? data.verdict->rule_in_words : "", "not stated"));
+  if (data.verdict && data.verdict->judged == JudgedWhen::afterwards)
+    content += paragraph(escaped(remark_on(data.verdict->judged)));
   if (data.interrupted)
     content += paragraph(literal("<b>Interrupted:</b> ") + text_or_missing(*data.interrupted, "no reason recorded"));
   content += resumptions(data);
@@ -200,16 +213,17 @@ Markup verdict_box(const ReportData& data) {
 }
 
 Markup limits_section(const ReportData& data) {
-  if (data.limits.empty()) return section("Limits", paragraph(missing("the plan asks for no limits")));
+  Markup content;
+  if (!data.verdict || !limits_asked(*data.verdict)) content += paragraph(missing("the plan asks for no limits"));
+  if (!data.verdict || data.verdict->demands.empty()) return section("Limits", content);
   MarkupTable rows;
   rows.header = {"Quantity", "Unit", "Limit", "Result [95 %]", "Verdict", "Reason"};
-  for (const LimitLine& line : data.limits) {
-    rows.rows.push_back({cell(line.quantity), line.unit.empty() ? cell("1") : cell(line.unit), limit_cell(line),
-                         interval_or_missing(line.value, line.ci95, "no value"),
-                         badge(in_words(line.verdict), mood_of(line.verdict)),
-                         text_or_missing(line.reason, "none given")});
+  for (const Demand& demand : data.verdict->demands) {
+    rows.rows.push_back({cell(title(demand)), cell(row_of(demand.kind).unit), limit_cell(demand), result_cell(demand),
+                         badge(to_string(demand.decision), mood_of(demand.decision)),
+                         text_or_missing(demand.reason, "none given")});
   }
-  return section("Limits", table(rows) + paragraph(cell(one_sided_note), "note"));
+  return section("Limits", content + table(rows) + paragraph(cell(one_sided_note), "note"));
 }
 
 Plot tod_plot(const ReportData& data) {

@@ -210,7 +210,9 @@ Result<void> close_session(SessionFolder& folder, const Provenance& provenance, 
 }
 
 /// The session is over before there is a curve: leave a valid folder, hand the reason on.
-tl::unexpected<Error> abandon(SessionFolder& folder, const Provenance& provenance, Error error) {
+tl::unexpected<Error> abandon(SessionFolder& folder, const Plan& plan, const Provenance& provenance, Error error) {
+  (void)folder.write_verdict(
+      judge({.limits = plan.limits, .curve = {}, .comparison = std::nullopt, .ended_early = error.message}));
   (void)close_session(folder, provenance, error);
   return tl::unexpected<Error>(std::move(error));
 }
@@ -220,6 +222,7 @@ Result<void> write_results(SessionFolder& folder, const Provenance& provenance, 
   if (outcome.comparison) {
     if (auto written = folder.write_comparison(*outcome.comparison); !written) return written;
   }
+  if (auto written = folder.write_verdict(outcome.verdict); !written) return written;
   return close_session(folder, provenance, outcome.ended_by);
 }
 
@@ -227,7 +230,10 @@ Result<void> write_results(SessionFolder& folder, const Provenance& provenance, 
 /// caller.
 ExperimentOutcome concluded(ExperimentOutcome outcome, const Plan& plan, SessionFolder& folder,
                             const Provenance& provenance) {
-  outcome.verdict = judge(plan.limits, outcome.curve, outcome.comparison);
+  outcome.verdict = judge({.limits = plan.limits,
+                           .curve = outcome.curve,
+                           .comparison = outcome.comparison,
+                           .ended_early = outcome.ended_by ? std::optional(outcome.ended_by->message) : std::nullopt});
   if (auto written = write_results(folder, provenance, outcome); !written && !outcome.ended_by)
     outcome.ended_by = written.error();
   return outcome;
@@ -324,9 +330,9 @@ Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOption
   if (!run) {
     // Below what can be seen, the plate may not be found either: that is the reason, not its symptom.
     if (!inputs->identifiable && run.error().code == ErrorCode::calibration)
-      return abandon(*folder, provenance,
+      return abandon(*folder, plan, provenance,
                      {ErrorCode::not_identifiable, inputs->warnings.front() + "; " + run.error().message});
-    return abandon(*folder, provenance, run.error());
+    return abandon(*folder, plan, provenance, run.error());
   }
   run->result.notes.insert(run->result.notes.end(), inputs->warnings.begin(), inputs->warnings.end());
   provenance.run = run_record(run->result, run->wall_s);
@@ -379,7 +385,7 @@ Result<ExperimentOutcome> measure_on_bench(const Plan& plan, const ExperimentInp
   for (const auto& warning : inputs.warnings) note(*folder, listener, warning);
   if (plan.measurement.record_frames) {
     if (auto recording = record_bench(bench, folder->path()); !recording)
-      return abandon(*folder, provenance, recording.error());
+      return abandon(*folder, plan, provenance, recording.error());
   }
 
   std::string forecast;
@@ -389,14 +395,14 @@ Result<ExperimentOutcome> measure_on_bench(const Plan& plan, const ExperimentInp
   const auto begin = Clock::now();
   phase(*folder, listener, "measuring " + info.model + " " + info.serial);
   auto result = run_measured(plan, inputs, bench, *folder, listener, stop);
-  if (!result) return abandon(*folder, provenance, with_context("measuring", result.error()));
+  if (!result) return abandon(*folder, plan, provenance, with_context("measuring", result.error()));
   result->notes.insert(result->notes.end(), inputs.warnings.begin(), inputs.warnings.end());
   if (!forecast.empty()) result->notes.push_back(forecast);
   provenance.run = run_record(*result, seconds_since(begin));
   bench = {};
 
   auto curve = tod_curve(result->trials, fit_options(plan));
-  if (!curve) return abandon(*folder, provenance, curve.error());
+  if (!curve) return abandon(*folder, plan, provenance, curve.error());
   curve->sensor = info.model + " " + info.serial;
   curve->observer = inputs.observer.name;
   ExperimentOutcome outcome{.folder = folder->path(),

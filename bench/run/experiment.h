@@ -53,7 +53,7 @@ struct ExperimentOutcome {
   TodCurve curve;                ///< measured, or simulated for simulate_plan()
   std::optional<TodCurve> twin;  ///< simulated, beside a measured curve
   std::optional<Comparison> comparison;
-  Verdict verdict;
+  Verdict verdict;                ///< as verdict.json
   SensorPlan effects;             ///< of the simulated sensor
   RunFigures figures;             ///< of `curve`
   std::optional<Error> ended_by;  ///< why it stopped early; the folder is valid and marked interrupted

@@ -1,9 +1,7 @@
 #include "bench/run/report_data.h"
 
-#include <cctype>
 #include <system_error>
 
-#include "bench/judgement/verdict.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
 
@@ -26,43 +24,6 @@ SourceInfo source_info(const CameraRecord& record) {
   info.settings = record.settings;
   info.warnings = record.warnings;
   return info;
-}
-
-std::string sentence_case(std::string text) {
-  if (!text.empty()) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
-  return text;
-}
-
-LimitVerdict limit_verdict(VerdictKind kind) {
-  switch (kind) {
-    case VerdictKind::pass:
-      return LimitVerdict::pass;
-    case VerdictKind::fail:
-      return LimitVerdict::fail;
-    case VerdictKind::inconclusive:
-      return LimitVerdict::inconclusive;
-  }
-  return LimitVerdict::inconclusive;
-}
-
-std::vector<LimitLine> limit_lines(const Verdict& verdict) {
-  std::vector<LimitLine> lines;
-  for (const auto& item : verdict.items) {
-    LimitLine line;
-    line.quantity = sentence_case(item.demand);
-    line.limit = item.limit;
-    // A demand without a contrast is agreement with the twin: a margin that no deviation may leave.
-    const bool on_acuity = item.delta_t_k != 0;
-    line.unit = std::string(on_acuity ? "1/mrad" : "%");
-    line.side = on_acuity ? LimitLine::Side::at_least : LimitLine::Side::at_most;
-    line.value = item.value;
-    line.ci95 = item.interval;
-    line.verdict = limit_verdict(item.kind);
-    line.reason = item.reason;
-    if (item.delta_t_k != 0) line.acuity_at_delta_t_k = item.delta_t_k;
-    lines.push_back(std::move(line));
-  }
-  return lines;
 }
 
 void add_provenance(ReportData& data, const Provenance& provenance) {
@@ -125,11 +86,7 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
   if (data.ifov_mrad == 0) data.ifov_mrad = sensor->ifov_mrad();
   data.plan = provenance.effects;
   data.cost = session.cost;
-  if (session.curve) {
-    const Verdict verdict = judge(plan.limits, *session.curve, session.comparison);
-    data.decision_rule = verdict.rule;
-    data.limits = limit_lines(verdict);
-  }
+  data.verdict = verdict_of(session);
   if (provenance.run) {
     data.set_ups = provenance.run->set_ups;
     data.frames_used = provenance.run->frames_used;
@@ -138,9 +95,8 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
     data.temporal_noise_k = provenance.run->temporal_noise_k;
     data.notes.insert(data.notes.end(), provenance.run->notes.begin(), provenance.run->notes.end());
     data.interruptions = provenance.run->interruptions;
-    if (!provenance.run->ended_by.empty()) data.interrupted = provenance.run->ended_by;
   }
-  if (!session.complete() && !data.interrupted) data.interrupted = "the session was not finished";
+  data.interrupted = data.verdict->ended_early ? data.verdict->ended_early : ended_early(session);
   if (provenance.twin_run) {
     for (const auto& note : provenance.twin_run->notes) data.notes.push_back("Simulated twin: " + note);
   }

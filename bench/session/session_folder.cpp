@@ -8,6 +8,7 @@
 #include <set>
 #include <system_error>
 
+#include "bench/judgement/verdict_record.h"
 #include "bench/session/cost_record.h"
 #include "bench/session/fit_record.h"
 #include "bench/text/files.h"
@@ -98,6 +99,17 @@ Result<Json> read_json(const std::filesystem::path& file) {
 bool is_there(const std::filesystem::path& file) {
   std::error_code problem;
   return std::filesystem::exists(file, problem);
+}
+
+/// A record that need not be there.
+template <typename T>
+Result<std::optional<T>> read_record(const std::filesystem::path& file, Result<T> (*from)(const Json&)) {
+  if (!is_there(file)) return std::nullopt;
+  const Result<Json> json = read_json(file);
+  if (!json) return tl::unexpected(json.error());
+  Result<T> record = from(*json);
+  if (!record) return fail(file.string(), record.error());
+  return *std::move(record);
 }
 
 Result<void> read_curves(const std::filesystem::path& file, Session& session) {
@@ -209,6 +221,10 @@ Result<void> SessionFolder::write_comparison(const Comparison& comparison) {
   return write_file_atomically(folder_ / "comparison.json", to_page(comparison_record(comparison)));
 }
 
+Result<void> SessionFolder::write_verdict(const Verdict& verdict) {
+  return write_file_atomically(folder_ / "verdict.json", to_page(verdict_json(verdict)));
+}
+
 Result<void> SessionFolder::write_report(std::string_view html) {
   return write_file_atomically(folder_ / "report.html", html);
 }
@@ -257,21 +273,39 @@ Result<Session> read_session(const std::filesystem::path& folder) {
     if (const Result<void> read = read_curves(folder / "fits.json", session); !read)
       return tl::unexpected(read.error());
   }
-  if (is_there(folder / "comparison.json")) {
-    const Result<Json> json = read_json(folder / "comparison.json");
-    if (!json) return tl::unexpected(json.error());
-    Result<Comparison> comparison = comparison_from(*json);
-    if (!comparison) return fail((folder / "comparison.json").string(), comparison.error());
-    session.comparison = *std::move(comparison);
-  }
-  if (is_there(folder / "cost.json")) {
-    const Result<Json> json = read_json(folder / "cost.json");
-    if (!json) return tl::unexpected(json.error());
-    Result<CostFrontier> cost = cost_from(*json);
-    if (!cost) return fail((folder / "cost.json").string(), cost.error());
-    session.cost = *std::move(cost);
-  }
+  auto comparison = read_record(folder / "comparison.json", comparison_from);
+  if (!comparison) return tl::unexpected(comparison.error());
+  session.comparison = *std::move(comparison);
+  auto verdict = read_record(folder / "verdict.json", verdict_from);
+  if (!verdict) return tl::unexpected(verdict.error());
+  session.verdict = *std::move(verdict);
+  auto cost = read_record(folder / "cost.json", cost_from);
+  if (!cost) return tl::unexpected(cost.error());
+  session.cost = *std::move(cost);
   return session;
+}
+
+std::optional<std::string> ended_early(const Session& session) {
+  const std::optional<RunRecord>& run = session.provenance.run;
+  if (run && !run->ended_by.empty()) return run->ended_by;
+  if (!session.complete()) return "the session was not finished";
+  return std::nullopt;
+}
+
+Verdict verdict_of(const Session& session) {
+  if (session.verdict) return *session.verdict;
+  return judge({.limits = session.plan.limits,
+                .curve = session.curve.value_or(TodCurve{}),
+                .comparison = session.comparison,
+                .ended_early = ended_early(session),
+                .judged = JudgedWhen::afterwards});
+}
+
+Result<void> keep_verdict(const std::filesystem::path& folder, const Verdict& verdict) {
+  if (!is_there(folder / "manifest.json")) return {};
+  if (auto written = write_file_atomically(folder / "verdict.json", to_page(verdict_json(verdict))); !written)
+    return written;
+  return refresh_manifest(folder, {"verdict.json"});
 }
 
 }  // namespace todbench

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/judgement/verdict.h"
 #include "bench/plan/plan.h"
 #include "bench/session/manifest.h"
 #include "bench/session/provenance.h"
@@ -51,6 +52,8 @@ class SessionFolder {
   [[nodiscard]] Result<void> write_curves(const TodCurve& main, const std::optional<TodCurve>& twin, Side side);
   /// comparison.json.
   [[nodiscard]] Result<void> write_comparison(const Comparison& comparison);
+  /// verdict.json.
+  [[nodiscard]] Result<void> write_verdict(const Verdict& verdict);
   /// report.html.
   [[nodiscard]] Result<void> write_report(std::string_view html);
   /// One line in log.txt, with the time.
@@ -73,6 +76,7 @@ struct Session {
   std::optional<TodCurve> curve;  ///< as it was fitted; nothing where the run ended before
   std::optional<TodCurve> twin;
   std::optional<Comparison> comparison;
+  std::optional<Verdict> verdict;    ///< as it was stored; nothing in an old session, or where the run was cut off
   std::optional<CostFrontier> cost;  ///< what accuracy costs, where it was measured for this session
   /// False when the run was interrupted or cut off.
   [[nodiscard]] bool complete() const { return provenance.state == SessionState::complete; }
@@ -80,6 +84,13 @@ struct Session {
 
 /// `invalid_input`: not a session folder, or a file in it that cannot be read, with its path and line or key.
 [[nodiscard]] Result<Session> read_session(const std::filesystem::path& folder);
+/// Why the run of a session ended early; nothing when it came to its end.
+[[nodiscard]] std::optional<std::string> ended_early(const Session& session);
+/// The verdict to show: the stored one. A session without one is judged, and the verdict says so.
+[[nodiscard]] Verdict verdict_of(const Session& session);
+/// Stores a verdict that was made afterwards, and lists it in the manifest. A run that was cut off has no manifest and
+/// stays as it is. `io` with the path.
+[[nodiscard]] Result<void> keep_verdict(const std::filesystem::path& folder, const Verdict& verdict);
 
 /// curve.csv.
 [[nodiscard]] std::string curve_csv(const TodCurve& main, const std::optional<TodCurve>& twin, Side side);

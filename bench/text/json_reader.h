@@ -65,6 +65,10 @@ class JsonReader {
   [[nodiscard]] std::string text() const {
     return json_->is_string() ? json_->get<std::string>() : (wrong("a text"), std::string());
   }
+  /// A text that has to be this one, such as the name of a format or a unit.
+  void expect(std::string_view word) const {
+    if (text() != word) (void)wrong("'" + std::string(word) + "'");
+  }
   [[nodiscard]] bool flag() const { return json_->is_boolean() ? json_->get<bool>() : (wrong("true or false"), false); }
   [[nodiscard]] std::vector<std::string> texts() const {
     std::vector<std::string> values;

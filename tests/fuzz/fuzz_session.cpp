@@ -1,6 +1,7 @@
-// Any text as the JSON files of a session: provenance, fits, comparison.
+// Any text as the JSON files of a session: provenance, fits, comparison, verdict.
 #include <nlohmann/json.hpp>
 
+#include "bench/judgement/verdict_record.h"
 #include "bench/session/fit_record.h"
 #include "bench/session/provenance.h"
 #include "tests/fuzz/fuzz_input.h"
@@ -12,5 +13,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (const auto provenance = provenance_from(json)) (void)provenance_json(*provenance);
   if (const auto curve = curve_from(json)) (void)curve_record(*curve);
   if (const auto comparison = comparison_from(json)) (void)comparison_record(*comparison);
+  if (const auto verdict = verdict_from(json)) (void)verdict_json(*verdict);
   return 0;
 }

@@ -1,4 +1,5 @@
 // Sessions of simulated cameras: what is in them, that they repeat, what they pass and fail.
+#include "bench/session/manifest.h"
 #include "bench/session/session_folder.h"
 #include "tests/support/source_file.h"
 #include "tests/system/system_test_support.h"
@@ -6,13 +7,15 @@
 namespace todbench::testing {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
 using ::testing::Not;
 using ::testing::UnorderedElementsAre;
 
-const std::set<std::string> curve_keys{"observer", "sensor", "points", "plan", "wall_s", "frames"};
+const std::set<std::string> curve_keys{"observer", "sensor", "points",  "plan",
+                                       "wall_s",   "frames", "verdict", "judgement"};
 const std::set<std::string> point_keys{"delta_t_k",          "s75_mrad",        "s75_ci95_mrad", "s75_direct_mrad",
                                        "s75_direct_se_mrad", "acuity_per_mrad", "trials",        "verdict"};
 const std::set<std::string> effect_keys{"name", "decision", "reason", "predicted_change_percent"};
@@ -50,6 +53,8 @@ TEST_F(Sessions, SimulateWritesEveryFileAndOneJsonObject) {
   EXPECT_THAT(keys_of(json["frames"]), UnorderedElementsAre("used", "rejected"));
   expect_whole_session(at("s"), "complete");
   EXPECT_EQ(rows_in(at("s") / "trials.csv"), 160u);
+  EXPECT_EQ(json["verdict"], "pass");
+  EXPECT_EQ(json["judgement"], Json::parse(content_of(at("s") / "verdict.json")));
 }
 
 TEST_F(Sessions, MeasureWithASimulatedCameraComparesWithItsTwin) {
@@ -65,6 +70,7 @@ TEST_F(Sessions, MeasureWithASimulatedCameraComparesWithItsTwin) {
   EXPECT_EQ(json["plan"].size(), 14u);                          // of the twin
   expect_whole_session(at("m"), "complete");
   EXPECT_TRUE(std::filesystem::exists(at("m") / "comparison.json"));
+  EXPECT_EQ(json["judgement"], Json::parse(content_of(at("m") / "verdict.json")));
   EXPECT_EQ(rows_in(at("m") / "trials_simulated.csv"), 160u);
 }
 
@@ -111,6 +117,42 @@ TEST_F(Sessions, TheReportIsRebuiltFromTheFolderByteForByte) {
   EXPECT_THAT(before, HasSubstr("0.01 K/count, 250 K at 0 counts"));
   EXPECT_THAT(before, Not(HasSubstr("uncalibrated")));
   expect_whole_session(at("m"), "complete");
+}
+
+TEST_F(Sessions, TheReportShowsTheStoredVerdictAndNotOneByOtherLimits) {
+  write("plan.toml", small_plan(8));
+  ASSERT_EQ(run({"simulate", "./plan.toml", "--out", "s"}).code, 0);
+  const std::string stored = content_of(at("s") / "verdict.json");
+  write("s/session.toml",
+        content_of(at("s") / "session.toml") + "\n[[limits.acuity]]\ndelta_t_k = 16.9\nleast_acuity_per_mrad = 123\n");
+  ASSERT_TRUE(write_manifest(at("s")));
+
+  const Ended ended = run({"report", "s"});
+
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_THAT(content_of(at("s") / "report.html"),
+              AllOf(HasSubstr("NO VERDICT"), Not(HasSubstr("at least 123 1/mrad"))));
+  EXPECT_EQ(content_of(at("s") / "verdict.json"), stored);
+}
+
+TEST_F(Sessions, AnOldSessionIsJudgedOnceAndSaysSo) {
+  write("plan.toml", small_plan(8, "[[limits.acuity]]\ndelta_t_k = 16.9\nleast_acuity_per_mrad = 0.01\n"));
+  ASSERT_EQ(run({"simulate", "./plan.toml", "--out", "s"}).code, 0);
+  std::filesystem::remove(at("s") / "verdict.json");
+  ASSERT_TRUE(write_manifest(at("s")));
+
+  const Ended first = run({"report", "s", "--json"});
+  const std::string kept = content_of(at("s") / "verdict.json");
+  const Ended second = run({"report", "s"});
+
+  const std::string sentence = "The run of this session stored no verdict; it was judged afterwards";
+  EXPECT_EQ(one_object(first)["judged"], "afterwards");
+  EXPECT_THAT(first.err, HasSubstr(sentence));
+  EXPECT_THAT(second.err, HasSubstr(sentence));
+  EXPECT_THAT(content_of(at("s") / "report.html"), AllOf(HasSubstr(sentence), HasSubstr("✓ PASS")));
+  EXPECT_EQ(Json::parse(kept)["judged"], "afterwards");
+  EXPECT_EQ(content_of(at("s") / "verdict.json"), kept);
+  expect_whole_session(at("s"), "complete");
 }
 
 TEST_F(Sessions, AFolderInUseIsRefusedAndOverwrittenOnlyByForce) {
@@ -207,6 +249,11 @@ TEST_F(Sessions, ALimitIsMetMissedOrNotDecidedByItsInterval) {
   EXPECT_EQ(open.code, 3) << open.err;
   EXPECT_THAT(open.out, HasSubstr("the limit lies within"));
   EXPECT_THAT(content_of(at("missed") / "report.html"), HasSubstr("1/mrad"));
+  const Json judgement = Json::parse(content_of(at("missed") / "verdict.json"));
+  EXPECT_EQ(judgement["decision"], "fail");
+  EXPECT_EQ(judgement["demands"][0]["kind"], "acuity");
+  EXPECT_EQ(judgement["demands"][0]["unit"], "1/mrad");
+  EXPECT_GT(judgement["demands"][0]["limit"], judgement["demands"][0]["interval"][1]);
 }
 
 TEST_F(Sessions, AThresholdThatTheDataDoNotShowIsInconclusive) {
@@ -220,6 +267,10 @@ TEST_F(Sessions, AThresholdThatTheDataDoNotShowIsInconclusive) {
   ASSERT_EQ(points.size(), 2u);
   EXPECT_TRUE(points[0]["s75_direct_mrad"].is_number());  // the other contrast keeps what it has
   EXPECT_TRUE(points[1]["s75_direct_mrad"].is_null());
+  const Json judgement = one_object(ended)["judgement"];
+  EXPECT_EQ(judgement["decision"], "inconclusive");
+  EXPECT_EQ(judgement["demands"][1]["kind"], "identified");
+  EXPECT_EQ(judgement["demands"][1]["decision"], "inconclusive");
   EXPECT_TRUE(points[1]["s75_ci95_mrad"][0].is_null() || points[1]["s75_ci95_mrad"][1].is_null());
 }
 

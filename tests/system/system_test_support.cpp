@@ -80,7 +80,7 @@ std::size_t rows_in(const std::filesystem::path& csv) {
 
 void expect_whole_session(const std::filesystem::path& folder, const std::string& state) {
   for (const char* name : {"session.toml", "provenance.json", "trials.csv", "fits.json", "curve.csv", "report.html",
-                           "log.txt", "manifest.json"}) {
+                           "verdict.json", "log.txt", "manifest.json"}) {
     EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
   }
   const auto problems = verify_manifest(folder);

@@ -58,6 +58,9 @@ TEST_P(Interruption, LeavesAValidPartialSession) {
   EXPECT_EQ(json["points"][0]["trials"], rows_in(session / "trials.csv"));
   EXPECT_LT(rows_in(session / "trials.csv"), endless * trials_per_frame);
   EXPECT_THAT(content_of(session / "report.html"), HasSubstr("INTERRUPTED"));
+  EXPECT_EQ(json["verdict"], "inconclusive");
+  EXPECT_EQ(json["judgement"]["ended_early"], "stopped on request");
+  EXPECT_EQ(json["judgement"], Json::parse(content_of(session / "verdict.json")));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Interruption,
@@ -78,6 +81,9 @@ TEST(InterruptionBeforeTheFirstTrial, LeavesAValidFolderOrNone) {
   expect_refused(ended, 130, "stopped on request");
   const Json provenance = Json::parse(content_of(folder.path() / "s" / "provenance.json"));
   EXPECT_EQ(provenance["state"], "interrupted");
+  const Json verdict = Json::parse(content_of(folder.path() / "s" / "verdict.json"));
+  EXPECT_EQ(verdict["decision"], "inconclusive");
+  EXPECT_TRUE(verdict["ended_early"].is_string());
 }
 
 TEST(IgnoredSignals, StayIgnoredAsNohupWantsThem) {

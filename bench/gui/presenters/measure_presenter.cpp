@@ -291,7 +291,7 @@ void MeasurePresenter::conclude(const Result<ExperimentOutcome>& outcome) {
     measured_ = outcome->curve;
     twin_ = outcome->twin;
     phase_ = outcome->ended_by ? "ended early: " + QString::fromStdString(outcome->ended_by->message)
-                               : "verdict: " + QString::fromUtf8(to_string(outcome->verdict.overall).data());
+                               : "verdict: " + QString::fromUtf8(to_string(outcome->verdict.decision).data());
     if (same_)
       phase_ = (*same_ ? "✓ replayed: trials and fits are the same, byte for byte; "
                        : "✗ replayed: the answers DIFFER from those of the session; ") +

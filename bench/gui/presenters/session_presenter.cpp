@@ -48,6 +48,9 @@ Result<Exported> export_reports(const OpenedSession& opened) {
   if (auto written = write_file_atomically(html, render_report(opened.report)); !written)
     return tl::unexpected(written.error());
   if (auto written = write_pdf_report(opened.report, pdf); !written) return tl::unexpected(written.error());
+  if (!opened.session.verdict) {
+    if (auto kept = keep_verdict(opened.folder, *opened.report.verdict); !kept) return tl::unexpected(kept.error());
+  }
   std::error_code none;
   if (std::filesystem::exists(opened.folder / "manifest.json", none)) {
     if (auto refreshed = refresh_manifest(opened.folder, {"report.html", "report.pdf"}); !refreshed)

@@ -9,6 +9,7 @@
 #include "bench/gui/presenters/session_presenter.h"
 #include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/plot_view.h"
+#include "bench/judgement/demand_kinds.h"
 #include "bench/report/number_format.h"
 
 namespace todbench {
@@ -184,16 +185,20 @@ void ReportView::show_session() {
   title_->setText(opened.name + (opened.report.camera
                                      ? ", serial number " + QString::fromStdString(opened.report.camera->serial)
                                      : QString()));
-  verdict_->setText(verdict_text(report_verdict(opened.report)));
+  const Verdict& verdict = *opened.report.verdict;
+  verdict_->setText(verdict_text(report_verdict(opened.report)) +
+                    (verdict.judged == JudgedWhen::afterwards ? ". " + text_of(remark_on(verdict.judged)) : QString()));
   fill_table(*ratios_, opened.session.comparison ? ratio_rows(*opened.session.comparison) : QList<QStringList>());
   QList<QStringList> rows;
-  for (const auto& limit : opened.report.limits) {
-    rows << QStringList{QString::fromStdString(limit.quantity),
-                        QString::fromStdString(with_interval(limit.value, limit.ci95) + " " + limit.unit),
-                        limit.verdict == LimitVerdict::pass   ? "✓ pass"
-                        : limit.verdict == LimitVerdict::fail ? "✗ fail"
-                                                              : "? inconclusive",
-                        QString::fromStdString(limit.reason)};
+  for (const Demand& demand : verdict.demands) {
+    const QString percent = demand.interval_percent == 95 ? "" : QString(" (%1 %)").arg(demand.interval_percent);
+    rows << QStringList{QString::fromStdString(title(demand)),
+                        QString::fromStdString(with_interval(demand.result, demand.interval)) + " " +
+                            text_of(row_of(demand.kind).unit) + percent,
+                        demand.decision == VerdictKind::pass   ? "✓ pass"
+                        : demand.decision == VerdictKind::fail ? "✗ fail"
+                                                               : "? inconclusive",
+                        QString::fromStdString(demand.reason)};
   }
   fill_table(*limits_, rows);
   files_->clear();

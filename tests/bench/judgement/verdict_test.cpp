@@ -3,6 +3,11 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <functional>
+#include <set>
+
+#include "bench/judgement/demand_kinds.h"
+#include "bench/judgement/verdict_record.h"
 
 namespace todbench {
 namespace {
@@ -16,6 +21,10 @@ const double below_mrad = std::nextafter(limit_mrad, 0.0);
 
 LimitsPlan one_limit() {
   return {{{16.9, limit_per_mrad}}, std::nullopt};
+}
+
+Verdict judged(const LimitsPlan& limits, const TodCurve& curve, const std::optional<Comparison>& comparison) {
+  return judge({.limits = limits, .curve = curve, .comparison = comparison});
 }
 
 TodPoint point_with(FitVerdict verdict, std::optional<double> low_mrad, std::optional<double> high_mrad) {
@@ -44,12 +53,12 @@ TEST_P(TruthTable, TheIntervalDecides) {
   const Row& row = GetParam();
 
   const Verdict verdict =
-      judge(one_limit(), {"o", "s", {point_with(row.fit, row.low_mrad, row.high_mrad)}}, std::nullopt);
+      judged(one_limit(), {"o", "s", {point_with(row.fit, row.low_mrad, row.high_mrad)}}, std::nullopt);
 
-  ASSERT_EQ(verdict.items.size(), 1u);
-  EXPECT_EQ(verdict.items[0].kind, row.expected) << verdict.items[0].reason;
-  EXPECT_EQ(verdict.overall, row.expected);
-  EXPECT_FALSE(verdict.items[0].reason.empty());
+  ASSERT_EQ(verdict.demands.size(), 1u);
+  EXPECT_EQ(verdict.demands[0].decision, row.expected) << verdict.demands[0].reason;
+  EXPECT_EQ(verdict.decision, row.expected);
+  EXPECT_FALSE(verdict.demands[0].reason.empty());
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -81,10 +90,10 @@ TEST(Judge, AContrastThatWasNotMeasuredIsInconclusive) {
   TodPoint other = point_with(FitVerdict::ok, 1.5, 1.8);
   other.set_delta_t_k = 1.93;
 
-  const Verdict verdict = judge(one_limit(), {"o", "s", {other}}, std::nullopt);
+  const Verdict verdict = judged(one_limit(), {"o", "s", {other}}, std::nullopt);
 
-  EXPECT_EQ(verdict.overall, VerdictKind::inconclusive);
-  EXPECT_EQ(verdict.items.at(0).reason, "this contrast was not measured");
+  EXPECT_EQ(verdict.decision, VerdictKind::inconclusive);
+  EXPECT_EQ(verdict.demands.at(0).reason, "this contrast was not measured");
 }
 
 TEST(Judge, ASignificantFreeLapseMakesBothFitsCount) {
@@ -94,8 +103,8 @@ TEST(Judge, ASignificantFreeLapseMakesBothFitsCount) {
   point.lapse_warning = true;
   const TodCurve with_warning{"o", "s", {point}};
 
-  EXPECT_EQ(judge(one_limit(), without_warning, std::nullopt).overall, VerdictKind::pass);
-  EXPECT_EQ(judge(one_limit(), with_warning, std::nullopt).overall, VerdictKind::inconclusive);
+  EXPECT_EQ(judged(one_limit(), without_warning, std::nullopt).decision, VerdictKind::pass);
+  EXPECT_EQ(judged(one_limit(), with_warning, std::nullopt).decision, VerdictKind::inconclusive);
 }
 
 TEST(Judge, OneFailureOutweighsEverythingAndDoubtOutweighsPasses) {
@@ -107,65 +116,260 @@ TEST(Judge, OneFailureOutweighsEverythingAndDoubtOutweighsPasses) {
   const TodCurve curve{"o", "s", {good, open, bad}};
   LimitsPlan limits = one_limit();
 
-  EXPECT_EQ(judge(limits, curve, std::nullopt).overall, VerdictKind::pass);
+  EXPECT_EQ(judged(limits, curve, std::nullopt).decision, VerdictKind::pass);
   limits.acuity.push_back({1.93, limit_per_mrad});
-  EXPECT_EQ(judge(limits, curve, std::nullopt).overall, VerdictKind::inconclusive);
+  EXPECT_EQ(judged(limits, curve, std::nullopt).decision, VerdictKind::inconclusive);
   limits.acuity.push_back({0.23, limit_per_mrad});
-  EXPECT_EQ(judge(limits, curve, std::nullopt).overall, VerdictKind::fail);
+  EXPECT_EQ(judged(limits, curve, std::nullopt).decision, VerdictKind::fail);
 }
 
 TEST(Judge, WithoutLimitsEveryIdentifiedThresholdPasses) {
-  const Verdict verdict = judge({}, {"o", "s", {point_with(FitVerdict::ok, 2.0, 3.0)}}, std::nullopt);
+  const Verdict verdict = judged({}, {"o", "s", {point_with(FitVerdict::ok, 2.0, 4.0)}}, std::nullopt);
 
-  EXPECT_EQ(verdict.overall, VerdictKind::pass);
-  EXPECT_TRUE(verdict.items.empty());
+  EXPECT_EQ(verdict.decision, VerdictKind::pass);
+  EXPECT_FALSE(limits_asked(verdict));
+  EXPECT_EQ(verdict.reason, "no limits were asked for, every threshold was found");
+  ASSERT_EQ(verdict.demands.size(), 1u);
+  const Demand& demand = verdict.demands[0];
+  EXPECT_EQ(demand.kind, DemandKind::identified);
+  EXPECT_EQ(demand.decision, VerdictKind::pass);
+  EXPECT_EQ(demand.delta_t_k, 16.9);
+  EXPECT_EQ(demand.limit, std::nullopt);
+  EXPECT_DOUBLE_EQ(demand.result.value(), 1 / 3.0);
+  EXPECT_EQ(demand.interval.low, 0.25);
+  EXPECT_EQ(in_words(demand), "a threshold at 16.9 K");
+}
+
+TEST(Judge, AContrastWithALimitOnAcuityDemandsNothingElse) {
+  TodPoint other = point_with(FitVerdict::ok, 2.0, 3.0);
+  other.set_delta_t_k = 1.93;
+
+  const Verdict verdict =
+      judged(one_limit(), {"o", "s", {point_with(FitVerdict::above_range, 2.0, std::nullopt), other}}, std::nullopt);
+
+  ASSERT_EQ(verdict.demands.size(), 2u);
+  EXPECT_EQ(verdict.demands[0].kind, DemandKind::acuity);
+  EXPECT_EQ(verdict.demands[1].kind, DemandKind::identified);
+  EXPECT_EQ(verdict.demands[1].delta_t_k, 1.93);
+}
+
+TEST(Judge, ADemandAtNoContrastAtAllKeepsItsKind) {
+  // A contrast of zero kelvin is a contrast, not a sign for another kind.
+  TodPoint point = point_with(FitVerdict::ok, 1.5, 1.8);
+  point.set_delta_t_k = 0;
+
+  const Verdict verdict = judged({{{0, limit_per_mrad}}, std::nullopt}, {"o", "s", {point}}, std::nullopt);
+
+  ASSERT_EQ(verdict.demands.size(), 1u);
+  EXPECT_EQ(verdict.demands[0].kind, DemandKind::acuity);
+  EXPECT_EQ(row_of(verdict.demands[0].kind).unit, "1/mrad");
+  EXPECT_EQ(verdict.decision, VerdictKind::pass);
 }
 
 TEST(Judge, WithoutLimitsAThresholdThatCannotBeIdentifiedIsInconclusive) {
-  const Verdict verdict = judge({}, {"o", "s", {point_with(FitVerdict::above_range, 2.0, std::nullopt)}}, std::nullopt);
+  const Verdict verdict =
+      judged({}, {"o", "s", {point_with(FitVerdict::above_range, 2.0, std::nullopt)}}, std::nullopt);
 
-  EXPECT_EQ(verdict.overall, VerdictKind::inconclusive);
-  EXPECT_THAT(verdict.items.at(0).reason, HasSubstr("above_range"));
+  EXPECT_EQ(verdict.decision, VerdictKind::inconclusive);
+  EXPECT_THAT(verdict.demands.at(0).reason, HasSubstr("above_range"));
 }
 
 TEST(Judge, ACurveWithoutPointsIsInconclusive) {
-  EXPECT_EQ(judge({}, {}, std::nullopt).overall, VerdictKind::inconclusive);
+  EXPECT_EQ(judged({}, {}, std::nullopt).decision, VerdictKind::inconclusive);
 }
 
 TEST(Judge, DemandedEquivalenceIsWhatTheComparisonSays) {
   const TodCurve curve{"o", "s", {point_with(FitVerdict::ok, 1.5, 1.8)}};
   const LimitsPlan limits{{}, 10.0};
-  const auto judged = [&](ComparisonVerdict verdict, double margin_percent) {
+  const auto with_comparison = [&](ComparisonVerdict verdict, double margin_percent) {
     ComparisonPoint point;
     point.margin_percent = margin_percent;
-    return judge(limits, curve, Comparison{{point}, verdict}).overall;
+    return judged(limits, curve, Comparison{{point}, verdict}).decision;
   };
 
-  EXPECT_EQ(judged(ComparisonVerdict::equivalent, 10), VerdictKind::pass);
-  EXPECT_EQ(judged(ComparisonVerdict::different, 10), VerdictKind::fail);
-  EXPECT_EQ(judged(ComparisonVerdict::inconclusive, 10), VerdictKind::inconclusive);
-  EXPECT_EQ(judged(ComparisonVerdict::equivalent, 20), VerdictKind::inconclusive);  // shown for a wider margin only
-  EXPECT_EQ(judge(limits, curve, std::nullopt).overall, VerdictKind::inconclusive);
+  EXPECT_EQ(with_comparison(ComparisonVerdict::equivalent, 10), VerdictKind::pass);
+  EXPECT_EQ(with_comparison(ComparisonVerdict::different, 10), VerdictKind::fail);
+  EXPECT_EQ(with_comparison(ComparisonVerdict::inconclusive, 10), VerdictKind::inconclusive);
+  EXPECT_EQ(with_comparison(ComparisonVerdict::equivalent, 20),
+            VerdictKind::inconclusive);  // shown for a wider margin only
+  EXPECT_EQ(judged(limits, curve, std::nullopt).decision, VerdictKind::inconclusive);
+}
+
+TEST(Judge, EquivalenceIsAMarginForTheLargestDeviationAndItsNinetyPercentInterval) {
+  const TodCurve curve{"o", "s", {point_with(FitVerdict::ok, 1.5, 1.8)}};
+  ComparisonPoint above, below;
+  above.margin_percent = below.margin_percent = 10;
+  above.ratio = 1.02;
+  above.ratio_ci90 = {0.98, 1.0625};
+  below.ratio = 0.96;
+  below.ratio_ci90 = {0.9375, 0.98};
+
+  const Verdict verdict = judged({{}, 10.0}, curve, Comparison{{above, below}, ComparisonVerdict::equivalent});
+
+  const Demand& demand = verdict.demands.at(1);
+  EXPECT_EQ(demand.kind, DemandKind::equivalence);
+  EXPECT_EQ(demand.delta_t_k, std::nullopt);
+  EXPECT_EQ(demand.limit, 10);
+  EXPECT_EQ(row_of(demand.kind).unit, "%");
+  EXPECT_NEAR(demand.result.value(), 100 * (1 / 0.96 - 1), 1e-9);
+  EXPECT_NEAR(demand.interval.low.value(), 100 * (1 / 0.98 - 1), 1e-9);  // `above` may be 1, `below` is beside it
+  EXPECT_NEAR(demand.interval.high.value(), 100 * (1 / 0.9375 - 1), 1e-9);
+  EXPECT_EQ(demand.interval_percent, 90);
+  EXPECT_EQ(in_words(demand), "acuity equivalent to the simulated twin within 10 %");
 }
 
 TEST(Judge, EquivalenceThatWasNotDemandedDoesNotCount) {
   const Comparison different{{}, ComparisonVerdict::different};
 
-  EXPECT_EQ(judge({}, {"o", "s", {point_with(FitVerdict::ok, 1.5, 1.8)}}, different).overall, VerdictKind::pass);
+  EXPECT_EQ(judged({}, {"o", "s", {point_with(FitVerdict::ok, 1.5, 1.8)}}, different).decision, VerdictKind::pass);
 }
 
+TEST(Judge, ARunThatEndedEarlyIsJudgedByWhatThereIsAndCannotPass) {
+  const auto ended_early = [](double s75_mrad) {
+    const TodCurve curve{"o", "s", {point_with(FitVerdict::ok, s75_mrad, 1.05 * s75_mrad)}};
+    return judge(
+        {.limits = one_limit(), .curve = curve, .comparison = std::nullopt, .ended_early = "the camera was lost"});
+  };
+
+  const Verdict good = ended_early(1.5), bad = ended_early(3.0);
+
+  EXPECT_EQ(good.demands.at(0).decision, VerdictKind::pass);
+  EXPECT_EQ(good.decision, VerdictKind::inconclusive);
+  EXPECT_EQ(good.reason, "the run ended early: the camera was lost");
+  EXPECT_EQ(bad.decision, VerdictKind::fail);
+  EXPECT_EQ(bad.ended_early, "the camera was lost");
+}
+
+TEST(Judge, ARunThatEndedBeforeAnythingWasMeasuredLeavesEveryLimitOpen) {
+  const Verdict verdict = judge({.limits = {{{16.9, limit_per_mrad}}, 10.0},
+                                 .curve = {},
+                                 .comparison = std::nullopt,
+                                 .ended_early = "the plate was not found"});
+
+  ASSERT_EQ(verdict.demands.size(), 2u);
+  EXPECT_EQ(verdict.demands[0].reason, "this contrast was not measured");
+  EXPECT_EQ(verdict.demands[1].reason, "there is no comparison with a simulated twin");
+  EXPECT_EQ(verdict.decision, VerdictKind::inconclusive);
+}
+
+TEST(DemandKinds, EveryKindHasOneRowWithANameAndAUnit) {
+  std::set<DemandKind> kinds;
+  std::set<std::string_view> names;
+  for (const DemandKindRow& row : demand_kinds()) {
+    EXPECT_TRUE(kinds.insert(row.kind).second);
+    EXPECT_TRUE(names.insert(row.name).second) << row.name;
+    EXPECT_FALSE(row.name.empty() || row.unit.empty());
+    EXPECT_EQ(to_string(row.kind), row.name);
+  }
+  EXPECT_EQ(names, (std::set<std::string_view>{"acuity", "identified", "equivalence"}));
+}
+
+/// A verdict with every kind of demand, sides that are open and numbers that do not exist.
+Verdict full_verdict() {
+  TodPoint open = point_with(FitVerdict::above_range, 2.0, std::nullopt);
+  open.set_delta_t_k = 0.1;
+  const TodCurve curve{"o", "s", {point_with(FitVerdict::ok, 1.5, 1.0 / 0.6), open}};
+  ComparisonPoint point;
+  point.margin_percent = 10;
+  point.ratio = 1.01;
+  point.ratio_ci90 = {0.97, 1.05};
+  return judge({.limits = {{{16.9, limit_per_mrad}}, 10.0},
+                .curve = curve,
+                .comparison = Comparison{{point}, ComparisonVerdict::equivalent},
+                .ended_early = "stopped on request",
+                .judged = JudgedWhen::afterwards});
+}
+
+TEST(VerdictRecord, ComesBackWithEveryFieldOfEveryKind) {
+  const Json written = verdict_json(full_verdict());
+
+  const Result<Verdict> back = verdict_from(Json::parse(to_page(written)));
+
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(to_line(verdict_json(*back)), to_line(written));
+  ASSERT_EQ(back->demands.size(), 3u);
+  EXPECT_EQ(back->demands[0].kind, DemandKind::acuity);
+  EXPECT_EQ(back->demands[0].limit, limit_per_mrad);
+  EXPECT_EQ(back->demands[1].kind, DemandKind::identified);
+  EXPECT_EQ(back->demands[1].interval.low, std::nullopt);
+  EXPECT_EQ(back->demands[2].kind, DemandKind::equivalence);
+  EXPECT_EQ(back->demands[2].delta_t_k, std::nullopt);
+  EXPECT_EQ(back->ended_early, "stopped on request");
+  EXPECT_EQ(back->judged, JudgedWhen::afterwards);
+  EXPECT_EQ(back->decision, VerdictKind::inconclusive);
+}
+
+TEST(VerdictRecord, HasTheKeysThatOthersRelyOn) {
+  const Json json = verdict_json(full_verdict());
+
+  for (const char* key : {"schema", "decision", "reason", "rule", "rule_in_words", "demands", "ended_early", "judged"})
+    EXPECT_TRUE(json.contains(key)) << key;
+  for (const Json& demand : json["demands"]) {
+    for (const char* key :
+         {"kind", "delta_t_k", "limit", "unit", "result", "interval", "interval_percent", "decision", "reason"})
+      EXPECT_TRUE(demand.contains(key)) << key;
+  }
+  EXPECT_EQ(json["demands"][1]["limit"], nullptr);
+}
+
+struct Damage {
+  const char* name;
+  std::function<void(Json&)> make;
+  const char* complaint;
+};
+
+void PrintTo(const Damage& damage, std::ostream* out) {
+  *out << damage.name;
+}
+
+class DamagedVerdict : public ::testing::TestWithParam<Damage> {};
+
+TEST_P(DamagedVerdict, IsRefusedByItsKey) {
+  Json json = verdict_json(full_verdict());
+  GetParam().make(json);
+
+  const Result<Verdict> verdict = verdict_from(json);
+
+  ASSERT_FALSE(verdict);
+  EXPECT_EQ(verdict.error().code, ErrorCode::invalid_input);
+  EXPECT_EQ(verdict.error().message, GetParam().complaint);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Keys, DamagedVerdict,
+    ::testing::Values(
+        Damage{"another_schema", [](Json& j) { j["schema"] = "todbench-verdict-0"; },
+               "'schema': expected 'todbench-verdict-1'"},
+        Damage{"no_decision", [](Json& j) { j.erase("decision"); }, "missing key 'decision'"},
+        Damage{"an_unknown_decision", [](Json& j) { j["decision"] = "passed"; }, "'decision': expected a known word"},
+        Damage{"an_unknown_rule", [](Json& j) { j["rule"] = "simple"; }, "'rule': expected a known word"},
+        Damage{"an_unknown_kind", [](Json& j) { j["demands"][1]["kind"] = "beauty"; },
+               "'demands[1].kind': expected a known word"},
+        Damage{"another_unit", [](Json& j) { j["demands"][2]["unit"] = "1/mrad"; }, "'demands[2].unit': expected '%'"},
+        Damage{"a_limit_that_is_text", [](Json& j) { j["demands"][0]["limit"] = "0.4"; },
+               "'demands[0].limit': expected a number"},
+        Damage{"an_interval_of_one_side", [](Json& j) { j["demands"][0]["interval"] = Json::array({1}); },
+               "'demands[0].interval': expected two sides"},
+        Damage{"no_list_of_demands", [](Json& j) { j["demands"] = nullptr; }, "'demands': expected a list"},
+        Damage{"no_reason", [](Json& j) { j["demands"][2].erase("reason"); }, "missing key 'demands[2].reason'"}),
+    [](const auto& damage) { return std::string(damage.param.name); });
+
 TEST(Judge, NamesItsRule) {
-  EXPECT_THAT(judge({}, {}, std::nullopt).rule, HasSubstr("95 % confidence interval as guard band"));
-  EXPECT_THAT(decision_rule(), HasSubstr("ILAC-G8"));
+  const Verdict verdict = judged({}, {}, std::nullopt);
+
+  EXPECT_EQ(to_string(verdict.rule), "guarded_acceptance_and_rejection");
+  EXPECT_THAT(verdict.rule_in_words, HasSubstr("95 % confidence interval as guard band"));
+  EXPECT_THAT(verdict.rule_in_words, HasSubstr("ILAC-G8"));
 }
 
 TEST(Judge, SaysDemandValueAndIntervalInAcuity) {
-  const Verdict verdict = judge(one_limit(), {"o", "s", {point_with(FitVerdict::ok, 1.6, 2.0)}}, std::nullopt);
+  const Verdict verdict = judged(one_limit(), {"o", "s", {point_with(FitVerdict::ok, 1.6, 2.0)}}, std::nullopt);
 
-  const VerdictItem& item = verdict.items.at(0);
-  EXPECT_EQ(item.demand, "acuity at 16.9 K at least 0.4 1/mrad");
+  const Demand& item = verdict.demands.at(0);
+  EXPECT_EQ(in_words(item), "acuity at 16.9 K at least 0.4 1/mrad");
+  EXPECT_EQ(title(item), "Acuity at 16.9 K at least 0.4 1/mrad");
   EXPECT_EQ(item.limit, 0.4);
-  EXPECT_DOUBLE_EQ(item.value.value(), 1 / 1.8);
+  EXPECT_DOUBLE_EQ(item.result.value(), 1 / 1.8);
   EXPECT_EQ(item.interval.low, 0.5);
   EXPECT_EQ(item.interval.high, 0.625);
   EXPECT_EQ(item.reason, "95 % interval 0.5 to 0.625 1/mrad: at or above the limit");

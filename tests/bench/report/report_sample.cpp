@@ -31,33 +31,25 @@ ComparisonPoint sample_comparison(double set_delta_t_k, double seen_k, double ra
   return point;
 }
 
-std::vector<LimitLine> sample_limits() {
-  LimitLine met;
-  met.quantity = "Acuity at 20 K";
-  met.unit = "1/mrad";
-  met.limit = 0.44;
-  met.value = 0.48;
-  met.ci95 = {0.468, 0.493};
-  met.verdict = LimitVerdict::pass;
+Verdict sample_verdict() {
+  Demand met{.kind = DemandKind::acuity, .delta_t_k = 20, .limit = 0.44, .result = 0.48, .interval = {0.468, 0.493}};
+  met.decision = VerdictKind::pass;
   met.reason = "The whole interval is above the limit.";
-  met.acuity_at_delta_t_k = 20;
-  LimitLine open = met;
-  open.quantity = "Acuity at 2 K";
-  open.limit = 0.465;
-  open.value = 0.4693;
-  open.ci95 = {0.4551, 0.4843};
-  open.verdict = LimitVerdict::inconclusive;
+  Demand open{
+      .kind = DemandKind::acuity, .delta_t_k = 2, .limit = 0.465, .result = 0.4693, .interval = {0.4551, 0.4843}};
   open.reason = "The interval contains the limit: more trials are needed.";
-  open.acuity_at_delta_t_k = 2;
-  LimitLine missed = met;
-  missed.quantity = "Acuity at 0.25 K";
-  missed.limit = 0.32;
-  missed.value = 0.2872;
-  missed.ci95 = {0.2743, 0.3013};
-  missed.verdict = LimitVerdict::fail;
+  Demand missed{
+      .kind = DemandKind::acuity, .delta_t_k = 0.25, .limit = 0.32, .result = 0.2872, .interval = {0.2743, 0.3013}};
+  missed.decision = VerdictKind::fail;
   missed.reason = "The whole interval is below the limit.";
-  missed.acuity_at_delta_t_k = 0.25;
-  return {met, open, missed};
+  Verdict verdict;
+  verdict.decision = VerdictKind::fail;
+  verdict.rule_in_words =
+      "Guarded acceptance and rejection: a limit is met or violated only when the whole 95 % interval lies on one side "
+      "of it; otherwise it "
+      "is inconclusive.";
+  verdict.demands = {met, open, missed};
+  return verdict;
 }
 
 SetUpRecord sample_set_up(const std::string& plate, Mounting mounting, double rotation_deg) {
@@ -181,11 +173,7 @@ ReportData sample_report() {
                                 sample_comparison(2, 1.93, 0.981, ComparisonVerdict::inconclusive),
                                 sample_comparison(0.25, 0.231, 0.873, ComparisonVerdict::different)},
                                ComparisonVerdict::different};
-  data.decision_rule =
-      "Guarded acceptance and rejection: a limit is met or violated only when the whole 95 % interval lies on one side "
-      "of it; otherwise it "
-      "is inconclusive.";
-  data.limits = sample_limits();
+  data.verdict = sample_verdict();
   add_simulation(data);
   data.frames_used = 1536;
   data.frames_rejected = {{"incomplete", 3}, {"nonuniformity_correction", 41}};

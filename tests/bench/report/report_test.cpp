@@ -231,7 +231,7 @@ TEST(Report, EscapesEveryTextFromOutside) {
   ReportData data = sample_report();
   data.title = data.session = data.description = data.operator_name = data.place = data.target = data.observer =
       hostile;
-  data.started = data.finished = data.decision_rule = hostile;
+  data.started = data.finished = data.verdict->rule_in_words = hostile;
   data.conditions = data.provenance = {{hostile, hostile}};
   data.camera->vendor = data.camera->model = data.camera->serial = data.camera->firmware = data.camera->id = hostile;
   data.camera->settings = {{hostile, hostile}};
@@ -239,7 +239,7 @@ TEST(Report, EscapesEveryTextFromOutside) {
   data.simulated_sensor->name = hostile;
   data.frames_rejected = {{hostile, 1}};
   data.set_ups[0].plate = data.plates[0].name = hostile;
-  data.limits[0].quantity = data.limits[0].reason = data.limits[0].unit = hostile;
+  data.verdict->demands[0].reason = hostile;
   data.plan.decisions[0].reason = hostile;
   data.interrupted = hostile;
 
@@ -300,8 +300,8 @@ TEST(Report, NeverShowsANumberThatIsNone) {
   data.comparison->points[0].ratio = infinity;
   data.comparison->points[0].p_difference = nan;
   data.comparison->points[1].delta_t_a_k = nan;
-  data.limits[0].value = nan;
-  data.limits[0].limit = infinity;
+  data.verdict->demands[0].result = nan;
+  data.verdict->demands[0].limit = infinity;
   data.plan.decisions[0].predicted_change_percent = nan;
   data.set_ups[0].registration.residual_px = nan;
 
@@ -361,28 +361,60 @@ TEST(Report, TheSameValuesGiveTheSameBytes) {
 
 TEST(Report, ADemandThatIsNoNumberIsShownWithItsReason) {
   ReportData data = sample_report();
-  LimitLine demand;
-  demand.quantity = "Equivalent to the simulated sensor";
-  demand.reason = "The 90 % interval leaves the margin.";
-  data.limits = {demand};
+  data.verdict->demands = {
+      {.kind = DemandKind::identified, .delta_t_k = 2, .reason = "The threshold cannot be found."}};
 
   const std::string page = render_report(data);
 
+  EXPECT_TRUE(contains(page, "A threshold at 2 K"));
   EXPECT_TRUE(contains(page, "(no number)"));
-  EXPECT_TRUE(contains(page, "The 90 % interval leaves the margin."));
+  EXPECT_TRUE(contains(page, "The threshold cannot be found."));
   EXPECT_FALSE(contains(page, "limit (least acuity)"));
 }
 
-TEST(ReportVerdict, IsTheWorstOfItsLimits) {
+TEST(Report, AnIntervalOfAnotherConfidenceSaysSo) {
   ReportData data = sample_report();
-  const std::vector<LimitLine> limits = data.limits;  // pass, inconclusive, fail
+  data.verdict->demands = {{.kind = DemandKind::equivalence,
+                            .limit = 10,
+                            .result = 3.1,
+                            .interval = {0, 6.2},
+                            .interval_percent = 90,
+                            .reason = "equivalent"}};
+
+  const std::string page = render_report(data);
+
+  EXPECT_TRUE(contains(page, "≤ 10"));
+  EXPECT_TRUE(contains(page, "(90 %)"));
+}
+
+TEST(Report, AVerdictThatWasMadeAfterTheRunSaysSo) {
+  ReportData data = sample_report();
+  const std::string at_once = render_report(data);
+  data.verdict->judged = JudgedWhen::afterwards;
+
+  const std::string afterwards = render_report(data);
+
+  EXPECT_FALSE(contains(at_once, "stored no verdict"));
+  EXPECT_TRUE(contains(afterwards, "The run of this session stored no verdict; it was judged afterwards"));
+}
+
+TEST(ReportVerdict, IsTheDecisionThatWasMadeAndNotAnotherOne) {
+  ReportData data = sample_report();  // its demands: pass, inconclusive, fail
 
   EXPECT_EQ(report_verdict(data), ReportVerdict::fail);
-  data.limits = {limits[0], limits[1]};
+  data.verdict->decision = VerdictKind::inconclusive;
   EXPECT_EQ(report_verdict(data), ReportVerdict::inconclusive);
-  data.limits = {limits[0]};
+  data.verdict->decision = VerdictKind::pass;
   EXPECT_EQ(report_verdict(data), ReportVerdict::pass);
-  data.limits = {};
+}
+
+TEST(ReportVerdict, WithoutLimitsIsNone) {
+  ReportData data = sample_report();
+  data.verdict->decision = VerdictKind::pass;
+  data.verdict->demands = {{.kind = DemandKind::identified, .delta_t_k = 2, .decision = VerdictKind::pass}};
+
+  EXPECT_EQ(report_verdict(data), ReportVerdict::not_judged);
+  data.verdict.reset();
   EXPECT_EQ(report_verdict(data), ReportVerdict::not_judged);
 }
 
@@ -391,7 +423,7 @@ TEST(ReportVerdict, AnInterruptedRunCannotPassButAViolatedLimitStaysOne) {
   data.interrupted = "Stopped by the operator.";
 
   EXPECT_EQ(report_verdict(data), ReportVerdict::fail);
-  data.limits.resize(1);
+  data.verdict->decision = VerdictKind::pass;
   EXPECT_EQ(report_verdict(data), ReportVerdict::interrupted);
   const std::string page = render_report(data);
   EXPECT_TRUE(contains(page, "INTERRUPTED"));

@@ -77,7 +77,7 @@ TEST_F(LostCamera, ThatComesBackMakesACompleteSessionInTwoSegmentsThatReplaysBit
 
   ASSERT_TRUE(run) << run.error().message;
   ASSERT_FALSE(run->ended_by) << run->ended_by->message;
-  EXPECT_EQ(exit_code(run->verdict.overall), 0);
+  EXPECT_EQ(exit_code(run->verdict.decision), 0);
   EXPECT_THAT(notes_, Contains(HasSubstr("camera lost, waiting 60 s for")));
   EXPECT_THAT(content_of(folder_.path() / "m" / "log.txt"), HasSubstr("with serial number TB0001"));
   const auto session = read_session(folder_.path() / "m");

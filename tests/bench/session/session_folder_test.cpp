@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "bench/judgement/verdict_record.h"
 #include "bench/session/build_info.h"
 #include "bench/session/fit_record.h"
 #include "bench/text/files.h"
@@ -14,6 +15,7 @@
 namespace todbench {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -65,6 +67,14 @@ Provenance full_provenance(const Plan& plan) {
   return provenance;
 }
 
+/// Of a limit that is in no plan here: it can only come from the file.
+Verdict stored_verdict() {
+  const TodCurve curve = testing::full_curve();
+  return judge({.limits = {{{curve.points.front().set_delta_t_k, 1e6}}, std::nullopt},
+                .curve = curve,
+                .comparison = std::nullopt});
+}
+
 /// Writes a complete session and returns its folder.
 std::filesystem::path write_session(const testing::TemporaryFolder& parent, const std::vector<Trial>& trials) {
   Plan plan;
@@ -85,6 +95,7 @@ std::filesystem::path write_session(const testing::TemporaryFolder& parent, cons
       {16.9, 16.8, 16.9, 1.0, {0.9, 1.1}, {0.92, 1.08}, 0.9, 0.01, 10, ComparisonVerdict::equivalent});
   comparison.verdict = ComparisonVerdict::equivalent;
   EXPECT_TRUE(folder.write_comparison(comparison));
+  EXPECT_TRUE(folder.write_verdict(stored_verdict()));
   EXPECT_TRUE(folder.write_report("<!DOCTYPE html><title>x</title>"));
   EXPECT_TRUE(folder.finish(provenance, SessionState::complete));
   return folder.path();
@@ -108,6 +119,81 @@ TEST(SessionFolder, ComesBackAsTheValuesThatWereWritten) {
   EXPECT_EQ(to_line(curve_record(*session->curve)), to_line(curve_record(testing::full_curve())));
   EXPECT_TRUE(session->twin);
   EXPECT_EQ(session->comparison->verdict, ComparisonVerdict::equivalent);
+  ASSERT_TRUE(session->verdict);
+  EXPECT_EQ(to_line(verdict_json(*session->verdict)), to_line(verdict_json(stored_verdict())));
+}
+
+TEST(SessionVerdict, IsTheStoredOneWhateverThePlanSays) {
+  const testing::TemporaryFolder parent;
+  const Session session = read_session(write_session(parent, testing::random_trials(3))).value();
+  ASSERT_TRUE(session.plan.limits.acuity.empty());
+
+  const Verdict verdict = verdict_of(session);
+
+  EXPECT_EQ(verdict.judged, JudgedWhen::at_end_of_run);
+  EXPECT_EQ(verdict.demands.at(0).kind, DemandKind::acuity);
+  EXPECT_EQ(verdict.demands.at(0).limit, 1e6);
+}
+
+TEST(SessionVerdict, OfAnOldSessionIsJudgedOnceAndSaysSo) {
+  const testing::TemporaryFolder parent;
+  const std::filesystem::path folder = write_session(parent, testing::random_trials(3));
+  std::filesystem::remove(folder / "verdict.json");
+  ASSERT_TRUE(write_manifest(folder));
+  const Session old = read_session(folder).value();
+  ASSERT_FALSE(old.verdict);
+
+  const Verdict verdict = verdict_of(old);
+  ASSERT_TRUE(keep_verdict(folder, verdict));
+
+  EXPECT_EQ(verdict.judged, JudgedWhen::afterwards);
+  EXPECT_FALSE(limits_asked(verdict));  // the plan has none
+  EXPECT_THAT(verify_manifest(folder).value(), IsEmpty());
+  EXPECT_THAT(session_files(folder), Contains("verdict.json"));
+  const Session again = read_session(folder).value();
+  ASSERT_TRUE(again.verdict);
+  EXPECT_EQ(to_line(verdict_json(verdict_of(again))), to_line(verdict_json(verdict)));
+}
+
+TEST(SessionVerdict, KeepingOneDoesNotBlessOtherChanges) {
+  const testing::TemporaryFolder parent;
+  const std::filesystem::path folder = write_session(parent, testing::random_trials(3));
+  parent.write("session/curve.csv", "forged");
+
+  ASSERT_TRUE(keep_verdict(folder, stored_verdict()));
+
+  EXPECT_THAT(verify_manifest(folder).value(), ElementsAre("curve.csv: changed since the session was written"));
+}
+
+TEST(SessionVerdict, OfARunThatWasCutOffIsJudgedByWhatThereIsAndNotKept) {
+  const testing::TemporaryFolder parent;
+  auto folder = SessionFolder::create(parent.path() / "s", ExistingFolder::refuse).value();
+  Plan plan;
+  plan.limits.acuity = {{16.9, 0.4}};
+  ASSERT_TRUE(folder.write_plan(plan));
+  ASSERT_TRUE(folder.write_provenance(begin_provenance(plan, Side::measured)));
+
+  const Verdict verdict = verdict_of(read_session(folder.path()).value());
+  ASSERT_TRUE(keep_verdict(folder.path(), verdict));
+
+  EXPECT_EQ(verdict.decision, VerdictKind::inconclusive);
+  EXPECT_EQ(verdict.ended_early, "the session was not finished");
+  EXPECT_EQ(verdict.demands.at(0).reason, "this contrast was not measured");
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "verdict.json"));
+}
+
+TEST(SessionVerdict, ThatIsDamagedIsNamedByFileAndKey) {
+  const testing::TemporaryFolder parent;
+  const std::filesystem::path folder = write_session(parent, testing::random_trials(3));
+  Json json = verdict_json(stored_verdict());
+  json["demands"][0].erase("limit");
+  parent.write("session/verdict.json", to_page(json));
+
+  const Result<Session> session = read_session(folder);
+
+  ASSERT_FALSE(session);
+  EXPECT_EQ(session.error().code, ErrorCode::invalid_input);
+  EXPECT_THAT(session.error().message, HasSubstr("verdict.json: missing key 'demands[0].limit'"));
 }
 
 TEST(SessionFolder, ProvenanceComesBackWithEveryField) {
@@ -252,10 +338,11 @@ TEST(Manifest, ListsEveryFileOfTheSessionAndFindsItIntact) {
   const testing::TemporaryFolder parent;
   const std::filesystem::path folder = write_session(parent, testing::random_trials(3));
 
-  EXPECT_THAT(session_files(folder),
-              IsSupersetOf({"session.toml", "provenance.json", "trials.csv", "trials_simulated.csv", "fits.json",
-                            "curve.csv", "comparison.json", "report.html", "log.txt", "inputs/observer-hvs-1.toml",
-                            "inputs/plate-tcat-a.toml", "inputs/plate-tcat-b.toml", "inputs/sensor-sc2000.toml"}));
+  EXPECT_THAT(
+      session_files(folder),
+      IsSupersetOf({"session.toml", "provenance.json", "trials.csv", "trials_simulated.csv", "fits.json", "curve.csv",
+                    "comparison.json", "verdict.json", "report.html", "log.txt", "inputs/observer-hvs-1.toml",
+                    "inputs/plate-tcat-a.toml", "inputs/plate-tcat-b.toml", "inputs/sensor-sc2000.toml"}));
   EXPECT_THAT(verify_manifest(folder).value(), IsEmpty());
 }
 

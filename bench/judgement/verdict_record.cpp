@@ -1,0 +1,83 @@
+#include "bench/judgement/verdict_record.h"
+
+#include <array>
+
+#include "bench/judgement/demand_kinds.h"
+#include "bench/text/json_reader.h"
+
+namespace todbench {
+
+namespace {
+
+constexpr std::string_view schema = "todbench-verdict-1";
+constexpr std::array decisions{VerdictKind::pass, VerdictKind::fail, VerdictKind::inconclusive};
+constexpr std::array rules{DecisionRule::guarded_acceptance_and_rejection};
+constexpr std::array moments{JudgedWhen::at_end_of_run, JudgedWhen::afterwards};
+
+std::vector<DemandKind> known_kinds() {
+  std::vector<DemandKind> kinds;
+  for (const DemandKindRow& row : demand_kinds()) kinds.push_back(row.kind);
+  return kinds;
+}
+
+Json demand_json(const Demand& demand) {
+  Json json;
+  json["kind"] = to_string(demand.kind);
+  json["delta_t_k"] = json_number(demand.delta_t_k);
+  json["unit"] = row_of(demand.kind).unit;
+  json["limit"] = json_number(demand.limit);
+  json["result"] = json_number(demand.result);
+  json["interval"] = json_interval(demand.interval);
+  json["interval_percent"] = demand.interval_percent;
+  json["decision"] = to_string(demand.decision);
+  json["reason"] = demand.reason;
+  return json;
+}
+
+Demand demand_from(const JsonReader& reader) {
+  Demand demand;
+  demand.kind = reader.at("kind").named(known_kinds());
+  demand.delta_t_k = reader.at("delta_t_k").optional_number();
+  reader.at("unit").expect(row_of(demand.kind).unit);
+  demand.limit = reader.at("limit").optional_number();
+  demand.result = reader.at("result").optional_number();
+  demand.interval = reader.at("interval").interval();
+  demand.interval_percent = static_cast<int>(reader.at("interval_percent").whole());
+  demand.decision = reader.at("decision").named(decisions);
+  demand.reason = reader.at("reason").text();
+  return demand;
+}
+
+}  // namespace
+
+Json verdict_json(const Verdict& verdict) {
+  Json json;
+  json["schema"] = schema;
+  json["decision"] = to_string(verdict.decision);
+  json["reason"] = verdict.reason;
+  json["rule"] = to_string(verdict.rule);
+  json["rule_in_words"] = verdict.rule_in_words;
+  json["demands"] = Json::array();
+  for (const Demand& demand : verdict.demands) json["demands"].push_back(demand_json(demand));
+  json["ended_early"] = verdict.ended_early ? Json(*verdict.ended_early) : Json();
+  json["judged"] = to_string(verdict.judged);
+  return json;
+}
+
+Result<Verdict> verdict_from(const Json& record) {
+  const JsonReader reader(record);
+  reader.at("schema").expect(schema);
+  Verdict verdict;
+  verdict.decision = reader.at("decision").named(decisions);
+  verdict.reason = reader.at("reason").text();
+  verdict.rule = reader.at("rule").named(rules);
+  verdict.rule_in_words = reader.at("rule_in_words").text();
+  for (const JsonReader& demand : reader.at("demands").elements()) verdict.demands.push_back(demand_from(demand));
+  const JsonReader ended_early = reader.at("ended_early");
+  if (!ended_early.is_null()) verdict.ended_early = ended_early.text();
+  verdict.judged = reader.at("judged").named(moments);
+  if (const Result<void> read = reader.finish(); !read) return tl::unexpected(read.error());
+  return verdict;
+}
+
+}  // namespace todbench
