@@ -228,6 +228,8 @@ MeasurementPlan read_measurement(TomlReader reader) {
   plan.max_rotation_deg = reader.number("max_rotation_deg", NumberRange::above_to(0, 45), plan.max_rotation_deg);
   plan.record_frames = reader.flag("record_frames", plan.record_frames);
   plan.max_residual_px = reader.number("max_residual_px", NumberRange::above_to(0, 5), plan.max_residual_px);
+  plan.max_readback_deviation_k =
+      reader.number("max_readback_deviation_k", NumberRange::positive(), plan.max_readback_deviation_k);
   return plan;
 }
 

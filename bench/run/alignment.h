@@ -11,7 +11,6 @@
 
 #include "acquisition/core/frame_source.h"
 #include "bench/plan/plan.h"
-#include "bench/run/operator_target.h"
 #include "hvs/shape/polygon.h"
 #include "tod/registration/registration.h"
 
@@ -56,7 +55,6 @@ struct AlignmentListener {
   std::function<void(const SourceInfo&)> on_open;
   std::function<void(const Frame&)> on_frame;
   std::function<void(const Alignment&)> on_alignment;
-  OperatorDialogue ask_operator;
 };
 
 /// What one averaged picture (kelvin) says. `first`: the registration of the first look, to see drift; `sides`: of the

@@ -97,7 +97,7 @@ std::vector<std::string> what_to_do(const std::optional<TargetState>& last, cons
 class PromptTarget final : public Target {
  public:
   PromptTarget(std::ostream& out, std::unique_ptr<LineSource> answers, PromptTargetOptions options)
-      : out_(out), answers_(std::move(answers)), now_(std::move(options.now)), capabilities_(options.times) {
+      : out_(out), answers_(std::move(answers)), now_(std::move(options.now)) {
     capabilities_.description = options.description;
     capabilities_.sets_shift = false;
   }

@@ -72,16 +72,16 @@ TEST_P(UsbMeasurement, DecidesAsTheSimulatedCameraForTheSameExposures) {
 
   PresentScene fresh(**source, before_camera, log, GetParam().exposure_of);
   auto schedule = schedule_of(bench);
-  const auto measured =
-      measure(fresh, *scene_target(share(before_camera), bench.plates), observer, schedule, options, {}, {});
+  const auto measured = measure(fresh, *scene_target(share(before_camera), bench.plates), observer, schedule, options,
+                                *bench.host, {}, {});
   ASSERT_TRUE(measured) << measured.error().message;
   ASSERT_FALSE(measured->ended_by) << measured->ended_by->message;
 
   SceneHolder before_simulation(empty);
   GivenExposures given(fresh.info(), model, before_simulation, fresh.exposures());
   auto same_schedule = schedule_of(bench);
-  const auto simulated =
-      measure(given, *scene_target(share(before_simulation), bench.plates), observer, same_schedule, options, {}, {});
+  const auto simulated = measure(given, *scene_target(share(before_simulation), bench.plates), observer, same_schedule,
+                                 options, *bench.host, {}, {});
   ASSERT_TRUE(simulated) << simulated.error().message;
 
   ASSERT_GE(measured->trials.size(), 2U * 2 * 3 * 20);  // plates, contrasts, phases, triangles

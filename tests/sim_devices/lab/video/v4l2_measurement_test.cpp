@@ -59,8 +59,8 @@ void measure_both(VideoCameraConfig config, Both& both) {
 
   PresentScene fresh(**source, before_camera, log, test::exposure_by_clock(bench.spec.frame_rate_hz));
   auto schedule = schedule_of(bench);
-  const auto measured =
-      measure(fresh, *scene_target(share(before_camera), bench.plates), observer, schedule, options, {}, {});
+  const auto measured = measure(fresh, *scene_target(share(before_camera), bench.plates), observer, schedule, options,
+                                *bench.host, {}, {});
   ASSERT_TRUE(measured) << measured.error().message;
   ASSERT_FALSE(measured->ended_by) << measured->ended_by->message;
 
@@ -68,8 +68,8 @@ void measure_both(VideoCameraConfig config, Both& both) {
   const auto is_short = [&](std::uint64_t exposure) { return arrives_short(config, exposure); };
   GivenExposures given(fresh.info(), model, before_simulation, fresh.exposures(), is_short);
   auto same_schedule = schedule_of(bench);
-  const auto simulated =
-      measure(given, *scene_target(share(before_simulation), bench.plates), observer, same_schedule, options, {}, {});
+  const auto simulated = measure(given, *scene_target(share(before_simulation), bench.plates), observer, same_schedule,
+                                 options, *bench.host, {}, {});
   ASSERT_TRUE(simulated) << simulated.error().message;
   const auto exposures = fresh.exposures();
   both = {.measured = *measured,
