@@ -36,17 +36,19 @@ void note(SessionFolder& folder, const ExperimentListener& listener, const std::
   if (listener.on_note) listener.on_note(sentence);
 }
 
-/// One run of the measurement into a trials file.
+/// One run of the measurement into its files of trials and presentations.
 class Recorder {
  public:
   Recorder(SessionFolder& folder, const ExperimentListener& listener, std::stop_token stop)
       : folder_(folder), listener_(listener), forward_(std::move(stop), [this] { halt_.request_stop(); }) {}
 
-  /// Trials reach the disk one by one. A disk that refuses stops the run with `io`.
+  /// Trials and presentations reach the disk one by one. A disk that refuses stops the run with `io`.
   [[nodiscard]] Result<MeasurementResult> run(OpenedBench& bench, Observer& observer, TrialSchedule& schedule,
                                               const MeasurementOptions& options, SessionCurve which) {
     auto writer = folder_.open_trials(which);
     if (!writer) return tl::unexpected(writer.error());
+    auto targets = folder_.open_targets(which);
+    if (!targets) return tl::unexpected(targets.error());
     std::optional<Error> write_error;
     const auto keep = [&](const Result<void>& written) {
       if (written || write_error) return;
@@ -54,10 +56,14 @@ class Recorder {
       halt_.request_stop();
     };
     MeasurementListener events;
-    // A simulated exposure happens at no time of the host: its file is the same whenever it is made.
+    // A simulated exposure happens at no time of the host: its files are the same whenever it is made.
     events.on_trial = [&](Trial trial) {
       if (bench.simulated) trial.host_time_ns = trial.device_time_ns;
       if (!write_error) keep(writer->append(trial));
+    };
+    events.on_presentation = [&](Presentation shown) {
+      if (bench.simulated) shown.host_time_ns.reset();
+      if (!write_error) keep(targets->append(shown));
     };
     events.on_patch = [&](const Trial& trial, const Patch& patch) {
       if (listener_.on_trial && !write_error) listener_.on_trial(which, trial, patch);
@@ -76,6 +82,7 @@ class Recorder {
     auto result =
         measure(*bench.camera, *bench.target, observer, schedule, options, *bench.host, events, halt_.get_token());
     keep(writer->sync());
+    keep(targets->sync());
     if (write_error) {
       if (!result) return tl::unexpected(*write_error);
       result->ended_by = write_error;
