@@ -300,6 +300,7 @@ Result<void> FrameStreamWriter::append(const Frame& frame) {
   head.significant_bits = static_cast<std::uint8_t>(frame.significant_bits);
   const cv::Mat1w pixels = frame.counts.isContinuous() ? frame.counts : cv::Mat1w(frame.counts.clone());
   auto written = write_record("FRAM", &head, sizeof head, pixels.data, pixel_bytes);
+  const std::lock_guard lock(*appending_);
   if (written) ++frames_;
   return written;
 }
