@@ -64,7 +64,9 @@ TEST(RecordedAnswers, AnotherQuestionIsRefusedAndNothingIsShifted) {
 }
 
 TEST(RecordedAnswers, ATargetThatWasSetOtherwiseIsAnotherQuestion) {
-  RecordedAnswers answers("r", {target_answer(state, PresentedTarget{.state = state})});
+  PresentedTarget reached;
+  reached.state = state;
+  RecordedAnswers answers("r", {target_answer(state, reached)});
   TargetState other = state;
   other.delta_t_k = 1.93;
 

@@ -71,10 +71,16 @@ class MeasuredSession : public ::testing::Test {
  protected:
   MeasuredSession() {
     const FakeClock clock(0.01);
-    black_body_ =
-        BlackBody::start({.time_constant_s = 1, .stable_dwell_s = 0, .calibration_gain = 1.02, .now = clock.now()})
-            .value();
-    stage_ = PlateStage::start({.plates = {"tcat-a"}, .now = clock.now()}).value();
+    BlackBodyOptions black_body;
+    black_body.time_constant_s = 1;
+    black_body.stable_dwell_s = 0;
+    black_body.calibration_gain = 1.02;
+    black_body.now = clock.now();
+    black_body_ = BlackBody::start(black_body).value();
+    PlateStageOptions stage;
+    stage.plates = {"tcat-a"};
+    stage.now = clock.now();
+    stage_ = PlateStage::start(stage).value();
     ScpiTargetOptions options;
     options.black_body = black_body_->endpoint();
     options.stage = stage_->endpoint();
