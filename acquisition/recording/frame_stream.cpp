@@ -50,6 +50,7 @@ static_assert(sizeof(FrameHead) == 40);
 constexpr std::uint32_t most_payload = std::uint32_t{1} << 30;
 constexpr std::uint32_t most_header = std::uint32_t{1} << 20;
 constexpr std::uint32_t most_failure = std::uint32_t{1} << 16;
+constexpr std::uint32_t most_reading = std::uint32_t{1} << 16;
 
 std::uint32_t crc_of(const void* data, std::size_t bytes, std::uint32_t start = 0) {
   // Lengths are below 2^31, and zlib takes 32-bit ones.
@@ -162,7 +163,7 @@ class StreamIndex {
   std::optional<StreamHeader> header;
   std::vector<FramePlace> frames;
   std::vector<RecordedFailure> failures;
-  std::vector<std::int64_t> readings;
+  std::vector<Reading> readings;
   [[nodiscard]] std::uint64_t torn_bytes() const { return size_ - at_; }
 
  private:
@@ -180,10 +181,12 @@ class StreamIndex {
     const bool correction_record = is(head, "FCOR");
     const bool failure_record =
         (is(head, "FAIL") || correction_record) && head.payload_bytes >= 4 && head.payload_bytes <= most_failure;
-    const bool reading_record = is(head, "READ") && head.payload_bytes == 8;
+    const bool reading_record = is(head, "TOLD") && head.payload_bytes <= most_reading;
     if (!header_record && !failure_record && !reading_record) return {};
     const std::string payload = payload_text(file_, offset, head.payload_bytes);
     if (crc_of(payload.data(), payload.size()) != head.payload_crc || payload.size() != head.payload_bytes) {
+      // A reading that is left out would put the next one in its place.
+      if (reading_record) readings.emplace_back();
       return header_record ? Result<void>(fail(ErrorCode::invalid_input, "the header is damaged")) : Result<void>();
     }
     if (header_record) {
@@ -198,7 +201,8 @@ class StreamIndex {
                           .error = {static_cast<ErrorCode>(std::min(code, last)), payload.substr(4)},
                           .call = correction_record ? FailedCall::correct_nonuniformity : FailedCall::next});
     } else {
-      std::memcpy(&readings.emplace_back(), payload.data(), 8);
+      const std::size_t space = std::min(payload.find(' '), payload.size());
+      readings.push_back({payload.substr(0, space), payload.substr(std::min(space + 1, payload.size()))});
     }
     return {};
   }
@@ -226,7 +230,8 @@ FrameStreamWriter::FrameStreamWriter(FrameStreamWriter&& other) noexcept
       descriptor_(std::exchange(other.descriptor_, -1)),
       frames_(other.frames_),
       bytes_(other.bytes_),
-      broken_(other.broken_) {}
+      broken_(other.broken_),
+      appending_(std::move(other.appending_)) {}
 
 FrameStreamWriter& FrameStreamWriter::operator=(FrameStreamWriter&& other) noexcept {
   std::swap(path_, other.path_);
@@ -234,6 +239,7 @@ FrameStreamWriter& FrameStreamWriter::operator=(FrameStreamWriter&& other) noexc
   std::swap(frames_, other.frames_);
   std::swap(bytes_, other.bytes_);
   std::swap(broken_, other.broken_);
+  std::swap(appending_, other.appending_);
   return *this;
 }
 
@@ -256,6 +262,7 @@ Result<void> FrameStreamWriter::write_all(const void* data, std::size_t bytes) {
 
 Result<void> FrameStreamWriter::write_record(const char (&kind)[5], const void* head, std::size_t head_bytes,
                                              const void* body, std::size_t body_bytes) {
+  const std::lock_guard lock(*appending_);
   if (broken_) return fail(ErrorCode::io, path_.string() + ": ended where the disk refused to go on");
   RecordHead record;
   std::memcpy(record.kind.data(), kind, 4);
@@ -294,6 +301,7 @@ Result<void> FrameStreamWriter::append(const Frame& frame) {
   head.significant_bits = static_cast<std::uint8_t>(frame.significant_bits);
   const cv::Mat1w pixels = frame.counts.isContinuous() ? frame.counts : cv::Mat1w(frame.counts.clone());
   auto written = write_record("FRAM", &head, sizeof head, pixels.data, pixel_bytes);
+  const std::lock_guard lock(*appending_);
   if (written) ++frames_;
   return written;
 }
@@ -305,8 +313,11 @@ Result<void> FrameStreamWriter::append_failure(const Error& error, FailedCall ca
                                   : write_record("FCOR", &code, sizeof code, message.data(), message.size());
 }
 
-Result<void> FrameStreamWriter::append_reading(std::int64_t value) {
-  return write_record("READ", &value, sizeof value, nullptr, 0);
+Result<void> FrameStreamWriter::append_reading(const Reading& reading) {
+  const std::string text = reading.tag + " " + reading.value;
+  if (reading.tag.empty() || reading.tag.find(' ') != std::string::npos || text.size() > most_reading)
+    return fail(ErrorCode::invalid_input, "a reading '" + reading.tag + "' cannot be recorded");
+  return write_record("TOLD", text.data(), text.size(), nullptr, 0);
 }
 
 Result<void> FrameStreamWriter::sync() {

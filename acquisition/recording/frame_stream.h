@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,10 +23,17 @@ struct StreamHeader {
   std::map<std::string, std::string> annotations;  ///< what else is to be known, e.g. what changed the target
 };
 
+/// An answer that the measuring program got beside its frames: what it had asked for, and what it was told.
+struct Reading {
+  std::string tag;    ///< without a space; empty: damaged in the file
+  std::string value;  ///< numbers as text
+  bool operator==(const Reading&) const = default;
+};
+
 /// Appends to a recording. Every record is handed to the system whole, with checksums, before the call returns: a crash
-/// of the program loses nothing, one of the machine at most what the system had not written yet. Move-only, one thread
-/// at a time. Errors: `io` with the path; what a full disk cut off is taken back, and nothing is appended any more: a
-/// recording has no holes.
+/// of the program loses nothing, one of the machine at most what the system had not written yet. Move-only; several
+/// threads may append, each record is whole. Errors: `io` with the path; what a full disk cut off is taken back, and
+/// nothing is appended any more: a recording has no holes.
 class FrameStreamWriter {
  public:
   /// Creates the file or empties it.
@@ -37,8 +46,9 @@ class FrameStreamWriter {
   [[nodiscard]] Result<void> append(const Frame& frame);
   /// Instead of a frame, or of a correction, the camera failed.
   [[nodiscard]] Result<void> append_failure(const Error& error, FailedCall call);
-  /// What the measuring program read from its clock, or was told otherwise, between two frames.
-  [[nodiscard]] Result<void> append_reading(std::int64_t value);
+  /// What the measuring program was told between two frames; `invalid_input` for a tag that is empty or has a space, or
+  /// more than 64 KiB.
+  [[nodiscard]] Result<void> append_reading(const Reading& reading);
   /// Waits until everything is on the disk.
   [[nodiscard]] Result<void> sync();
 
@@ -56,14 +66,15 @@ class FrameStreamWriter {
   int descriptor_ = -1;
   std::uint64_t frames_ = 0;
   std::uint64_t bytes_ = 0;
-  bool broken_ = false;  ///< a record was refused by the disk
+  bool broken_ = false;                                                     ///< a record was refused by the disk
+  std::unique_ptr<std::mutex> appending_ = std::make_unique<std::mutex>();  ///< guards all of it
 };
 
 /// An opened recording. Readings and failures are in their order; a failure stands before the frame with its index.
 struct FrameStream {
   StreamHeader header;
   Recording recording;
-  std::vector<std::int64_t> readings;
+  std::vector<Reading> readings;
   std::uint64_t torn_bytes = 0;  ///< behind the last whole record: what a crash left of the next one
 };
 

@@ -58,9 +58,8 @@ Interval deciding_interval(const TodPoint& point) {
 /// significantly better, both fits have to agree: the union of their intervals counts.
 Demand judged_acuity(const AcuityLimit& limit, const TodCurve& curve) {
   Demand demand{.kind = DemandKind::acuity, .delta_t_k = limit.delta_t_k, .limit = limit.least_acuity_per_mrad};
-  const auto point = std::find_if(curve.points.begin(), curve.points.end(),
-                                  [&](const TodPoint& candidate) { return same_contrast(candidate.set_delta_t_k, limit.delta_t_k); });
-  if (point == curve.points.end()) {
+  const TodPoint* point = point_at(curve, limit.delta_t_k);
+  if (point == nullptr) {
     demand.reason = "this contrast was not measured";
     return demand;
   }
@@ -116,7 +115,8 @@ std::vector<Demand> judge_identified(const Evidence& evidence) {
   std::vector<Demand> demands;
   for (const TodPoint& point : evidence.curve.points) {
     const auto& limits = evidence.limits.acuity;
-    if (std::any_of(limits.begin(), limits.end(), [&](const auto& limit) { return same_contrast(point.set_delta_t_k, limit.delta_t_k); }))
+    if (std::any_of(limits.begin(), limits.end(),
+                    [&](const auto& limit) { return same_contrast(point.set_delta_t_k, limit.delta_t_k); }))
       continue;
     demands.push_back(judged_identified(point));
   }

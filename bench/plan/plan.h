@@ -121,7 +121,8 @@ struct MeasurementPlan {
   double max_scale_deviation = 0.02;
   double max_rotation_deg = 10;
   double max_residual_px = 0.25;
-  bool record_frames = false;  ///< every frame of the camera into frames/, for `todbench replay`
+  double max_readback_deviation_k = 0.002;  ///< of what the target says it shows from what it was told; beyond: a note
+  bool record_frames = false;               ///< every frame of the camera into frames/, for `todbench replay`
   bool operator==(const MeasurementPlan&) const = default;
 };
 

@@ -50,6 +50,7 @@ MeasurementOptions measurement_options(const Plan& plan, const std::vector<Targe
   options.registration.max_scale_deviation = plan.measurement.max_scale_deviation;
   options.registration.max_rotation_deg = plan.measurement.max_rotation_deg;
   options.registration.max_residual_px = plan.measurement.max_residual_px;
+  options.max_readback_deviation_k = plan.measurement.max_readback_deviation_k;
   options.seed = plan.seed;
   return options;
 }

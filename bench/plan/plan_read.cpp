@@ -204,7 +204,8 @@ LimitsPlan read_limits(TomlReader reader, const std::vector<double>& contrasts) 
     for (const double contrast : contrasts) shown = shown || same_contrast(contrast, limit.delta_t_k);
     if (!shown) row.reject("delta_t_k", number_text(limit.delta_t_k) + " K is not among the contrasts of [target]");
     for (const AcuityLimit& other : limits.acuity) {
-      if (same_contrast(other.delta_t_k, limit.delta_t_k)) row.reject("delta_t_k", "a second limit at " + number_text(limit.delta_t_k) + " K");
+      if (same_contrast(other.delta_t_k, limit.delta_t_k))
+        row.reject("delta_t_k", "a second limit at " + number_text(limit.delta_t_k) + " K");
     }
     limits.acuity.push_back(limit);
   }
@@ -226,6 +227,8 @@ MeasurementPlan read_measurement(TomlReader reader) {
   plan.max_rotation_deg = reader.number("max_rotation_deg", NumberRange::above_to(0, 45), plan.max_rotation_deg);
   plan.record_frames = reader.flag("record_frames", plan.record_frames);
   plan.max_residual_px = reader.number("max_residual_px", NumberRange::above_to(0, 5), plan.max_residual_px);
+  plan.max_readback_deviation_k =
+      reader.number("max_readback_deviation_k", NumberRange::positive(), plan.max_readback_deviation_k);
   return plan;
 }
 

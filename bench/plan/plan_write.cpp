@@ -129,6 +129,7 @@ void write_measurement(Lines& out, const MeasurementPlan& plan) {
   out.key("max_scale_deviation", plan.max_scale_deviation);
   out.key("max_rotation_deg", plan.max_rotation_deg);
   out.key("max_residual_px", plan.max_residual_px);
+  out.key("max_readback_deviation_k", plan.max_readback_deviation_k);
   out.key("record_frames", plan.record_frames);
 }
 

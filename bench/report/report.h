@@ -48,7 +48,8 @@ struct ReportData {
   std::string target;                ///< instruments with serial numbers
   std::vector<TargetPlate> plates;   ///< in identity mounting
   std::vector<SetUpRecord> set_ups;
-  std::string observer;  ///< name and version
+  std::vector<Presentation> presentations;  ///< of the camera, or of the simulation where there is none
+  std::string observer;                     ///< name and version
 
   FitOptions fit;
   std::optional<TodCurve> measured;  ///< by the camera

@@ -46,6 +46,8 @@ enum class Mood { good, bad, open };
 // How it was found.
 [[nodiscard]] Markup identification_section(const ReportData& data);
 [[nodiscard]] Markup set_up_section(const ReportData& data);
+/// Part of the set-up: set, read-back and seen contrast side by side; nothing where no presentations are known.
+[[nodiscard]] Markup target_table(const ReportData& data);
 [[nodiscard]] Markup effects_section(const ReportData& data);
 [[nodiscard]] Markup frames_section(const ReportData& data);
 [[nodiscard]] Markup provenance_section(const ReportData& data);

@@ -118,7 +118,8 @@ Markup set_up_section(const ReportData& data) {
            {"One pixel on the plate", number_or_missing(field_mm, 4, "mm", "needs distance and IFOV")},
            {"Target", text_or_missing(data.target, "not recorded")},
            {"Observer", text_or_missing(data.observer, "not recorded")}});
-  return section("Set-up and geometry", geometry + plate_table(data) + (data.camera ? set_up_table(data) : Markup{}));
+  return section("Set-up and geometry",
+                 geometry + plate_table(data) + (data.camera ? set_up_table(data) : Markup{}) + target_table(data));
 }
 
 Markup effects_section(const ReportData& data) {

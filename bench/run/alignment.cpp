@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/core/host_clock.h"
 #include "bench/plan/plan_options.h"
 #include "bench/report/number_format.h"
 #include "bench/run/devices.h"
@@ -170,7 +171,7 @@ Result<void> align_plan(const Plan& plan, const AlignmentListener& listener, std
   auto inputs = read_inputs(plan);
   if (!inputs) return tl::unexpected(inputs.error());
   if (listener.on_phase) listener.on_phase("opening " + plan.camera.id);
-  auto bench = open_bench(plan, inputs->plates, stop, listener.ask_operator);
+  auto bench = open_bench(plan, inputs->plates, stop);
   if (!bench) return tl::unexpected(bench.error());
   if (listener.on_open) listener.on_open(bench->camera->info());
   if (listener.on_frame) bench->camera = observed_source(std::move(bench->camera), listener.on_frame);
@@ -200,7 +201,7 @@ Result<void> align_plan(const Plan& plan, const AlignmentListener& listener, std
   taking.integrity.width = info.width;
   taking.integrity.height = info.height;
   FrameTaker taker(*bench->camera, taking);
-  taker.scene_changed();
+  taker.scene_changed(monotonic_ns());
   auto ended = look_until_stopped(taker, *aligning, options, listener, stop);
   bench->camera->stop();
   return ended;

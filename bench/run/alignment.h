@@ -56,7 +56,6 @@ struct AlignmentListener {
   std::function<void(const SourceInfo&)> on_open;
   std::function<void(const Frame&)> on_frame;
   std::function<void(const Alignment&)> on_alignment;
-  AskOperator ask_operator;
 };
 
 /// What one averaged picture (kelvin) says. `first`: the registration of the first look, to see drift; `sides`: of the

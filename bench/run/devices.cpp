@@ -7,6 +7,8 @@
 #include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
 #include "bench/plan/resources.h"
+#include "bench/run/bench_host.h"
+#include "bench/run/reconnecting_source.h"
 #include "tod/instruments/operator_terminal.h"
 #include "tod/instruments/prompt_target.h"
 #include "tod/instruments/scpi_target.h"
@@ -73,27 +75,14 @@ class RemappedTarget final : public Target {
   std::map<double, double> shown_;
 };
 
-TargetCapabilities times_of(const TargetPlan& plan) {
-  TargetCapabilities times;
-  times.plate_change_s = plan.plate_change_s;
-  times.mounting_change_s = plan.mounting_change_s;
-  times.contrast_change_s = plan.contrast_change_s;
-  times.shift_change_s = plan.shift_change_s;
-  return times;
-}
-
 Result<std::unique_ptr<Target>> open_target(const Plan& plan, std::stop_token stop, const AskOperator& ask_operator) {
-  if (plan.target.kind == TargetKind::prompt) {
-    PromptTargetOptions options;
-    options.times = times_of(plan.target);
-    return prompt_target(ask_operator ? ask_operator : operator_at_terminal(std::cerr, descriptor_lines(0)), options);
-  }
+  if (plan.target.kind == TargetKind::prompt)
+    return prompt_target(ask_operator ? ask_operator : operator_at_terminal(std::cerr, descriptor_lines(0)));
   ScpiTargetOptions options;
   options.black_body = plan.target.black_body;
   options.stage = plan.target.stage;
   options.settle_timeout = std::chrono::milliseconds(static_cast<long>(plan.target.settle_timeout_s * 1000));
   options.poll_interval = std::chrono::milliseconds(10);
-  options.times = times_of(plan.target);
   return open_scpi_target(options, stop);
 }
 
@@ -111,15 +100,6 @@ Result<void> write_settings(FrameSource& camera, const std::map<std::string, std
 }
 
 }  // namespace
-
-void let_camera_come_back(OpenedBench& bench, ReopenCamera reopen, ReconnectionOptions options) {
-  const auto patience = options.patience;
-  auto camera = std::make_unique<ReconnectingSource>(std::move(bench.camera), std::move(reopen), std::move(options));
-  bench.camera_return = {.patience = patience,
-                         .recover = [source = camera.get()](std::stop_token stop) { return source->recover(stop); },
-                         .confirm = [source = camera.get()] { source->confirm_registration(); }};
-  bench.camera = std::move(camera);
-}
 
 CameraRegistry camera_registry() {
   CameraRegistry registry;
@@ -147,11 +127,16 @@ OpenedBench simulated_bench(std::shared_ptr<const SensorModel> model, const std:
   auto target = scene_target(holder, plates);
   if (!shown_delta_t_k.empty())
     target = std::make_unique<RemappedTarget>(std::move(target), std::move(shown_delta_t_k));
-  return {.camera = simulated_source(std::move(model), holder, "1"), .target = std::move(target), .simulated = true};
+  OpenedBench bench;
+  bench.camera = simulated_source(std::move(model), holder, "1");
+  bench.target = std::move(target);
+  bench.simulated = true;
+  return bench;
 }
 
 Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>& plates, std::stop_token stop,
-                               const AskOperator& ask_operator) {
+                               const ExperimentHost& host) {
+  BenchHostOptions hosting{.pause = host.pause};
   if (plan.target.kind == TargetKind::scene) {
     const auto sensor = camera_name(plan.camera.id, camera_scheme::sim);
     if (!sensor) {
@@ -164,7 +149,9 @@ Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>&
     auto accuracy = accuracy_of(plan);
     if (!accuracy) return tl::unexpected(accuracy.error());
     auto model = std::make_shared<const SensorModel>(*spec, full_plan(*spec, {}, {}), *accuracy, plan.seed);
-    return simulated_bench(std::move(model), plates, plan.target.distance_m, {});
+    auto bench = simulated_bench(std::move(model), plates, plan.target.distance_m, {});
+    bench.host = bench_host(hosting);
+    return bench;
   }
   OpenedBench bench;
   auto camera = camera_registry().open(plan.camera.id);
@@ -173,13 +160,17 @@ Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>&
   if (auto written = write_settings(*bench.camera, plan.camera.settings); !written) {
     return fail("camera " + plan.camera.id, written.error());
   }
-  if (free_running(plan)) bench.frames_while_presenting = FramesMeanwhile::take;
+  if (free_running(plan)) hosting.frames_while_presenting = FramesMeanwhile::take;
   if (free_running(plan) && plan.camera.reconnect_s > 0) {
-    let_camera_come_back(bench, [id = plan.camera.id] { return camera_registry().open(id); },
-                         {.patience = std::chrono::milliseconds(static_cast<long>(plan.camera.reconnect_s * 1000)),
-                          .settings = plan.camera.settings});
+    bench.patience = std::chrono::milliseconds(static_cast<long>(plan.camera.reconnect_s * 1000));
+    auto returning = std::make_unique<ReconnectingSource>(
+        std::move(bench.camera), [id = plan.camera.id] { return camera_registry().open(id); },
+        ReconnectionOptions{.patience = bench.patience, .settings = plan.camera.settings});
+    hosting.camera = returning.get();
+    bench.camera = std::move(returning);
   }
-  auto target = open_target(plan, stop, ask_operator);
+  bench.host = bench_host(hosting);
+  auto target = open_target(plan, stop, host.ask_operator);
   if (!target) return fail("opening the target", target.error());
   bench.target = std::move(*target);
   return bench;

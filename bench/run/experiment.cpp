@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bench/report/report.h"
+#include "bench/run/bench_host.h"
 #include "bench/run/comparison_forecast.h"
 #include "bench/run/experiment_inputs.h"
 #include "bench/run/observed_source.h"
@@ -35,27 +36,34 @@ void note(SessionFolder& folder, const ExperimentListener& listener, const std::
   if (listener.on_note) listener.on_note(sentence);
 }
 
-/// One run of the measurement into a trials file.
+/// One run of the measurement into its files of trials and presentations.
 class Recorder {
  public:
   Recorder(SessionFolder& folder, const ExperimentListener& listener, std::stop_token stop)
       : folder_(folder), listener_(listener), forward_(std::move(stop), [this] { halt_.request_stop(); }) {}
 
-  /// Trials reach the disk one by one. A disk that refuses stops the run with `io`.
+  /// Trials and presentations reach the disk one by one. A disk that refuses stops the run with `io`.
   [[nodiscard]] Result<MeasurementResult> run(OpenedBench& bench, Observer& observer, TrialSchedule& schedule,
                                               const MeasurementOptions& options, SessionCurve which) {
     auto writer = folder_.open_trials(which);
     if (!writer) return tl::unexpected(writer.error());
+    auto targets = folder_.open_targets(which);
+    if (!targets) return tl::unexpected(targets.error());
     std::optional<Error> write_error;
+    const auto keep = [&](const Result<void>& written) {
+      if (written || write_error) return;
+      write_error = written.error();
+      halt_.request_stop();
+    };
     MeasurementListener events;
+    // A simulated exposure happens at no time of the host: its files are the same whenever it is made.
     events.on_trial = [&](Trial trial) {
-      if (write_error) return;
-      // A simulated exposure happens at no time of the host: its file is the same whenever it is made.
       if (bench.simulated) trial.host_time_ns = trial.device_time_ns;
-      if (auto written = writer->append(trial); !written) {
-        write_error = written.error();
-        halt_.request_stop();
-      }
+      if (!write_error) keep(writer->append(trial));
+    };
+    events.on_presentation = [&](Presentation shown) {
+      if (bench.simulated) shown.host_time_ns.reset();
+      if (!write_error) keep(targets->append(shown));
     };
     events.on_patch = [&](const Trial& trial, const Patch& patch) {
       if (listener_.on_trial && !write_error) listener_.on_trial(which, trial, patch);
@@ -63,29 +71,18 @@ class Recorder {
     events.on_set_up = [&](const SetUpRecord& set_up) {
       if (listener_.on_set_up) listener_.on_set_up(which, set_up);
     };
-    if (listener_.pause != nullptr || bench.remember_rest) {
-      events.paused = [this, &bench] {
-        const bool rests = listener_.pause != nullptr && listener_.pause->rest(halt_.get_token());
-        return bench.remember_rest ? bench.remember_rest(rests) : rests;
-      };
-    }
     events.on_progress = listener_.on_progress;
-    events.asked_while_presenting = bench.remember_calls;
     events.on_note = [&](const std::string& sentence) { note(folder_, listener_, sentence); };
     events.on_rejected = [&](const RejectedFrame& frame) {
       (void)folder_.log("frame " + std::to_string(frame.sequence) +
                         " not used: " + std::string(to_string(frame.reason)) +
                         (frame.seen ? " (" + std::string(to_string(*frame.seen)) + ")" : ""));
     };
-    if (bench.camera_return.recover) {
-      events.on_lost = [&](const Error&, std::stop_token abort) {
-        say_that_camera_is_awaited(bench);
-        return bench.camera_return.recover(std::move(abort));
-      };
-      events.on_resumed = bench.camera_return.confirm;
-    }
-    auto result = measure(*bench.camera, *bench.target, observer, schedule, options, events, halt_.get_token());
-    if (auto synced = writer->sync(); !synced && !write_error) write_error = synced.error();
+    events.on_lost = [&](const Error&) { say_that_camera_is_awaited(bench); };
+    auto result =
+        measure(*bench.camera, *bench.target, observer, schedule, options, *bench.host, events, halt_.get_token());
+    keep(writer->sync());
+    keep(targets->sync());
     if (write_error) {
       if (!result) return tl::unexpected(*write_error);
       result->ended_by = write_error;
@@ -96,13 +93,13 @@ class Recorder {
  private:
   void say_that_camera_is_awaited(const OpenedBench& bench) {
     const SourceInfo& info = bench.camera->info();
-    const auto patience_s = std::chrono::duration<double>(bench.camera_return.patience).count();
+    const auto patience_s = std::chrono::duration<double>(bench.patience).count();
     if (patience_s > 0) {
       note(folder_, listener_,
            "camera lost, waiting " + number_text(patience_s) + " s for " + info.model + " with serial number " +
                info.serial);
     }
-    if (listener_.on_lost) listener_.on_lost(info, bench.camera_return.patience);
+    if (listener_.on_lost) listener_.on_lost(info, bench.patience);
   }
 
   SessionFolder& folder_;
@@ -151,11 +148,12 @@ DirectResults direct_results(const TodCurve& curve, const ExperimentInputs& inpu
 }
 
 Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, SessionFolder& folder,
-                              SessionCurve which, std::map<double, double> shown_delta_t_k,
+                              SessionCurve which, std::map<double, double> shown_delta_t_k, const ExperimentHost& host,
                               const ExperimentListener& listener, std::stop_token stop) {
   const auto begin = Clock::now();
   auto set_up = simulated_set_up(plan, inputs, std::move(shown_delta_t_k), stop);
   if (!set_up) return tl::unexpected(set_up.error());
+  set_up->bench.host = bench_host({.pause = host.pause});
   TemplateObserver observer(inputs.observer, triangle_alternatives());
   auto result =
       Recorder(folder, listener, stop).run(set_up->bench, observer, *set_up->schedule, set_up->options, which);
@@ -262,11 +260,12 @@ struct TwinResults {
 
 /// The simulated twin at the contrasts that the camera saw, and the comparison.
 TwinResults run_twin(const Plan& plan, const ExperimentInputs& inputs, const TodCurve& measured, SessionFolder& folder,
-                     const ExperimentListener& listener, std::stop_token stop) {
+                     const ExperimentHost& host, const ExperimentListener& listener, std::stop_token stop) {
   phase(folder, listener, "simulating its twin " + inputs.sensor.name);
   std::map<double, double> shown;
   for (const auto& point : measured.points) shown[point.set_delta_t_k] = point.delta_t_k;
-  auto twin = run_simulated(plan, inputs, folder, SessionCurve::twin, std::move(shown), listener, std::move(stop));
+  auto twin =
+      run_simulated(plan, inputs, folder, SessionCurve::twin, std::move(shown), host, listener, std::move(stop));
   TwinResults results;
   if (!twin) {
     results.ended_by = with_context("the simulated twin", twin.error());
@@ -300,9 +299,7 @@ Result<MeasurementResult> run_measured(const Plan& plan, const ExperimentInputs&
   auto response = simulated_responses(model, plan, inputs.plates, options, stop);
   if (!response) return tl::unexpected(response.error());
   options.contrast_response = std::move(*response);
-  options.now_ns = bench.now_ns;
   options.free_running = !bench.simulated;
-  options.frames_while_presenting = bench.frames_while_presenting;
   const auto schedule =
       make_schedule(plan, inputs.plates, plan.camera.ifov_mrad, Side::measured, RandomStream(plan.seed, "schedule"));
   return Recorder(folder, listener, std::move(stop)).run(bench, observer, *schedule, options, SessionCurve::main);
@@ -326,7 +323,7 @@ Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOption
 
   for (const auto& warning : inputs->warnings) note(*folder, listener, warning);
   phase(*folder, listener, "simulating " + inputs->sensor.name);
-  auto run = run_simulated(plan, *inputs, *folder, SessionCurve::main, {}, listener, stop);
+  auto run = run_simulated(plan, *inputs, *folder, SessionCurve::main, {}, options.host, listener, stop);
   if (!run) {
     // Below what can be seen, the plate may not be found either: that is the reason, not its symptom.
     if (!inputs->identifiable && run.error().code == ErrorCode::calibration)
@@ -356,7 +353,7 @@ Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions
   if (!inputs) return tl::unexpected(inputs.error());
   if (auto possible = check_tolerance(plan, planner); !possible) return tl::unexpected(possible.error());
   if (listener.on_phase) listener.on_phase("opening " + plan.camera.id);
-  auto bench = open_bench(plan, inputs->plates, stop, listener.ask_operator);
+  auto bench = open_bench(plan, inputs->plates, stop, options.host);
   if (!bench) return tl::unexpected(bench.error());
   return measure_on_bench(plan, *inputs, *std::move(bench), options, listener, std::move(stop));
 }
@@ -414,7 +411,7 @@ Result<ExperimentOutcome> measure_on_bench(const Plan& plan, const ExperimentInp
                             .figures = figures_of(*provenance.run),
                             .ended_by = result->ended_by};
   if (!outcome.ended_by) {
-    TwinResults twin = run_twin(plan, inputs, outcome.curve, *folder, listener, stop);
+    TwinResults twin = run_twin(plan, inputs, outcome.curve, *folder, options.host, listener, stop);
     provenance.twin_run = std::move(twin.run);
     outcome.twin = std::move(twin.curve);
     outcome.comparison = std::move(twin.comparison);

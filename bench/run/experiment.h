@@ -14,14 +14,14 @@
 #include "bench/plan/plan.h"
 #include "bench/plan/plan_options.h"
 #include "bench/run/devices.h"
+#include "bench/run/experiment_host.h"
 #include "bench/run/experiment_inputs.h"
-#include "bench/run/pause.h"
 #include "bench/session/json_output.h"
 #include "bench/session/session_folder.h"
 
 namespace todbench {
 
-/// What goes on, for a terminal or a window. Called from the thread of the run.
+/// What goes on, for a terminal or a window; it decides nothing. Called from the thread of the run.
 struct ExperimentListener {
   std::function<void(std::string_view phase)> on_phase{};
   std::function<void(std::size_t done, std::size_t planned)> on_progress{};
@@ -36,15 +36,12 @@ struct ExperimentListener {
   std::function<void(SessionCurve, const SetUpRecord&)> on_set_up{};
   /// A trial that is on disk, and the patch that was judged, lent for the call.
   std::function<void(SessionCurve, const Trial&, const Patch&)> on_trial{};
-  /// Lets a run rest between two presentations; null: it never does. Outlives the run.
-  const Pause* pause = nullptr;
-  /// Answers a request to a target of kind prompt; none: the terminal.
-  AskOperator ask_operator{};
 };
 
 struct ExperimentOptions {
   std::filesystem::path folder;
   ExistingFolder existing = ExistingFolder::refuse;
+  ExperimentHost host{};  ///< who commands the run
 };
 
 /// What a run came to. The session folder holds the same.

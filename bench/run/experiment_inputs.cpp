@@ -75,6 +75,7 @@ MeasurementOptions simulated_options(const Plan& plan, const ExperimentInputs& i
   options.frames_after_change = 0;
   options.nuc_interval_s = 0;
   options.free_running = false;
+  options.max_readback_deviation_k = 0;  // its scene shows what the camera saw, not what the plan sets
   options.integrity.reject_frozen = inputs.effects.simulates(Effect::temporal_noise) && inputs.sensor.netd_k > 0;
   return options;
 }

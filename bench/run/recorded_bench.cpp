@@ -1,52 +1,130 @@
 #include "bench/run/recorded_bench.h"
 
-#include <memory>
-#include <optional>
+#include <string>
 #include <utility>
-#include <vector>
 
 #include "acquisition/recording/frame_stream.h"
 #include "acquisition/recording/recording_camera.h"
 #include "bench/session/provenance.h"
+#include "bench/text/text.h"
 
 namespace todbench {
 namespace {
 
+constexpr const char* format_key = "answers_format";
 constexpr const char* target_key = "target";
 constexpr const char* sets_shift_key = "target_sets_shift";
 constexpr const char* simulated_key = "simulated";
 constexpr const char* comes_back_key = "camera_comes_back";
 constexpr const char* frames_meanwhile_key = "frames_while_presenting";
 
-/// A reading that says how waiting for a lost camera ended.
-constexpr std::int64_t stayed_away = 0, came_back = 1;
-
 std::string yes_no(bool value) {
   return value ? "yes" : "no";
 }
 
-/// Shows nothing: what it showed is in the frames.
-class RecordedTarget final : public Target {
+/// A recording that is written. An answer that the disk refuses ends it, and with it the next frame fails.
+using Stream = std::shared_ptr<FrameStreamWriter>;
+
+class RecordingHost final : public MeasurementHost {
  public:
-  explicit RecordedTarget(TargetCapabilities capabilities) : capabilities_(std::move(capabilities)) {}
-  [[nodiscard]] const TargetCapabilities& capabilities() const override { return capabilities_; }
+  RecordingHost(std::unique_ptr<MeasurementHost> host, Stream stream)
+      : host_(std::move(host)), stream_(std::move(stream)) {}
+
+  [[nodiscard]] Result<std::int64_t> now_ns(Moment why) override {
+    auto now = host_->now_ns(why);
+    if (now) (void)stream_->append_reading(clock_answer(why, *now));
+    return now;
+  }
+  [[nodiscard]] Result<bool> rests(std::stop_token stop) override {
+    auto rests = host_->rests(std::move(stop));
+    if (rests) (void)stream_->append_reading(rest_answer(*rests));
+    return rests;
+  }
+  [[nodiscard]] FramesMeanwhile frames_while_presenting() const override { return host_->frames_while_presenting(); }
+  [[nodiscard]] Result<std::int64_t> asked_while_presenting(std::int64_t calls) override {
+    auto asked = host_->asked_while_presenting(calls);
+    if (asked) (void)stream_->append_reading(calls_answer(*asked));
+    return asked;
+  }
+  [[nodiscard]] bool recovers() const override { return host_->recovers(); }
+  [[nodiscard]] Result<void> recover(std::stop_token stop) override {
+    auto back = host_->recover(std::move(stop));
+    (void)stream_->append_reading(recovery_answer(back));
+    return back;
+  }
+  void resumed() override { host_->resumed(); }
+
+ private:
+  std::unique_ptr<MeasurementHost> host_;
+  Stream stream_;
+};
+
+class RecordingTarget final : public Target {
+ public:
+  RecordingTarget(std::unique_ptr<Target> target, Stream stream)
+      : target_(std::move(target)), stream_(std::move(stream)) {}
+  [[nodiscard]] const TargetCapabilities& capabilities() const override { return target_->capabilities(); }
   [[nodiscard]] Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) override {
-    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped before the target was presented");
-    return PresentedTarget{
-        .state = state, .plate_temperature_k = std::nullopt, .black_body_temperature_k = std::nullopt, .settling_s = 0};
+    auto said = target_->present(state, std::move(stop));
+    (void)stream_->append_reading(target_answer(state, said));
+    return said;
   }
 
  private:
+  std::unique_ptr<Target> target_;
+  Stream stream_;
+};
+
+class ReplayedHost final : public MeasurementHost {
+ public:
+  ReplayedHost(std::shared_ptr<RecordedAnswers> answers, FramesMeanwhile frames, bool recovers, const Pause* pause)
+      : answers_(std::move(answers)), frames_(frames), recovers_(recovers), pause_(pause) {}
+
+  [[nodiscard]] Result<std::int64_t> now_ns(Moment why) override { return answers_->clock(why); }
+  [[nodiscard]] Result<bool> rests(std::stop_token stop) override {
+    while (pause_ != nullptr && !stop.stop_requested() && pause_->rest(stop)) continue;
+    return answers_->rest();
+  }
+  [[nodiscard]] FramesMeanwhile frames_while_presenting() const override { return frames_; }
+  [[nodiscard]] Result<std::int64_t> asked_while_presenting(std::int64_t) override { return answers_->calls(); }
+  [[nodiscard]] bool recovers() const override { return recovers_; }
+  [[nodiscard]] Result<void> recover(std::stop_token) override { return answers_->recovery(); }
+  void resumed() override {}
+
+ private:
+  std::shared_ptr<RecordedAnswers> answers_;
+  FramesMeanwhile frames_;
+  bool recovers_;
+  const Pause* pause_;
+};
+
+/// Shows nothing: what it showed is in the frames. Says what it said.
+class ReplayedTarget final : public Target {
+ public:
+  ReplayedTarget(std::shared_ptr<RecordedAnswers> answers, TargetCapabilities capabilities)
+      : answers_(std::move(answers)), capabilities_(std::move(capabilities)) {}
+  [[nodiscard]] const TargetCapabilities& capabilities() const override { return capabilities_; }
+  [[nodiscard]] Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) override {
+    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped before the target was presented");
+    return answers_->target(state);
+  }
+
+ private:
+  std::shared_ptr<RecordedAnswers> answers_;
   TargetCapabilities capabilities_;
 };
 
-/// Readings of then, one after the other, whoever asks.
-struct Readings {
-  std::vector<std::int64_t> values;
-  std::size_t next = 0;
-  /// Nothing behind the last one.
-  std::optional<std::int64_t> take() { return next < values.size() ? std::optional(values[next++]) : std::nullopt; }
-};
+/// A recording whose answers this version understands. The first versions wrote answers without their questions.
+Result<void> check_format(const std::filesystem::path& file, const std::map<std::string, std::string>& annotations) {
+  if (!annotations.contains(sets_shift_key))
+    return fail(ErrorCode::invalid_input, file.string() + ": not the recording of a measurement");
+  const auto found = annotations.find(format_key);
+  const std::string format = found == annotations.end() ? "1" : found->second;
+  if (format == answers_format) return {};
+  return fail(ErrorCode::invalid_input, file.string() + ": expected a measurement with answers in format " +
+                                            std::string(answers_format) + ", found format " + one_line(format) +
+                                            ": measured by another version of the program, which can replay it");
+}
 
 }  // namespace
 
@@ -62,41 +140,23 @@ Result<void> record_bench(OpenedBench& bench, const std::filesystem::path& sessi
   StreamHeader header;
   header.info = bench.camera->info();
   header.created_utc = utc_now();
-  header.created_host_ns = bench.now_ns();
-  header.annotations = {{target_key, bench.target->capabilities().description},
+  header.created_host_ns = monotonic_ns();
+  header.annotations = {{format_key, std::string(answers_format)},
+                        {target_key, bench.target->capabilities().description},
                         {sets_shift_key, yes_no(bench.target->capabilities().sets_shift)},
                         {simulated_key, yes_no(bench.simulated)},
-                        {comes_back_key, yes_no(bench.camera_return.recover != nullptr)},
-                        {frames_meanwhile_key, yes_no(bench.frames_while_presenting == FramesMeanwhile::take)}};
+                        {comes_back_key, yes_no(bench.host->recovers())},
+                        {frames_meanwhile_key, yes_no(bench.host->frames_while_presenting() == FramesMeanwhile::take)}};
   auto writer = FrameStreamWriter::create(file, header);
   if (!writer) return tl::unexpected(writer.error());
   const auto stream = std::make_shared<FrameStreamWriter>(*std::move(writer));
   bench.camera = recording_camera(std::move(bench.camera), stream);
-  bench.now_ns = [stream, clock = std::move(bench.now_ns)] {
-    const std::int64_t now = clock();
-    // A reading that the disk refuses ends the recording, and with it the next frame fails.
-    (void)stream->append_reading(now);
-    return now;
-  };
-  bench.remember_rest = [stream](bool rests) {
-    (void)stream->append_reading(rests ? 1 : 0);
-    return rests;
-  };
-  bench.remember_calls = [stream](std::int64_t calls) {
-    (void)stream->append_reading(calls);
-    return calls;
-  };
-  if (bench.camera_return.recover) {
-    bench.camera_return.recover = [stream, recover = std::move(bench.camera_return.recover)](std::stop_token stop) {
-      auto back = recover(std::move(stop));
-      (void)stream->append_reading(back ? came_back : stayed_away);
-      return back;
-    };
-  }
+  bench.target = std::make_unique<RecordingTarget>(std::move(bench.target), stream);
+  bench.host = std::make_unique<RecordingHost>(std::move(bench.host), stream);
   return {};
 }
 
-Result<OpenedBench> open_recorded_bench(const std::filesystem::path& session) {
+Result<RecordedBench> open_recorded_bench(const std::filesystem::path& session, const Pause* pause) {
   const std::filesystem::path file = recorded_frames(session);
   std::error_code problem;
   if (!std::filesystem::exists(file, problem)) {
@@ -107,31 +167,17 @@ Result<OpenedBench> open_recorded_bench(const std::filesystem::path& session) {
   auto stream = open_frame_stream(file);
   if (!stream) return tl::unexpected(stream.error());
   auto& annotations = stream->header.annotations;
-  if (!annotations.contains(sets_shift_key))
-    return fail(ErrorCode::invalid_input, file.string() + ": not the recording of a measurement");
-  TargetCapabilities capabilities;
-  capabilities.description = annotations[target_key];
-  capabilities.sets_shift = annotations[sets_shift_key] == "yes";
-  OpenedBench bench;
-  bench.simulated = annotations[simulated_key] == "yes";
-  bench.target = std::make_unique<RecordedTarget>(std::move(capabilities));
-  const auto readings = std::make_shared<Readings>(Readings{.values = std::move(stream->readings)});
-  // Behind the last reading time stands still and nobody rests: the frames end there too.
-  const std::int64_t last = readings->values.empty() ? 0 : readings->values.back();
-  bench.now_ns = [readings, last] { return readings->take().value_or(last); };
-  bench.remember_rest = [readings](bool) { return readings->take().value_or(0) == 1; };
-  if (annotations[frames_meanwhile_key] == "yes") {
-    bench.frames_while_presenting = FramesMeanwhile::repeat;
-    bench.remember_calls = [readings](std::int64_t) { return readings->take().value_or(0); };
-  }
-  if (annotations[comes_back_key] == "yes") {
-    bench.camera_return.recover = [readings](const std::stop_token&) -> Result<void> {
-      if (readings->take().value_or(stayed_away) == came_back) return {};
-      return fail(ErrorCode::disconnected, "the recorded camera was lost and did not come back");
-    };
-  }
-  bench.camera = recorded_source(std::move(stream->recording), Playback::replay);
-  return bench;
+  if (auto known = check_format(file, annotations); !known) return tl::unexpected(known.error());
+  const auto answers = std::make_shared<RecordedAnswers>(file.string(), std::move(stream->readings));
+  const auto frames = annotations[frames_meanwhile_key] == "yes" ? FramesMeanwhile::repeat : FramesMeanwhile::leave;
+  RecordedBench out{.bench = {}, .answers = answers};
+  out.bench.camera = recorded_source(std::move(stream->recording), Playback::replay);
+  out.bench.target = std::make_unique<ReplayedTarget>(
+      answers,
+      TargetCapabilities{.description = annotations[target_key], .sets_shift = annotations[sets_shift_key] == "yes"});
+  out.bench.simulated = annotations[simulated_key] == "yes";
+  out.bench.host = std::make_unique<ReplayedHost>(answers, frames, annotations[comes_back_key] == "yes", pause);
+  return out;
 }
 
 }  // namespace todbench

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 
 #include "bench/run/devices.h"
+#include "bench/run/recorded_answers.h"
 
 namespace todbench {
 
@@ -11,12 +13,20 @@ namespace todbench {
 [[nodiscard]] std::filesystem::path recorded_frames(const std::filesystem::path& session);
 
 /// From now on everything that the measurement learns from the bench beside what the plan says is appended to the
-/// recording of the session: every frame, every failure, every reading of the clock, what the target can do,
-/// how often a frame was asked for while the target changed, and whether a lost camera came back. `io`.
+/// recording of the session: every frame, every failure, everything that the target said, and every answer of the host,
+/// each with what was asked. `io`.
 [[nodiscard]] Result<void> record_bench(OpenedBench& bench, const std::filesystem::path& session);
 
+/// A bench of then.
+struct RecordedBench {
+  OpenedBench bench;
+  std::shared_ptr<const RecordedAnswers> answers;  ///< tells afterwards whether the questions were those of then
+};
+
 /// The bench as the recording of a session knows it. A measurement that asks it in the same order gets the same
-/// answers, bit for bit. Errors: `invalid_input` (no recording in the session, or not one of a measurement), `io`.
-[[nodiscard]] Result<OpenedBench> open_recorded_bench(const std::filesystem::path& session);
+/// answers, bit for bit; one that asks otherwise fails with `invalid_input`. `pause`: lets the replay rest; null: it
+/// never does; outlives the bench. Errors: `invalid_input` (no recording in the session, not one of a measurement, or
+/// one with answers in another format), `io`.
+[[nodiscard]] Result<RecordedBench> open_recorded_bench(const std::filesystem::path& session, const Pause* pause);
 
 }  // namespace todbench

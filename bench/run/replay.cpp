@@ -36,13 +36,15 @@ Result<ReplayOutcome> replay_session(const std::filesystem::path& session, const
   if (auto unchanged = check_unchanged(session); !unchanged) return tl::unexpected(unchanged.error());
   auto recorded = read_session(session);
   if (!recorded) return tl::unexpected(recorded.error());
-  auto bench = open_recorded_bench(session);
-  if (!bench) return tl::unexpected(bench.error());
+  auto recording = open_recorded_bench(session, options.host.pause);
+  if (!recording) return tl::unexpected(recording.error());
   Plan plan = recorded->plan;
   plan.measurement.record_frames = false;
   auto inputs = read_inputs(plan);
   if (!inputs) return tl::unexpected(inputs.error());
-  auto run = measure_on_bench(plan, *inputs, *std::move(bench), options, listener, std::move(stop));
+  auto run = measure_on_bench(plan, *inputs, std::move(recording->bench), options, listener, std::move(stop));
+  // What was measured with answers to other questions is no replay.
+  if (auto agreed = recording->answers->agreed(); !agreed) return tl::unexpected(agreed.error());
   if (!run) return tl::unexpected(run.error());
 
   const bool cut_off = recorded->provenance.state == SessionState::running;

@@ -17,7 +17,8 @@ struct ReplayOutcome {
 /// Measures again with the plan of the session and the frames in it, simulates the twin again, and compares trials and
 /// fits byte for byte. A session that was cut off is replayed as far as its frames go, and compared as far as its
 /// trials go. A loss that the run survived is replayed like everything
-/// else. Errors: `invalid_input` (not a session, no recording in it, files that were changed since), those of
+/// else. Errors: `invalid_input` (not a session, no recording in it, files that were changed since, a recording that
+/// another version of the program made and that this one would ask otherwise), those of
 /// measure_plan().
 [[nodiscard]] Result<ReplayOutcome> replay_session(const std::filesystem::path& session,
                                                    const ExperimentOptions& options, const ExperimentListener& listener,

@@ -71,6 +71,7 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
   auto plates = plates_of(plan);
   if (!plates) return tl::unexpected(plates.error());
   data.plates = std::move(*plates);
+  data.presentations = session.presentations;
   data.observer = plan.observer;
   data.fit = fit_options(plan);
   if (provenance.side == Side::measured) {

@@ -23,6 +23,10 @@ std::filesystem::path trials_file(const std::filesystem::path& folder, SessionCu
   return folder / (which == SessionCurve::main ? "trials.csv" : "trials_simulated.csv");
 }
 
+std::filesystem::path targets_file(const std::filesystem::path& folder, SessionCurve which) {
+  return folder / (which == SessionCurve::main ? "targets.csv" : "targets_simulated.csv");
+}
+
 /// A folder that cannot be had is a wrong choice; a disk that is full or broken is not.
 ErrorCode code_of(const std::error_code& problem) {
   for (const std::errc of_the_disk : {std::errc::no_space_on_device, std::errc::io_error}) {
@@ -139,6 +143,18 @@ Result<void> read_all_trials(const std::filesystem::path& folder, Session& sessi
   return {};
 }
 
+Result<void> read_all_targets(const std::filesystem::path& folder, Session& session) {
+  for (const auto& [which, target] : {std::pair(SessionCurve::main, &session.presentations),
+                                      std::pair(SessionCurve::twin, &session.twin_presentations)}) {
+    const std::filesystem::path file = targets_file(folder, which);
+    if (!is_there(file)) continue;
+    Result<std::vector<Presentation>> presentations = read_targets(file);
+    if (!presentations) return tl::unexpected(presentations.error());
+    *target = *std::move(presentations);
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string session_folder_name(const std::string& plan_name) {
@@ -208,6 +224,10 @@ Result<TrialsWriter> SessionFolder::open_trials(SessionCurve which) {
   return TrialsWriter::create(trials_file(folder_, which));
 }
 
+Result<TargetsWriter> SessionFolder::open_targets(SessionCurve which) {
+  return TargetsWriter::create(targets_file(folder_, which));
+}
+
 Result<void> SessionFolder::write_curves(const TodCurve& main, const std::optional<TodCurve>& twin, Side side) {
   Json json;
   json["main"] = curve_record(main);
@@ -269,6 +289,7 @@ Result<Session> read_session(const std::filesystem::path& folder) {
   session.provenance = *std::move(provenance);
 
   if (const Result<void> read = read_all_trials(folder, session); !read) return tl::unexpected(read.error());
+  if (const Result<void> read = read_all_targets(folder, session); !read) return tl::unexpected(read.error());
   if (is_there(folder / "fits.json")) {
     if (const Result<void> read = read_curves(folder / "fits.json", session); !read)
       return tl::unexpected(read.error());

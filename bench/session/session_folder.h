@@ -12,6 +12,7 @@
 #include "bench/plan/plan.h"
 #include "bench/session/manifest.h"
 #include "bench/session/provenance.h"
+#include "bench/session/targets_csv.h"
 #include "bench/session/trials_csv.h"
 #include "sim_devices/prediction/cost_frontier.h"
 #include "tod/comparison/comparison.h"
@@ -32,7 +33,7 @@ enum class ExistingFolder {
 /// Which of the two curves of a session: the one that the session is about, or its simulated twin.
 enum class SessionCurve { main, twin };
 
-/// Writes a session. Everything but trials and log is written atomically. One thread at a time.
+/// Writes a session. Everything but trials, targets and log is written atomically. One thread at a time.
 /// Every function fails with `io` and the path when the disk refuses.
 class SessionFolder {
  public:
@@ -48,6 +49,8 @@ class SessionFolder {
   [[nodiscard]] Result<void> write_provenance(const Provenance& provenance);
   /// trials.csv or trials_simulated.csv.
   [[nodiscard]] Result<TrialsWriter> open_trials(SessionCurve which);
+  /// targets.csv or targets_simulated.csv.
+  [[nodiscard]] Result<TargetsWriter> open_targets(SessionCurve which);
   /// fits.json and curve.csv.
   [[nodiscard]] Result<void> write_curves(const TodCurve& main, const std::optional<TodCurve>& twin, Side side);
   /// comparison.json.
@@ -73,6 +76,8 @@ struct Session {
   Provenance provenance;
   std::vector<Trial> trials;  ///< of the main curve
   std::vector<Trial> twin_trials;
+  std::vector<Presentation> presentations;  ///< those of `trials`; empty in a session without targets.csv
+  std::vector<Presentation> twin_presentations;
   std::optional<TodCurve> curve;  ///< as it was fitted; nothing where the run ended before
   std::optional<TodCurve> twin;
   std::optional<Comparison> comparison;

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
-#include <span>
 #include <string>
 
+#include "bench/session/csv_fields.h"
 #include "bench/text/csv_table.h"
 #include "bench/text/text.h"
 
@@ -19,53 +18,6 @@ constexpr std::array<std::string_view, 21> trial_columns{
     "presentation", "plate",      "mounting",   "triangle", "set_delta_t_k",  "delta_t_k",    "size_mm",
     "size_mrad",    "size_px",    "truth",      "answer",   "score_up",       "score_right",  "score_down",
     "score_left",   "phase_x_px", "phase_y_px", "frame",    "device_time_ns", "host_time_ns", "since_nuc_s"};
-
-template <typename Whole>
-std::optional<Whole> parse_whole(std::string_view text) {
-  Whole value{};
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
-/// Takes the fields of one row one after the other and remembers the first that is wrong.
-class FieldReader {
- public:
-  explicit FieldReader(std::span<const std::string> fields) : fields_(fields) {}
-
-  std::string text() { return fields_[position_++]; }
-  double number() {
-    const std::string& field = fields_[position_];
-    return taken(parse_number(field), "a finite number");
-  }
-  double number_or_empty(double missing) {
-    if (!fields_[position_].empty()) return number();
-    ++position_;
-    return missing;
-  }
-  template <typename Whole>
-  Whole whole() {
-    return taken(parse_whole<Whole>(fields_[position_]), "a whole number");
-  }
-  Apex apex() { return taken(apex_from(fields_[position_]), "up, right, down or left"); }
-  Mounting mounting() { return taken(mounting_from(fields_[position_]), "a mounting"); }
-  [[nodiscard]] const std::optional<std::string>& wrong() const { return wrong_; }
-
- private:
-  template <typename T>
-  T taken(const std::optional<T>& value, std::string_view expected) {
-    if (!value && !wrong_) {
-      wrong_ = "column " + std::string(trial_columns[position_]) + ": expected " + std::string(expected) + ", found '" +
-               one_line(fields_[position_]) + "'";
-    }
-    ++position_;
-    return value.value_or(T{});
-  }
-
-  std::span<const std::string> fields_;
-  std::size_t position_ = 0;
-  std::optional<std::string> wrong_;
-};
 
 Trial read_trial(FieldReader& fields) {
   Trial trial;
@@ -86,7 +38,7 @@ Trial read_trial(FieldReader& fields) {
   trial.frame = fields.whole<std::uint64_t>();
   trial.device_time_ns = fields.whole<std::int64_t>();
   trial.host_time_ns = fields.whole<std::int64_t>();
-  trial.since_nuc_s = fields.number_or_empty(-1);
+  trial.since_nuc_s = fields.optional_number().value_or(-1);
   return trial;
 }
 
@@ -177,9 +129,8 @@ Result<Level> read_level(const CsvTable& table, const CsvRow& row, const LevelCo
 Result<TrialsWriter> TrialsWriter::create(const std::filesystem::path& file) {
   Result<AppendFile> opened = AppendFile::open(file, AppendFile::Start::empty);
   if (!opened) return tl::unexpected(opened.error());
-  std::string header;
-  for (const std::string_view column : trial_columns) (header += header.empty() ? "" : ",") += column;
-  if (const Result<void> written = opened->append(header + "\n"); !written) return tl::unexpected(written.error());
+  if (const Result<void> written = opened->append(header_line(trial_columns)); !written)
+    return tl::unexpected(written.error());
   return TrialsWriter(*std::move(opened));
 }
 
@@ -200,17 +151,12 @@ Result<std::vector<Trial>> read_trials(const std::filesystem::path& file) {
   if (!text) return tl::unexpected(text.error());
   const Result<CsvTable> table = parse_csv(*text, file.string());
   if (!table) return tl::unexpected(table.error());
-  for (std::size_t i = 0; i < std::max(trial_columns.size(), table->header.size()); ++i) {
-    const std::string found = i < table->header.size() ? "'" + one_line(table->header[i]) + "'" : "nothing";
-    const std::string expected = i < trial_columns.size() ? std::string(trial_columns[i]) : "nothing";
-    if (found != "'" + expected + "'") {
-      return table->wrong(1, "column " + std::to_string(i + 1) + ": expected " + expected + ", found " + found);
-    }
-  }
+  if (const Result<void> as_expected = check_columns(*table, trial_columns); !as_expected)
+    return tl::unexpected(as_expected.error());
   std::vector<Trial> trials;
   trials.reserve(table->rows.size());
   for (const CsvRow& row : table->rows) {
-    FieldReader fields(row.fields);
+    FieldReader fields(row.fields, trial_columns);
     trials.push_back(read_trial(fields));
     if (fields.wrong()) return table->wrong(row.line, *fields.wrong());
   }

@@ -28,7 +28,7 @@ Result<std::vector<ThresholdEstimate>> from_trials(const Plan& plan, const Exper
   if (!set_up) return tl::unexpected(set_up.error());
   TemplateObserver observer(inputs.observer, triangle_alternatives());
   const auto result = measure(*set_up->bench.camera, *set_up->bench.target, observer, *set_up->schedule,
-                              set_up->options, MeasurementListener{}, stop);
+                              set_up->options, *set_up->bench.host, MeasurementListener{}, stop);
   if (!result) return tl::unexpected(result.error());
   if (result->ended_by) return tl::unexpected(*result->ended_by);
   const auto curve = tod_curve(result->trials, fit_options(plan));

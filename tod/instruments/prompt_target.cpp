@@ -9,8 +9,7 @@ namespace {
 
 class PromptTarget final : public Target {
  public:
-  PromptTarget(AskOperator ask, PromptTargetOptions options)
-      : ask_(std::move(ask)), now_(std::move(options.now)), capabilities_(options.times) {
+  PromptTarget(AskOperator ask, PromptTargetOptions options) : ask_(std::move(ask)), now_(std::move(options.now)) {
     capabilities_.description = options.description;
     capabilities_.sets_shift = false;
   }

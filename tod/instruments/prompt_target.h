@@ -14,8 +14,6 @@ namespace todbench {
 struct PromptTargetOptions {
   /// What the operator operates, for the report.
   std::string description = "set by hand by the operator";
-  /// Times of a hand, for the order of presentations; description and sets_shift are filled in.
-  TargetCapabilities times{"", false, 60, 30, 120, 5};
   /// Time base of settling_s, which is here the time the operator took.
   std::function<std::chrono::steady_clock::time_point()> now = [] { return std::chrono::steady_clock::now(); };
 };

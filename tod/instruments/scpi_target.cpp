@@ -115,8 +115,7 @@ class ScpiTarget final : public Target {
   explicit ScpiTarget(ScpiTargetOptions options)
       : options_(std::move(options)),
         black_body_("black body", options_.black_body, options_.connection),
-        stage_("plate stage", options_.stage, options_.connection),
-        capabilities_(options_.times) {}
+        stage_("plate stage", options_.stage, options_.connection) {}
 
   Result<void> open(const std::stop_token& stop);
 

@@ -30,8 +30,6 @@ struct ScpiTargetOptions {
   std::chrono::milliseconds settle_timeout{600'000};  ///< for one present(), by `now`
   std::chrono::milliseconds poll_interval{100};
   ScpiClientOptions connection;
-  /// How long changes take on this bench, for the order of presentations; description and sets_shift are filled in.
-  TargetCapabilities times;
   /// Time base of settle_timeout and settling_s.
   std::function<std::chrono::steady_clock::time_point()> now = [] { return std::chrono::steady_clock::now(); };
 };

@@ -15,8 +15,8 @@ constexpr std::uint64_t frames_before_share_counts = 100;
 FrameTaker::FrameTaker(FrameSource& source, FrameTakerOptions options)
     : source_(source), options_(std::move(options)), gate_(options_.integrity) {}
 
-void FrameTaker::scene_changed() {
-  valid_from_ns_ = options_.now_ns();
+void FrameTaker::scene_changed(std::int64_t now_ns) {
+  valid_from_ns_ = now_ns;
   watch_.scene_changed();
   to_discard_ = options_.frames_after_change;
 }
@@ -24,9 +24,12 @@ void FrameTaker::scene_changed() {
 Result<void> FrameTaker::correct_nonuniformity() {
   auto done = source_.correct_nonuniformity();
   if (!done) return fail("correcting the camera's non-uniformity", done.error());
-  nuc_ns_ = known_nuc_ns_ = options_.now_ns();
-  watch_.scene_changed();
   return {};
+}
+
+void FrameTaker::corrected(std::int64_t now_ns) {
+  nuc_ns_ = known_nuc_ns_ = now_ns;
+  watch_.scene_changed();
 }
 
 double FrameTaker::since_nuc_s(const Frame& frame) const {

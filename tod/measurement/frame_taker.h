@@ -10,7 +10,6 @@
 
 #include "acquisition/core/correction_watch.h"
 #include "acquisition/core/frame_source.h"
-#include "acquisition/core/host_clock.h"
 #include "acquisition/core/integrity_gate.h"
 
 namespace todbench {
@@ -28,8 +27,6 @@ struct FrameTakerOptions {
   double nuc_wait_s = 1;
   double max_rejected_share = 0.05;
   std::chrono::milliseconds frame_timeout{2000};
-  /// The clock of Frame::host_time_ns; a recorded measurement brings its own.
-  std::function<std::int64_t()> now_ns = monotonic_ns;
   std::function<void(const RejectedFrame&)> on_rejected{};  ///< told of every one; may be empty
 };
 
@@ -44,10 +41,13 @@ class FrameTaker {
  public:
   FrameTaker(FrameSource& source, FrameTakerOptions options);
 
-  /// What the camera looks at has changed just now: frames that were exposed before are discarded.
-  void scene_changed();
-  /// Commands a non-uniformity correction and keeps frames out until it has passed.
+  /// What the camera looks at has changed: frames that arrived before `now_ns`, on the clock of Frame::host_time_ns,
+  /// are discarded.
+  void scene_changed(std::int64_t now_ns);
+  /// Commands a non-uniformity correction.
   [[nodiscard]] Result<void> correct_nonuniformity();
+  /// The command was carried out at `now_ns`: frames are kept out until it has passed.
+  void corrected(std::int64_t now_ns);
 
   /// The next good frame. Errors: `integrity` (too many rejected), `disconnected` (lost, or silent for the frame
   /// timeout), `interrupted`.

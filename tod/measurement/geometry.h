@@ -16,19 +16,6 @@
 
 namespace todbench {
 
-/// A plate of the plan with the observer prepared for each of its triangles.
-struct PreparedPlate {
-  TargetPlate plate;                                               ///< identity mounting
-  std::vector<std::shared_ptr<const PreparedObserver>> observers;  ///< per triangle; empty until the scale is known
-  std::vector<double> size_px;                                     ///< per triangle
-  /// Of the observers' windows, per triangle.
-  [[nodiscard]] std::vector<int> sides() const;
-};
-
-/// Prepares the observer for every triangle as the camera sees it at a scale. Errors: those of the observer.
-[[nodiscard]] Result<void> prepare(PreparedPlate& plate, Observer& observer, double scale_px_per_mm,
-                                   int samples_per_pitch);
-
 /// The picture does not hold the plate.
 struct PlateBeyondPicture {
   std::string plate;

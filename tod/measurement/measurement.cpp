@@ -1,16 +1,16 @@
 #include "tod/measurement/measurement.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <optional>
 #include <span>
-#include <thread>
 #include <tuple>
 
 #include "tod/measurement/frame_taker.h"
 #include "tod/measurement/geometry.h"
+#include "tod/measurement/prepared_plate.h"
+#include "tod/measurement/target_change.h"
 #include "tod/registration/patch_windows.h"
 
 namespace todbench {
@@ -19,12 +19,14 @@ namespace {
 class Run {
  public:
   Run(FrameSource& source, Target& target, Observer& observer, TrialSchedule& schedule,
-      const MeasurementOptions& options, const MeasurementListener& listener, std::stop_token stop)
+      const MeasurementOptions& options, MeasurementHost& host, const MeasurementListener& listener,
+      std::stop_token stop)
       : source_(source),
         target_(target),
         observer_(observer),
         schedule_(schedule),
         options_(options),
+        host_(host),
         listener_(listener),
         stop_(std::move(stop)),
         taker_(source, taker_options(options, listener, source.info())),
@@ -45,13 +47,12 @@ class Run {
     while (const auto state = schedule_.next()) {
       const std::size_t before = result_.trials.size();
       auto shown = show(*state);
-      while (!shown && camera_lost(shown.error()) && listener_.on_lost) {
-        const std::int64_t lost_ns = options_.now_ns();
+      while (!shown && camera_lost(shown.error()) && host_.recovers()) {
         const Error why = shown.error();
-        note("the camera was lost in presentation " + std::to_string(presentation_) + ": " + why.message);
-        shown = listener_.on_lost(why, stop_);
+        const auto lost_ns = host_.now_ns(Moment::camera_lost);
+        shown = lost_ns ? wait_for_camera(why) : tl::unexpected(lost_ns.error());
         if (!shown) break;
-        shown = resume(*state, why, lost_ns);
+        shown = resume(*state, why, *lost_ns);
       }
       if (!shown) {
         ended_by = shown.error();
@@ -79,7 +80,6 @@ class Run {
                           .nuc_wait_s = options.nuc_wait_s,
                           .max_rejected_share = options.max_rejected_share,
                           .frame_timeout = options.frame_timeout,
-                          .now_ns = options.now_ns,
                           .on_rejected = listener.on_rejected};
     out.integrity.width = info.width;
     out.integrity.height = info.height;
@@ -93,12 +93,18 @@ class Run {
 
   Result<void> correct_when_due() {
     if (options_.nuc_interval_s <= 0) return {};
-    const std::int64_t now_ns = options_.now_ns();
-    if (last_nuc_ns_ && static_cast<double>(now_ns - *last_nuc_ns_) * 1e-9 < options_.nuc_interval_s) return {};
-    last_nuc_ns_ = now_ns;
-    auto corrected = taker_.correct_nonuniformity();
-    if (corrected || corrected.error().code != ErrorCode::invalid_input) return corrected;
-    return rely_on_what_the_camera_tells(corrected.error());
+    const auto now_ns = host_.now_ns(Moment::correction_due);
+    if (!now_ns) return tl::unexpected(now_ns.error());
+    if (last_nuc_ns_ && static_cast<double>(*now_ns - *last_nuc_ns_) * 1e-9 < options_.nuc_interval_s) return {};
+    last_nuc_ns_ = *now_ns;
+    if (auto corrected = taker_.correct_nonuniformity(); !corrected) {
+      if (corrected.error().code != ErrorCode::invalid_input) return corrected;
+      return rely_on_what_the_camera_tells(corrected.error());
+    }
+    const auto corrected_ns = host_.now_ns(Moment::corrected);
+    if (!corrected_ns) return tl::unexpected(corrected_ns.error());
+    taker_.corrected(*corrected_ns);
+    return {};
   }
 
   /// A camera that takes no command is still measured when its frames say that they are corrections.
@@ -115,6 +121,12 @@ class Run {
     return error.code == ErrorCode::disconnected && !target_failed_;
   }
 
+  Result<void> wait_for_camera(const Error& why) {
+    note("the camera was lost in presentation " + std::to_string(presentation_) + ": " + why.message);
+    if (listener_.on_lost) listener_.on_lost(why);
+    return host_.recover(stop_);
+  }
+
   /// The camera that was lost in this presentation is back: it is made again.
   Result<void> resume(const TargetState& state, const Error& why, std::int64_t lost_ns) {
     const std::optional<cv::Point2d> before =
@@ -126,8 +138,10 @@ class Run {
     last_nuc_ns_.reset();
     const std::int64_t presentation = presentation_;
     if (auto shown = show(state); !shown) return shown;
+    const auto back_ns = host_.now_ns(Moment::camera_back);
+    if (!back_ns) return tl::unexpected(back_ns.error());
     Interruption interruption{.presentation = presentation,
-                              .away_s = static_cast<double>(options_.now_ns() - lost_ns) * 1e-9,
+                              .away_s = static_cast<double>(*back_ns - lost_ns) * 1e-9,
                               .moved_px = before ? cv::norm(base_.pixel({0, 0}) - *before) : 0,
                               .reason = why.message};
     char text[120];
@@ -135,60 +149,31 @@ class Run {
                   interruption.away_s, interruption.moved_px);
     note(text);
     result_.interruptions.push_back(std::move(interruption));
-    if (listener_.on_resumed) listener_.on_resumed();
+    host_.resumed();
     return {};
   }
 
   /// A free-running camera whose frames nobody takes would lose them.
   Result<void> wait_while_paused() {
-    while (listener_.paused && !stop_.stop_requested() && listener_.paused()) {
+    while (!stop_.stop_requested()) {
+      const auto rests = host_.rests(stop_);
+      if (!rests) return tl::unexpected(rests.error());
+      if (!*rests) break;
       if (!options_.free_running) continue;
       if (auto passed = taker_.discard(stop_); !passed) return passed;
     }
     return {};
   }
 
-  /// Changes the target; the camera goes on meanwhile.
+  /// Changes the target; what it says is in `presented_`.
   Result<void> present(const TargetState& state) {
-    if (options_.frames_while_presenting == FramesMeanwhile::take) return present_and_take(state);
-    Result<void> taken;
-    if (options_.frames_while_presenting == FramesMeanwhile::repeat) {
-      const std::int64_t calls = listener_.asked_while_presenting ? listener_.asked_while_presenting(0) : 0;
-      taken = taker_.take_while_presenting([calls](std::int64_t asked) { return asked >= calls; });
-    }
-    const auto presented = target_.present(state, stop_);
-    target_failed_ = !presented;
-    if (!presented) return fail("presenting the target", presented.error());
-    return taken;
-  }
-
-  /// Changes the target while a second thread takes the frames. A camera that fails ends the wait for the target: a
-  /// black body may need minutes, and what it would settle for has to be presented again anyway.
-  Result<void> present_and_take(const TargetState& state) {
-    Result<void> taken;
-    Result<PresentedTarget> presented;
-    std::atomic<bool> there = false;
-    std::int64_t calls = 0;
-    {
-      std::stop_source give_up;
-      const std::stop_callback stopped(stop_, [&give_up] { give_up.request_stop(); });
-      const std::jthread frames([&] {
-        taken = taker_.take_while_presenting([&](std::int64_t asked) {
-          calls = asked;
-          return there.load();
-        });
-        if (!taken) give_up.request_stop();
-      });
-      presented = target_.present(state, give_up.get_token());
-      there = true;
-    }
-    // The call that failed counts too.
-    if (listener_.asked_while_presenting) (void)listener_.asked_while_presenting(taken ? calls : calls + 1);
-    const bool given_up =
-        !taken && !presented && presented.error().code == ErrorCode::interrupted && !stop_.stop_requested();
-    target_failed_ = !presented && !given_up;
-    if (target_failed_) return fail("presenting the target", presented.error());
-    return taken;
+    auto change = change_target(target_, taker_, host_, state, stop_);
+    if (!change) return tl::unexpected(change.error());
+    target_failed_ = !change->presented && !change->given_up;
+    if (target_failed_) return fail("presenting the target", change->presented.error());
+    if (!change->frames) return change->frames;
+    presented_ = *std::move(change->presented);
+    return {};
   }
 
   /// One presentation: target, frame, answers.
@@ -202,24 +187,15 @@ class Run {
                   "the schedule names a plate '" + state.plate + "' that the plan does not have");
     if (auto corrected = correct_when_due(); !corrected) return corrected;
     if (auto presented = present(state); !presented) return presented;
-    taker_.scene_changed();
+    const auto there_ns = host_.now_ns(Moment::scene_changed);
+    if (!there_ns) return tl::unexpected(there_ns.error());
+    taker_.scene_changed(*there_ns);
     const TargetPlate mounted_plate = mounted(plate->plate, state.mounting);
-    const SetUp set_up{state.plate, state.mounting};
-    const bool new_set_up = !current_set_up_ || *current_set_up_ != set_up;
-    const bool new_contrast = new_set_up || *current_contrast_ != state.delta_t_k;
-    if (new_set_up) {
-      if (auto located = locate(*plate, mounted_plate, state); !located) return located;
-    }
-    if (!new_set_up && !target_.capabilities().sets_shift) {
-      if (auto followed = follow(mounted_plate); !followed) return followed;
-    }
-    const Registration registration = target_.capabilities().sets_shift ? base_.shifted(state.shift_mm) : base_;
-    if (new_contrast) {
-      if (auto measured = measure_contrast(mounted_plate, registration, state); !measured) return measured;
-    }
-    current_set_up_ = set_up;
-    current_contrast_ = state.delta_t_k;
-    const auto problems = windows_out_of_picture(mounted_plate, registration, plate->sides(),
+    const auto registration = look_at(*plate, mounted_plate, state);
+    // What the instrument said is kept also when the camera could not make anything of it.
+    keep_presentation(state, *there_ns, registration.has_value());
+    if (!registration) return tl::unexpected(registration.error());
+    const auto problems = windows_out_of_picture(mounted_plate, *registration, plate->sides(),
                                                  {source_.info().width, source_.info().height});
     if (!problems.empty()) {
       std::string text;
@@ -228,9 +204,55 @@ class Run {
     }
     auto frame = taker_.next(stop_);
     if (!frame) return tl::unexpected(frame.error());
-    if (auto answered = answer(*plate, mounted_plate, registration, state, *frame); !answered) return answered;
+    if (auto answered = answer(*plate, mounted_plate, *registration, state, *frame); !answered) return answered;
     ++presentation_;
     return {};
+  }
+
+  /// Where the plate is, and, where plate, mounting or contrast are new, which contrast the camera sees.
+  Result<Registration> look_at(PreparedPlate& plate, const TargetPlate& mounted_plate, const TargetState& state) {
+    const SetUp set_up{state.plate, state.mounting};
+    const bool new_set_up = !current_set_up_ || *current_set_up_ != set_up;
+    const bool new_contrast = new_set_up || *current_contrast_ != state.delta_t_k;
+    if (new_contrast) read_back_noted_ = false;
+    if (!read_back_noted_) compare_with_what_was_set(state);
+    if (new_set_up) {
+      if (auto located = locate(plate, mounted_plate, state); !located) return tl::unexpected(located.error());
+    }
+    if (!new_set_up && !target_.capabilities().sets_shift) {
+      if (auto followed = follow(mounted_plate); !followed) return tl::unexpected(followed.error());
+    }
+    const Registration registration = target_.capabilities().sets_shift ? base_.shifted(state.shift_mm) : base_;
+    if (new_contrast) {
+      if (auto measured = measure_contrast(mounted_plate, registration, state); !measured)
+        return tl::unexpected(measured.error());
+    }
+    current_set_up_ = set_up;
+    current_contrast_ = state.delta_t_k;
+    return registration;
+  }
+
+  /// Once per set-up and contrast.
+  void compare_with_what_was_set(const TargetState& state) {
+    const double deviation_k = presented_.state.delta_t_k - state.delta_t_k;
+    if (options_.max_readback_deviation_k <= 0 || std::abs(deviation_k) <= options_.max_readback_deviation_k) return;
+    read_back_noted_ = true;
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "plate %s, mounting %s: the target says it shows %.4f K where %.4f K were set (%+.4f K, tolerance "
+                  "%.4f K)",
+                  state.plate.c_str(), std::string(to_string(state.mounting)).c_str(), presented_.state.delta_t_k,
+                  state.delta_t_k, deviation_k, options_.max_readback_deviation_k);
+    note(text);
+  }
+
+  void keep_presentation(const TargetState& state, std::int64_t there_ns, bool seen) {
+    result_.presentations.push_back({.presentation = presentation_,
+                                     .set = state,
+                                     .said = presented_,
+                                     .delta_t_k = seen ? std::optional(contrast_k_) : std::nullopt,
+                                     .host_time_ns = there_ns});
+    if (listener_.on_presentation) listener_.on_presentation(result_.presentations.back());
   }
 
   /// Finds the plate of a set-up: by registration the first time, by its shift when it comes back.
@@ -345,6 +367,7 @@ class Run {
   Observer& observer_;
   TrialSchedule& schedule_;
   MeasurementOptions options_;
+  MeasurementHost& host_;
   const MeasurementListener& listener_;
   std::stop_token stop_;
   FrameTaker taker_;
@@ -358,20 +381,22 @@ class Run {
   double scale_px_per_mm_ = 0;               ///< of the first registration: one scale for the whole run
   std::optional<std::int64_t> last_nuc_ns_;  ///< when the last one was commanded
   std::int64_t presentation_ = 0;
+  PresentedTarget presented_;   ///< what the target said last
   bool target_failed_ = false;  ///< the error of this presentation is the target's
+  bool read_back_noted_ = false;
   MeasurementResult result_;
 };
 
 }  // namespace
 
 Result<MeasurementResult> measure(FrameSource& source, Target& target, Observer& observer, TrialSchedule& schedule,
-                                  const MeasurementOptions& options, const MeasurementListener& listener,
-                                  std::stop_token stop) {
+                                  const MeasurementOptions& options, MeasurementHost& host,
+                                  const MeasurementListener& listener, std::stop_token stop) {
   auto misfits = find_misfits(options, observer, {source.info().width, source.info().height});
   if (!misfits) return tl::unexpected(misfits.error());
   if (!misfits->empty())
     return fail(ErrorCode::invalid_input, "not measurable at this distance: " + sentences(*misfits, misfits->size()));
-  return Run(source, target, observer, schedule, options, listener, std::move(stop))();
+  return Run(source, target, observer, schedule, options, host, listener, std::move(stop))();
 }
 
 }  // namespace todbench

@@ -15,20 +15,14 @@
 #include "acquisition/core/integrity_gate.h"
 #include "hvs/observer/observer.h"
 #include "tod/measurement/frame_taker.h"
+#include "tod/measurement/measurement_host.h"
+#include "tod/presentation/presentation.h"
 #include "tod/presentation/target.h"
 #include "tod/presentation/trial.h"
 #include "tod/registration/registration.h"
 #include "tod/schedule/schedule.h"
 
 namespace todbench {
-
-/// What becomes of the frames that a camera sends while the target changes.
-enum class FramesMeanwhile {
-  leave,  ///< nobody asks for them: a camera that exposes only when it is asked
-  take,   ///< taken as they come, on a thread of their own, so that no queue has to hold the minutes in which a black
-          ///< body settles, and no correction in them is missed
-  repeat  ///< taken as often as MeasurementListener::asked_while_presenting says: a replay
-};
 
 struct MeasurementOptions {
   double ifov_mrad = 0;             ///< of one pixel, from the plan
@@ -41,17 +35,16 @@ struct MeasurementOptions {
   /// By plate name: what effective_contrast() reads of a contrast of 1 K, blur included, from a simulated picture; 1
   /// where it is not known. Measured contrasts are divided by it.
   std::map<std::string, double> contrast_response;
-  int frames_after_change = 2;       ///< exposures discarded after the target moved (frames in flight)
-  double nuc_interval_s = 0;         ///< correct the camera's non-uniformity this often; 0: never commanded
-  double nuc_wait_s = 1;             ///< frames within this time after a correction are not measured
+  int frames_after_change = 2;  ///< exposures discarded after the target moved (frames in flight)
+  double nuc_interval_s = 0;    ///< correct the camera's non-uniformity this often; 0: never commanded
+  double nuc_wait_s = 1;        ///< frames within this time after a correction are not measured
+  /// Beyond it, what the target says it shows is a note beside what it was told; 0: what it says is not looked at.
+  double max_readback_deviation_k = 0;
   double max_rejected_share = 0.05;  ///< beyond it, after 100 frames, the run ends with `integrity`
   std::chrono::milliseconds frame_timeout{2000};
-  /// The clock of Frame::host_time_ns; a recorded measurement brings its own.
-  std::function<std::int64_t()> now_ns = monotonic_ns;
   IntegrityOptions integrity;
   RegistrationOptions registration;  ///< expected scale is filled in from distance and IFOV
   std::uint64_t seed = 1;
-  FramesMeanwhile frames_while_presenting = FramesMeanwhile::leave;
   bool free_running = true;  ///< the camera exposes whether its frames are taken or not: they are taken in a pause too
 };
 
@@ -67,26 +60,20 @@ struct Interruption {
 struct SetUpRecord;
 
 /// What the run says while it goes on. Called from the measuring thread, but on_rejected also from the one that takes
-/// frames while the measuring thread waits for the target: never two at once. A slow listener slows the measurement, it
-/// never loses trials.
+/// frames while the measuring thread waits for the target: never two at once. Every function may be empty; none decides
+/// anything. A slow listener slows the measurement, it never loses trials.
 struct MeasurementListener {
-  std::function<void(const Trial&)> on_trial;
+  std::function<void(const Trial&)> on_trial{};
   /// After on_trial: what the observer saw; lent for the call.
   std::function<void(const Trial&, const Patch&)> on_patch{};
+  /// The target was there; before the trials of the presentation, and also when none could be made.
+  std::function<void(const Presentation&)> on_presentation{};
   std::function<void(const SetUpRecord&)> on_set_up{};
-  /// Asked before every presentation and again while it says true; may take a tenth of a second to answer.
-  std::function<bool()> paused{};
-  /// Told how often a frame was asked for while the target changed, says how often it was: a recording remembers; a
-  /// replay is told 0.
-  std::function<std::int64_t(std::int64_t calls)> asked_while_presenting{};
-  std::function<void(std::size_t done, std::size_t planned)> on_progress;
-  std::function<void(const std::string& sentence)> on_note;
+  std::function<void(std::size_t done, std::size_t planned)> on_progress{};
+  std::function<void(const std::string& sentence)> on_note{};
   std::function<void(const RejectedFrame&)> on_rejected{};  ///< every frame that was not used, with the reason
-  /// The camera was lost. Brings the same source back to deliver frames, started and set as before, and returns
-  /// success; then the plate is looked for again and the presentation is repeated. Empty, or an error: the run ends.
-  std::function<Result<void>(const Error& why, std::stop_token stop)> on_lost{};
-  /// The plate was found again after a loss, and the presentation was made.
-  std::function<void()> on_resumed{};
+  /// The camera was lost, and the host is about to bring it back.
+  std::function<void(const Error& why)> on_lost{};
 };
 
 /// Registration and contrast of one set-up (plate and mounting), for the report.
@@ -98,6 +85,7 @@ struct SetUpRecord {
 
 struct MeasurementResult {
   std::vector<Trial> trials;
+  std::vector<Presentation> presentations;
   std::vector<SetUpRecord> set_ups;
   std::uint64_t frames_used = 0;
   std::map<std::string, std::uint64_t> frames_rejected;  ///< by reason
@@ -110,9 +98,10 @@ struct MeasurementResult {
 };
 
 /// Runs a schedule. Fails only when nothing could be measured (plate not found, uncalibrated camera, sizes that do not
-/// fit); a run that ended early returns its trials with `ended_by`.
+/// fit); a run that ended early returns its trials with `ended_by`. `host` and `listener` are lent for the call.
 [[nodiscard]] Result<MeasurementResult> measure(FrameSource& source, Target& target, Observer& observer,
                                                 TrialSchedule& schedule, const MeasurementOptions& options,
-                                                const MeasurementListener& listener, std::stop_token stop);
+                                                MeasurementHost& host, const MeasurementListener& listener,
+                                                std::stop_token stop);
 
 }  // namespace todbench

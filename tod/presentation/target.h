@@ -27,14 +27,14 @@ struct PresentedTarget {
   std::optional<double> plate_temperature_k;       ///< of the surround, where a sensor says so
   std::optional<double> black_body_temperature_k;  ///< behind the cut-outs
   double settling_s = 0;                           ///< time spent waiting
+  bool operator==(const PresentedTarget&) const = default;
 };
 
-/// What a target can do by itself, and how long a change takes: the order of presentations follows from it.
+/// What a target can do by itself.
 struct TargetCapabilities {
   std::string description;  ///< instruments with their serial numbers, for the report
   bool sets_shift =
       false;  ///< false: sub-pixel phases come from small movements of the hand and are measured by registration
-  double plate_change_s = 60, mounting_change_s = 30, contrast_change_s = 20, shift_change_s = 0.1;
 };
 
 /// Brings a state in front of the camera. One thread at a time.

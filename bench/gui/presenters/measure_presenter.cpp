@@ -76,6 +76,11 @@ ExperimentListener MeasurePresenter::listener() {
     const std::lock_guard lock(inbox_.mutex);
     inbox_.trials.push_back({curve, trial, std::move(kelvin)});
   };
+  return out;
+}
+
+ExperimentHost MeasurePresenter::host() {
+  ExperimentHost out;
   out.pause = &pause_;
   out.ask_operator = [this](const OperatorRequest& request, const std::stop_token& stop) {
     desk_->clear();
@@ -127,8 +132,8 @@ void MeasurePresenter::start() {
   replayed_.reset();
   const std::filesystem::path folder = bench_.sessions_folder() / session_folder_name(plan_.name);
   bench_.run(Activity::measuring, [this, run = run_, folder](const Plan& plan, const std::stop_token& stop) {
-    return hand_over(run, measure_plan(plan, {.folder = folder, .existing = ExistingFolder::number}, listener(), stop),
-                     {});
+    const ExperimentOptions options{.folder = folder, .existing = ExistingFolder::number, .host = host()};
+    return hand_over(run, measure_plan(plan, options, listener(), stop), {});
   });
   emit updated();
 }
@@ -141,8 +146,8 @@ void MeasurePresenter::replay(const std::filesystem::path& session, const Plan& 
       bench_.sessions_folder() / session_folder_name(session_name(session) + "-replay");
   bench_.run_without_devices(
       Activity::replaying, [this, run = run_, session, folder](const Plan&, const std::stop_token& stop) {
-        const auto replayed =
-            replay_session(session, {.folder = folder, .existing = ExistingFolder::number}, listener(), stop);
+        const ExperimentOptions options{.folder = folder, .existing = ExistingFolder::number, .host = host()};
+        const auto replayed = replay_session(session, options, listener(), stop);
         if (!replayed) return hand_over(run, tl::unexpected(replayed.error()), {});
         return hand_over(run, replayed->run, replayed->same_trials && replayed->same_fits.value_or(true));
       });

@@ -103,6 +103,7 @@ class MeasurePresenter final : public QObject {
   };
 
   [[nodiscard]] ExperimentListener listener();
+  [[nodiscard]] ExperimentHost host();
   void begin(const Plan& plan);
   /// Hands the end of a run over to the window; what ended it early is the job's own error.
   [[nodiscard]] Result<void> hand_over(std::uint64_t run, const Result<ExperimentOutcome>& outcome,

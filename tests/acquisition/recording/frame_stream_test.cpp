@@ -213,10 +213,10 @@ TEST_F(Recordings, NoticeEveryFlippedByteOfAFrame) {
 TEST_F(Recordings, KeepFailuresAndReadingsInTheirPlaces) {
   {
     auto writer = written(file("a"), 2);
-    ASSERT_TRUE(writer.append_reading(77).has_value());
+    ASSERT_TRUE(writer.append_reading({"clock", "77"}).has_value());
     ASSERT_TRUE(writer.append_failure({ErrorCode::timeout, "no frame"}, FailedCall::next).has_value());
     ASSERT_TRUE(writer.append(frame(2)).has_value());
-    ASSERT_TRUE(writer.append_reading(-5).has_value());
+    ASSERT_TRUE(writer.append_reading({"rest", "-5 and more"}).has_value());
     ASSERT_TRUE(writer.append_failure({ErrorCode::disconnected, "gone"}, FailedCall::next).has_value());
   }
   auto stream = open_frame_stream(file("a"));
@@ -231,7 +231,7 @@ TEST_F(Recordings, KeepFailuresAndReadingsInTheirPlaces) {
   }
 
   EXPECT_THAT(seen, testing::ElementsAre("100", "101", "no frame", "102", "gone"));
-  EXPECT_THAT(stream->readings, testing::ElementsAre(77, -5));
+  EXPECT_THAT(stream->readings, testing::ElementsAre(Reading{"clock", "77"}, Reading{"rest", "-5 and more"}));
 }
 
 TEST_F(Recordings, RepeatAFailedCorrectionWhenACorrectionIsAskedFor) {

@@ -52,7 +52,7 @@ Plan unusual_plan() {
   plan.fit = {PsychometricForm::acuity, std::nullopt};
   plan.limits.acuity = {{-5, 0.4}, {1e-3, 0.1}};
   plan.limits.equivalence_margin_percent = 12.5;
-  plan.measurement = {8, 4, 3.5, 0, 0.25, 0.125, 500, 0.05, 5, 0.5};
+  plan.measurement = {8, 4, 3.5, 0, 0.25, 0.125, 500, 0.05, 5, 0.5, 0.001};
   plan.instruments = {{"black body", "BB-1", "C-77", "2027-02-28"}, {"ruler", "", "", ""}};
   return plan;
 }

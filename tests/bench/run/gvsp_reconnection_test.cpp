@@ -16,8 +16,8 @@ TEST(LostInMidRun, ForGoodEndsTheRunWithWhatWasMeasured) {
   auto camera = bench.camera();
   const auto source = reconnecting(1s);
   ASSERT_TRUE(camera && source);
+  bench.host->bring_back = [&](std::stop_token stop) { return source->recover(std::move(stop)); };
   MeasurementListener listener;
-  listener.on_lost = [&](const Error&, std::stop_token stop) { return source->recover(std::move(stop)); };
   listener.on_progress = [&](std::size_t presentations, std::size_t) {
     if (presentations == 2) camera.reset();
   };

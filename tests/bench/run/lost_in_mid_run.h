@@ -46,9 +46,9 @@ inline void expect_a_whole_run_over(std::size_t losses) {
   const auto source = reconnecting(std::chrono::seconds(60));
   ASSERT_TRUE(source && source->set("NUCIntervalFrames", "1234") && source->correct_nonuniformity());
   const auto before = source->info().settings;
+  bench.host->bring_back = [&](std::stop_token stop) { return source->recover(std::move(stop)); };
+  bench.host->confirm = [&] { source->confirm_registration(); };
   MeasurementListener listener;
-  listener.on_lost = [&](const Error&, std::stop_token stop) { return source->recover(std::move(stop)); };
-  listener.on_resumed = [&] { source->confirm_registration(); };
   std::size_t done = 0;
   listener.on_progress = [&](std::size_t presentations, std::size_t) {
     if (presentations % 2 == 1 && done < losses) disturb(done++, bench, camera);

@@ -53,9 +53,9 @@ TEST_P(UsbReconnection, InAnotherPortMakesEveryTrialWithEverySettingAsItWas) {
                             },
                             {.settings = settings});
   for (const auto& [name, value] : settings) ASSERT_TRUE(source.set(name, value)) << name;
+  bench.host->bring_back = [&](std::stop_token stop) { return source.recover(std::move(stop)); };
+  bench.host->confirm = [&] { source.confirm_registration(); };
   MeasurementListener listener;
-  listener.on_lost = [&](const Error&, std::stop_token stop) { return source.recover(std::move(stop)); };
-  listener.on_resumed = [&] { source.confirm_registration(); };
   listener.on_progress = [&](std::size_t done, std::size_t) {
     // Whether the camera takes the command or not: what it says of itself is read anew.
     if (done == 1) static_cast<void>(source.correct_nonuniformity());

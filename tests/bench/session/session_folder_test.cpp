@@ -88,6 +88,8 @@ std::filesystem::path write_session(const testing::TemporaryFolder& parent, cons
     TrialsWriter writer = folder.open_trials(which).value();
     for (const Trial& trial : trials) EXPECT_TRUE(writer.append(trial));
     EXPECT_TRUE(writer.sync());
+    TargetsWriter targets = folder.open_targets(which).value();
+    EXPECT_TRUE(targets.append(testing::full_presentation()));
   }
   EXPECT_TRUE(folder.write_curves(testing::full_curve(), testing::full_curve(), Side::measured));
   Comparison comparison;
@@ -115,6 +117,8 @@ TEST(SessionFolder, ComesBackAsTheValuesThatWereWritten) {
   EXPECT_TRUE(session->complete());
   ASSERT_EQ(session->trials.size(), 20u);
   EXPECT_EQ(session->twin_trials.size(), 20u);
+  EXPECT_EQ(session->presentations, std::vector{testing::full_presentation()});
+  EXPECT_EQ(session->twin_presentations, std::vector{testing::full_presentation()});
   for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(testing::values_of(session->trials[i]), testing::values_of(trials[i]));
   EXPECT_EQ(to_line(curve_record(*session->curve)), to_line(curve_record(testing::full_curve())));
   EXPECT_TRUE(session->twin);
@@ -338,11 +342,11 @@ TEST(Manifest, ListsEveryFileOfTheSessionAndFindsItIntact) {
   const testing::TemporaryFolder parent;
   const std::filesystem::path folder = write_session(parent, testing::random_trials(3));
 
-  EXPECT_THAT(
-      session_files(folder),
-      IsSupersetOf({"session.toml", "provenance.json", "trials.csv", "trials_simulated.csv", "fits.json", "curve.csv",
-                    "comparison.json", "verdict.json", "report.html", "log.txt", "inputs/observer-hvs-1.toml",
-                    "inputs/plate-tcat-a.toml", "inputs/plate-tcat-b.toml", "inputs/sensor-sc2000.toml"}));
+  EXPECT_THAT(session_files(folder),
+              IsSupersetOf({"session.toml", "provenance.json", "trials.csv", "trials_simulated.csv", "targets.csv",
+                            "targets_simulated.csv", "fits.json", "curve.csv", "comparison.json", "verdict.json",
+                            "report.html", "log.txt", "inputs/observer-hvs-1.toml", "inputs/plate-tcat-a.toml",
+                            "inputs/plate-tcat-b.toml", "inputs/sensor-sc2000.toml"}));
   EXPECT_THAT(verify_manifest(folder).value(), IsEmpty());
 }
 

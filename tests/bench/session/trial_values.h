@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "acquisition/core/rng.h"
+#include "tod/presentation/presentation.h"
 #include "tod/presentation/trial.h"
 #include "tod/psychometric/tod_curve.h"
 
@@ -16,6 +17,22 @@ inline auto values_of(const Trial& t) {
   return std::make_tuple(t.presentation, t.plate, t.mounting, t.triangle, t.set_delta_t_k, t.delta_t_k, t.size_mm,
                          t.size_mrad, t.size_px, t.truth, t.answer, t.scores, t.phase_x_px, t.phase_y_px, t.frame,
                          t.device_time_ns, t.host_time_ns, t.since_nuc_s);
+}
+
+/// A presentation in which nothing is missing and no two numbers are the same.
+inline Presentation full_presentation() {
+  return {
+      .presentation = 3,
+      .set = {.plate = "plate, \"1\"", .mounting = Mounting::rotated_180, .delta_t_k = -1.93, .shift_mm = {0.1, -0.2}},
+      .said = {.state = {.plate = "plate, \"1\"",
+                         .mounting = Mounting::rotated_180,
+                         .delta_t_k = -1.9 - 1.0 / 3,
+                         .shift_mm = {0.1001, -0.2003}},
+               .plate_temperature_k = 295.04,
+               .black_body_temperature_k = 293.11,
+               .settling_s = 1.0 / 7},
+      .delta_t_k = -1.9,
+      .host_time_ns = 123456789012345};
 }
 
 /// Trials with numbers of full precision, names with commas and quotes, and the largest counters.

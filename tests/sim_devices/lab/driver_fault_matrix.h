@@ -178,10 +178,10 @@ struct DriverBench : SimulatedBench {
     options.max_rejected_share = 0.9;
     options.frame_timeout = std::chrono::seconds(20);
     options.nuc_wait_s = 0;  // the simulated camera has no shutter whose frames would be waited for
-    options.now_ns = std::move(now_ns);
+    host->clock = [now_ns = std::move(now_ns)](Moment) { return now_ns(); };
     TemplateObserver observer({}, triangle_alternatives());
     ListedSchedule schedule = schedule_of(*this);
-    return measure(source, *scene_target(holder, plates), observer, schedule, options, listener, {});
+    return measure(source, *scene_target(holder, plates), observer, schedule, options, *host, listener, {});
   }
   std::shared_ptr<SceneHolder> holder;
   std::shared_ptr<const SensorModel> model;

@@ -69,16 +69,16 @@ inline void measure_twice(const SimulatedBench& bench, const MeasurementOptions&
 
   PresentScene fresh(**source, before_camera, log, under_test.exposure_of);
   auto schedule = schedule_of(bench);
-  const auto measured =
-      measure(fresh, *scene_target(share(before_camera), bench.plates), observer, schedule, options, {}, {});
+  const auto measured = measure(fresh, *scene_target(share(before_camera), bench.plates), observer, schedule, options,
+                                *bench.host, {}, {});
   ASSERT_TRUE(measured) << measured.error().message;
   ASSERT_FALSE(measured->ended_by) << measured->ended_by->message;
 
   SceneHolder before_simulation(empty);
   GivenExposures given(fresh.info(), model, before_simulation, fresh.exposures(), under_test.is_short);
   auto same_schedule = schedule_of(bench);
-  const auto simulated =
-      measure(given, *scene_target(share(before_simulation), bench.plates), observer, same_schedule, options, {}, {});
+  const auto simulated = measure(given, *scene_target(share(before_simulation), bench.plates), observer, same_schedule,
+                                 options, *bench.host, {}, {});
   ASSERT_TRUE(simulated) << simulated.error().message;
   both = {.measured = *measured, .simulated = *simulated, .exposures = fresh.exposures()};
 }

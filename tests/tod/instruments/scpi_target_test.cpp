@@ -60,14 +60,11 @@ class FrozenBenchTest : public ScpiTargetTest {
 };
 
 TEST_F(ScpiTargetTest, NamesItsInstrumentsWithTheirSerialNumbers) {
-  options_.times.plate_change_s = 7;
-
   const auto bench = target();
 
   EXPECT_THAT(bench->capabilities().description, HasSubstr("serial BB-0001"));
   EXPECT_THAT(bench->capabilities().description, HasSubstr("serial PS-0001"));
   EXPECT_TRUE(bench->capabilities().sets_shift);
-  EXPECT_EQ(bench->capabilities().plate_change_s, 7);
 }
 
 TEST_F(ScpiTargetTest, PresentsAStateAndReturnsWhenBothInstrumentsHaveSettled) {

@@ -94,7 +94,7 @@ class FaultMatrix : public testing::Test {
     const auto target = scene_target(holder, bench_.plates);
     TemplateObserver observer({}, triangle_alternatives());
     ListedSchedule schedule = schedule_of(bench_);
-    auto result = measure(*source, *target, observer, schedule, options(), {}, {});
+    auto result = measure(*source, *target, observer, schedule, options(), *bench_.host, {}, {});
     EXPECT_TRUE(result.has_value()) << (result ? "" : result.error().message);
     return result ? std::move(*result) : MeasurementResult();
   }

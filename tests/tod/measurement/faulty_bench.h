@@ -72,7 +72,7 @@ struct SmallBench : SimulatedBench {
                                               std::stop_token stop = {}) const {
     TemplateObserver observer({}, triangle_alternatives());
     ListedSchedule schedule = schedule_of(*this);
-    return measure(source, target, observer, schedule, options, listener, stop);
+    return measure(source, target, observer, schedule, options, *host, listener, stop);
   }
 };
 

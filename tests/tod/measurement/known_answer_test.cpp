@@ -184,7 +184,8 @@ Result<TodCurve> measured(const test::SimulatedBench& bench, const std::shared_p
   ListedSchedule schedule = test::schedule_of(bench);
   MeasurementOptions options = test::options_of(bench);
   options.seed = seed;
-  const auto result = measure(source, *target, observer, schedule, options, {}, {});
+  UnattendedHost host;
+  const auto result = measure(source, *target, observer, schedule, options, host, {}, {});
   if (!result) return tl::unexpected(result.error());
   return tod_curve(result->trials, {});
 }

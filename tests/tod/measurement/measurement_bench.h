@@ -8,6 +8,7 @@
 #include "sim_devices/sensor/simulated_camera.h"
 #include "tests/sim_devices/reference.h"
 #include "tests/sim_devices/test_plates.h"
+#include "tests/tod/measurement/test_host.h"
 #include "tod/measurement/measurement.h"
 
 namespace todbench::test {
@@ -21,6 +22,7 @@ struct SimulatedBench {
   double distance_m = 2;
   int phases = 4;
   std::uint64_t seed = 1;
+  std::shared_ptr<TestHost> host = std::make_shared<TestHost>();  ///< of its runs
 };
 
 inline MeasurementOptions options_of(const SimulatedBench& bench) {
@@ -58,7 +60,7 @@ inline Result<MeasurementResult> run(const SimulatedBench& bench, Observer& obse
   const auto source = simulated_source(model, holder, "1");
   const auto target = scene_target(holder, bench.plates);
   ListedSchedule schedule = schedule_of(bench);
-  return measure(*source, *target, observer, schedule, options, listener, stop);
+  return measure(*source, *target, observer, schedule, options, *bench.host, listener, stop);
 }
 
 }  // namespace todbench::test

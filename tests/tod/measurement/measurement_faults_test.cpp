@@ -105,13 +105,12 @@ TEST(MeasurementFaults, ALostTargetIsNotTakenForALostCamera) {
   const auto camera = bench.camera();
   VanishingTarget target(scene_target(bench.holder, bench.plates), 3);
   int reconnections = 0;
-  MeasurementListener listener;
-  listener.on_lost = [&](const Error&, std::stop_token) -> Result<void> {
+  bench.host->bring_back = [&](std::stop_token) -> Result<void> {
     if (++reconnections > 10) return fail(ErrorCode::internal, "connected again and again");
     return {};
   };
 
-  const auto result = bench.run(*camera, target, test::options_of(bench), listener);
+  const auto result = bench.run(*camera, target, test::options_of(bench));
 
   ASSERT_TRUE(result.has_value()) << result.error().message;
   ASSERT_TRUE(result->ended_by.has_value());

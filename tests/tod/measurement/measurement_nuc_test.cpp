@@ -15,7 +15,7 @@ TEST(MeasurementNuc, CorrectsBeforeTheRunAndKeepsFramesOutUntilItHasPassed) {
   MeasurementOptions options = test::options_of(bench);
   options.nuc_interval_s = 3600;
   options.nuc_wait_s = 0.51;
-  options.now_ns = [&] { return now_ns; };
+  bench.host->clock = [&](Moment) { return now_ns; };
   DisturbedSource source(bench.camera(), [&](std::uint64_t, Frame frame) -> Result<Frame> {
     frame.host_time_ns = now_ns += 20'000'000;
     return frame;

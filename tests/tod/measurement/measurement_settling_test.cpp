@@ -45,16 +45,15 @@ TEST(MeasurementFaults, NoFrameIsLeftToAQueueWhileTheTargetSettles) {
     return frame;
   });
   SlowTarget target(scene_target(bench.holder, bench.plates), frames);
-  MeasurementOptions options = test::options_of(bench);
-  options.frames_while_presenting = FramesMeanwhile::take;
+  const MeasurementOptions options = test::options_of(bench);
+  bench.host->meanwhile = FramesMeanwhile::take;
   std::vector<std::int64_t> asked;
-  MeasurementListener listener;
-  listener.asked_while_presenting = [&](std::int64_t calls) {
+  bench.host->asked = [&](std::int64_t calls) {
     asked.push_back(calls);
     return calls;
   };
 
-  const auto result = bench.run(source, target, options, listener);
+  const auto result = bench.run(source, target, options);
 
   ASSERT_TRUE(result.has_value()) << result.error().message;
   EXPECT_FALSE(result->ended_by.has_value());
@@ -75,16 +74,15 @@ TEST(MeasurementFaults, ACameraThatIsLostWhileTheTargetSettlesIsALostCamera) {
     return frame;
   });
   SlowTarget target(scene_target(bench.holder, bench.plates), frames, last);
-  MeasurementOptions options = test::options_of(bench);
-  options.frames_while_presenting = FramesMeanwhile::take;
-  MeasurementListener listener;
+  const MeasurementOptions options = test::options_of(bench);
+  bench.host->meanwhile = FramesMeanwhile::take;
   int losses = 0;
-  listener.on_lost = [&](const Error&, std::stop_token) -> Result<void> {
+  bench.host->bring_back = [&](std::stop_token) -> Result<void> {
     ++losses;
     return {};
   };
 
-  const auto result = bench.run(source, target, options, listener);
+  const auto result = bench.run(source, target, options);
 
   ASSERT_TRUE(result.has_value()) << result.error().message;
   EXPECT_FALSE(result->ended_by.has_value());
@@ -123,14 +121,12 @@ TEST(MeasurementFaults, ACameraThatIsLostWhileTheTargetSettlesEndsTheWaitForTheT
     if (target.settling) return fail(ErrorCode::disconnected, "unplugged");
     return frame;
   });
-  MeasurementOptions options = test::options_of(bench);
-  options.frames_while_presenting = FramesMeanwhile::take;
+  const MeasurementOptions options = test::options_of(bench);
+  bench.host->meanwhile = FramesMeanwhile::take;
   MeasurementListener listener;
   std::vector<std::string> losses;
-  listener.on_lost = [&](const Error& why, std::stop_token) -> Result<void> {
-    losses.push_back(why.message);
-    return {};
-  };
+  listener.on_lost = [&](const Error& why) { losses.push_back(why.message); };
+  bench.host->bring_back = [](std::stop_token) -> Result<void> { return {}; };
 
   const auto result = bench.run(source, target, options, listener);
 
@@ -150,8 +146,8 @@ TEST(MeasurementFaults, AStopRequestWhileTheTargetSettlesIsNoLossOfTheCamera) {
     if (target.settling) stop.request_stop();
     return frame;
   });
-  MeasurementOptions options = test::options_of(bench);
-  options.frames_while_presenting = FramesMeanwhile::take;
+  const MeasurementOptions options = test::options_of(bench);
+  bench.host->meanwhile = FramesMeanwhile::take;
 
   const auto result = bench.run(source, target, options, {}, stop.get_token());
 

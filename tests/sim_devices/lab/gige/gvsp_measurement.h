@@ -167,7 +167,7 @@ struct WireBench : SimulatedBench {
     const auto target = scene_target(holder, plates);
     TemplateObserver observer({}, triangle_alternatives());
     ListedSchedule schedule = schedule_of(*this);
-    return measure(source, *target, observer, schedule, options, listener, std::move(stop));
+    return measure(source, *target, observer, schedule, options, *host, listener, std::move(stop));
   }
 };
 
@@ -185,7 +185,7 @@ inline WireRun run_over_the_wire(const WireBench& bench, FrameSource& source, Me
   LoggingSource logging(source);
   MeasurementOptions options = bench.options();
   options.frame_timeout = std::chrono::milliseconds(500);
-  options.now_ns = [&run] { return run.clock.emplace_back(monotonic_ns()); };
+  bench.host->clock = [&run](Moment) { return run.clock.emplace_back(monotonic_ns()); };
   listener.on_rejected = [&run](const RejectedFrame& frame) { run.rejected.insert(frame.sequence); };
   run.result = bench.measure_with(logging, options, listener);
   run.frames = std::move(logging.frames);
@@ -202,7 +202,8 @@ inline Result<MeasurementResult> undisturbed(const WireBench& bench, const WireR
   ReplayedSource source(run.info, std::move(frames));
   MeasurementOptions options = bench.options();
   const auto at = std::make_shared<std::size_t>(0);
-  options.now_ns = [at, clock = run.clock] { return clock[std::min((*at)++, clock.size() - 1)]; };
+  *bench.host = TestHost();
+  bench.host->clock = [at, clock = run.clock](Moment) { return clock[std::min((*at)++, clock.size() - 1)]; };
   return bench.measure_with(source, options, {});
 }
 

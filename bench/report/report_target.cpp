@@ -1,0 +1,90 @@
+// What the target was told, what it said, and what the camera saw of it.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "bench/report/number_format.h"
+#include "bench/report/report_pieces.h"
+
+namespace todbench {
+namespace {
+
+/// Mean of what was said, and what is farthest from the set-point.
+class Said {
+ public:
+  void add(const std::optional<double>& value, double set) {
+    if (!value || !std::isfinite(*value)) return;
+    sum_ += *value;
+    ++count_;
+    if (std::abs(*value - set) > std::abs(farthest_)) farthest_ = *value - set;
+  }
+  [[nodiscard]] std::optional<double> mean() const { return count_ > 0 ? std::optional(sum_ / count_) : std::nullopt; }
+  [[nodiscard]] std::optional<double> farthest() const { return count_ > 0 ? std::optional(farthest_) : std::nullopt; }
+
+ private:
+  double sum_ = 0, farthest_ = 0;
+  int count_ = 0;
+};
+
+struct ContrastRow {
+  Said read_back, sensors, seen;
+  double longest_s = 0;
+  int presentations = 0;
+};
+
+std::map<double, ContrastRow, std::greater<>> rows_by_contrast(const std::vector<Presentation>& presentations) {
+  std::map<double, ContrastRow, std::greater<>> rows;
+  for (const Presentation& shown : presentations) {
+    const double set_k = shown.set.delta_t_k;
+    ContrastRow& row = rows[set_k];
+    row.read_back.add(shown.said.state.delta_t_k, set_k);
+    if (shown.said.black_body_temperature_k && shown.said.plate_temperature_k)
+      row.sensors.add(*shown.said.black_body_temperature_k - *shown.said.plate_temperature_k, set_k);
+    row.seen.add(shown.delta_t_k, set_k);
+    if (std::isfinite(shown.said.settling_s)) row.longest_s = std::max(row.longest_s, shown.said.settling_s);
+    ++row.presentations;
+  }
+  return rows;
+}
+
+/// Kelvin to a tenth of a millikelvin, a tenth of what black bodies of this class resolve.
+Markup kelvin(const std::optional<double>& value, std::string_view reason) {
+  return value ? escaped(shown(*value, 4)) : missing(reason);
+}
+
+std::optional<double> difference(const std::optional<double>& a, const std::optional<double>& b) {
+  return a && b ? std::optional(*a - *b) : std::nullopt;
+}
+
+}  // namespace
+
+Markup target_table(const ReportData& data) {
+  if (data.presentations.empty()) return {};
+  constexpr std::string_view silent = "the target does not say", unseen = "not seen";
+  MarkupTable rows;
+  rows.caption =
+      "Contrast as it was set, as the target read it back and as the camera saw it, means over the presentations; "
+      "largest deviation of a read-back in brackets";
+  rows.header = {"Set (K)",
+                 "Read back (K)",
+                 "Seen (K)",
+                 "Read back − set (K)",
+                 "Seen − set (K)",
+                 "Seen − read back (K)",
+                 "Black body − plate (K)",
+                 "Longest settling (s)",
+                 "Presentations"};
+  for (const auto& [set_k, row] : rows_by_contrast(data.presentations)) {
+    const auto read_back = row.read_back.mean(), seen = row.seen.mean();
+    const Markup deviation =
+        read_back ? unbroken(shown(*read_back - set_k, 4) + " (" + shown(*row.read_back.farthest(), 4) + ")")
+                  : missing(silent);
+    rows.rows.push_back({escaped(stated(set_k)), kelvin(read_back, silent), kelvin(seen, unseen), deviation,
+                         kelvin(difference(seen, set_k), unseen), kelvin(difference(seen, read_back), unseen),
+                         kelvin(row.sensors.mean(), "no sensor says so"), escaped(shown(row.longest_s, 1)),
+                         escaped(std::to_string(row.presentations))});
+  }
+  return table(rows);
+}
+
+}  // namespace todbench

@@ -1,0 +1,72 @@
+// Rows of the session's CSV files as values: a header that is what it must be, fields one after the other.
+#pragma once
+
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "bench/text/csv_table.h"
+#include "tod/plate/target_plate.h"
+
+namespace todbench {
+
+/// Success when the header is exactly these columns in this order; `invalid_input` "NAME:1: ..." names the first that
+/// is not.
+[[nodiscard]] Result<void> check_columns(const CsvTable& table, std::span<const std::string_view> columns);
+
+/// "presentation,plate,..." with a line end.
+[[nodiscard]] std::string header_line(std::span<const std::string_view> columns);
+
+template <typename Whole>
+[[nodiscard]] std::optional<Whole> parse_whole(std::string_view text) {
+  Whole value{};
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// Takes the fields of one row one after the other and remembers the first that is wrong. Borrows both; `columns` are
+/// their names.
+class FieldReader {
+ public:
+  FieldReader(std::span<const std::string> fields, std::span<const std::string_view> columns)
+      : fields_(fields), columns_(columns) {}
+
+  [[nodiscard]] std::string text() { return fields_[position_++]; }
+  [[nodiscard]] double number();
+  /// Nothing for an empty field.
+  [[nodiscard]] std::optional<double> optional_number();
+  template <typename Whole>
+  [[nodiscard]] Whole whole() {
+    return taken(parse_whole<Whole>(fields_[position_]), "a whole number");
+  }
+  template <typename Whole>
+  [[nodiscard]] std::optional<Whole> optional_whole() {
+    if (skip_empty()) return std::nullopt;
+    return whole<Whole>();
+  }
+  [[nodiscard]] Apex apex() { return taken(apex_from(fields_[position_]), "up, right, down or left"); }
+  [[nodiscard]] Mounting mounting() { return taken(mounting_from(fields_[position_]), "a mounting"); }
+  [[nodiscard]] const std::optional<std::string>& wrong() const { return wrong_; }
+
+ private:
+  [[nodiscard]] bool skip_empty();
+  void note(std::string_view expected);
+  template <typename T>
+  T taken(const std::optional<T>& value, std::string_view expected) {
+    if (!value) note(expected);
+    ++position_;
+    return value.value_or(T{});
+  }
+
+  std::span<const std::string> fields_;
+  std::span<const std::string_view> columns_;
+  std::size_t position_ = 0;
+  std::optional<std::string> wrong_;
+};
+
+}  // namespace todbench

@@ -1,0 +1,119 @@
+#include "bench/session/targets_csv.h"
+
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "bench/session/csv_fields.h"
+#include "bench/text/csv_table.h"
+#include "bench/text/text.h"
+
+namespace todbench {
+namespace {
+
+constexpr std::array<std::string_view, 16> target_columns{"presentation",
+                                                          "plate",
+                                                          "mounting",
+                                                          "set_delta_t_k",
+                                                          "reached_delta_t_k",
+                                                          "delta_t_k",
+                                                          "plate_temperature_k",
+                                                          "black_body_temperature_k",
+                                                          "settling_s",
+                                                          "host_time_ns",
+                                                          "set_shift_x_mm",
+                                                          "set_shift_y_mm",
+                                                          "reached_plate",
+                                                          "reached_mounting",
+                                                          "reached_shift_x_mm",
+                                                          "reached_shift_y_mm"};
+
+std::string number_field(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? number_text(*value) : std::string();
+}
+
+std::string target_line(const Presentation& shown) {
+  const PresentedTarget& said = shown.said;
+  std::string line = std::to_string(shown.presentation);
+  const auto add = [&line](std::string_view field) { (line += ',') += field; };
+  add(csv_field(shown.set.plate));
+  add(to_string(shown.set.mounting));
+  add(number_text(shown.set.delta_t_k));
+  add(number_field(said.state.delta_t_k));
+  add(number_field(shown.delta_t_k));
+  add(number_field(said.plate_temperature_k));
+  add(number_field(said.black_body_temperature_k));
+  add(number_field(said.settling_s));
+  add(shown.host_time_ns ? std::to_string(*shown.host_time_ns) : std::string());
+  add(number_text(shown.set.shift_mm.x));
+  add(number_text(shown.set.shift_mm.y));
+  add(csv_field(said.state.plate));
+  add(to_string(said.state.mounting));
+  add(number_field(said.state.shift_mm.x));
+  add(number_field(said.state.shift_mm.y));
+  return line + "\n";
+}
+
+Presentation read_target(FieldReader& fields) {
+  // What an instrument said that was no number.
+  const auto said = [&fields] { return fields.optional_number().value_or(std::nan("")); };
+  Presentation shown;
+  shown.presentation = fields.whole<std::int64_t>();
+  shown.set.plate = fields.text();
+  shown.set.mounting = fields.mounting();
+  shown.set.delta_t_k = fields.number();
+  shown.said.state.delta_t_k = said();
+  shown.delta_t_k = fields.optional_number();
+  shown.said.plate_temperature_k = fields.optional_number();
+  shown.said.black_body_temperature_k = fields.optional_number();
+  shown.said.settling_s = said();
+  shown.host_time_ns = fields.optional_whole<std::int64_t>();
+  shown.set.shift_mm.x = fields.number();
+  shown.set.shift_mm.y = fields.number();
+  shown.said.state.plate = fields.text();
+  shown.said.state.mounting = fields.mounting();
+  shown.said.state.shift_mm.x = said();
+  shown.said.state.shift_mm.y = said();
+  return shown;
+}
+
+}  // namespace
+
+Result<TargetsWriter> TargetsWriter::create(const std::filesystem::path& file) {
+  Result<AppendFile> opened = AppendFile::open(file, AppendFile::Start::empty);
+  if (!opened) return tl::unexpected(opened.error());
+  if (const Result<void> written = opened->append(header_line(target_columns)); !written)
+    return tl::unexpected(written.error());
+  return TargetsWriter(*std::move(opened));
+}
+
+Result<void> TargetsWriter::append(const Presentation& shown) {
+  const TargetState& set = shown.set;
+  const std::string names = set.plate + shown.said.state.plate;
+  if (!std::isfinite(set.delta_t_k) || !std::isfinite(set.shift_mm.x) || !std::isfinite(set.shift_mm.y)) {
+    return fail(ErrorCode::internal, file_.path().string() + ": presentation " + std::to_string(shown.presentation) +
+                                         " has a set-point that is not finite");
+  }
+  if (names.find_first_of("\r\n") != std::string::npos)
+    return fail(ErrorCode::internal, file_.path().string() + ": a name with a line end: " + one_line(names));
+  return file_.append(target_line(shown));
+}
+
+Result<std::vector<Presentation>> read_targets(const std::filesystem::path& file) {
+  const Result<std::string> text = read_text_file(file);
+  if (!text) return tl::unexpected(text.error());
+  const Result<CsvTable> table = parse_csv(*text, file.string());
+  if (!table) return tl::unexpected(table.error());
+  if (const Result<void> as_expected = check_columns(*table, target_columns); !as_expected)
+    return tl::unexpected(as_expected.error());
+  std::vector<Presentation> presentations;
+  presentations.reserve(table->rows.size());
+  for (const CsvRow& row : table->rows) {
+    FieldReader fields(row.fields, target_columns);
+    presentations.push_back(read_target(fields));
+    if (fields.wrong()) return table->wrong(row.line, *fields.wrong());
+  }
+  return presentations;
+}
+
+}  // namespace todbench

@@ -1,0 +1,90 @@
+#include "bench/session/targets_csv.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "tests/bench/session/trial_values.h"
+#include "tests/support/temporary_folder.h"
+
+namespace todbench {
+namespace {
+
+using ::testing::HasSubstr;
+
+class TargetsCsv : public ::testing::Test {
+ protected:
+  void write(const std::vector<Presentation>& presentations) const {
+    Result<TargetsWriter> writer = TargetsWriter::create(file_);
+    ASSERT_TRUE(writer) << writer.error().message;
+    for (const Presentation& shown : presentations) ASSERT_TRUE(writer->append(shown));
+  }
+  /// The file after its one row was changed; the sentence that refuses it.
+  [[nodiscard]] std::string refused(const std::string& from, const std::string& to) const {
+    write({testing::full_presentation()});
+    std::string text = testing::content_of(file_);
+    text.replace(text.find(from), from.size(), to);
+    (void)folder_.write("targets.csv", text);
+    const auto read = read_targets(file_);
+    return read ? "accepted" : read.error().message;
+  }
+  testing::TemporaryFolder folder_;
+  std::filesystem::path file_ = folder_.path() / "targets.csv";
+};
+
+TEST_F(TargetsCsv, EveryValueComesBackExactly) {
+  Presentation silent = testing::full_presentation();
+  silent.said.plate_temperature_k.reset();
+  silent.said.black_body_temperature_k.reset();
+  silent.delta_t_k.reset();
+  silent.host_time_ns.reset();
+  const std::vector<Presentation> presentations{testing::full_presentation(), silent};
+
+  write(presentations);
+
+  const auto back = read_targets(file_);
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(*back, presentations);
+}
+
+TEST_F(TargetsCsv, TheHeaderStatesTheUnits) {
+  write({});
+
+  EXPECT_EQ(testing::content_of(file_),
+            "presentation,plate,mounting,set_delta_t_k,reached_delta_t_k,delta_t_k,plate_temperature_k,"
+            "black_body_temperature_k,settling_s,host_time_ns,set_shift_x_mm,set_shift_y_mm,reached_plate,"
+            "reached_mounting,reached_shift_x_mm,reached_shift_y_mm\n");
+}
+
+TEST_F(TargetsCsv, WhatATargetSaysThatIsNoNumberIsEmpty) {
+  Presentation odd = testing::full_presentation();
+  odd.said.state.delta_t_k = std::nan("");
+
+  write({odd});
+
+  const auto back = read_targets(file_);
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_TRUE(std::isnan(back->front().said.state.delta_t_k));
+}
+
+TEST_F(TargetsCsv, RefusesWhatItDidNotWriteWithTheLine) {
+  EXPECT_THAT(refused("settling_s", "settling_ms"), HasSubstr("targets.csv:1: column 9: expected settling_s, found"));
+  EXPECT_THAT(refused("-1.93", ""), HasSubstr("targets.csv:2: column set_delta_t_k: expected a finite number"));
+  EXPECT_THAT(refused("rotated_180", "upside down"), HasSubstr("targets.csv:2: column mounting: expected a mounting"));
+  EXPECT_THAT(refused("123456789012345", "1.5"), HasSubstr("column host_time_ns: expected a whole number"));
+}
+
+TEST_F(TargetsCsv, ASetPointThatIsNotFiniteIsADefect) {
+  Result<TargetsWriter> writer = TargetsWriter::create(file_);
+  ASSERT_TRUE(writer) << writer.error().message;
+  Presentation odd = testing::full_presentation();
+  odd.set.delta_t_k = std::nan("");
+
+  const auto appended = writer->append(odd);
+
+  ASSERT_FALSE(appended);
+  EXPECT_EQ(appended.error().code, ErrorCode::internal);
+}
+
+}  // namespace
+}  // namespace todbench

@@ -1,0 +1,25 @@
+// A plate of the plan with the observer prepared for each of its triangles.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "hvs/observer/observer.h"
+#include "tod/plate/target_plate.h"
+
+namespace todbench {
+
+struct PreparedPlate {
+  TargetPlate plate;                                               ///< identity mounting
+  std::vector<std::shared_ptr<const PreparedObserver>> observers;  ///< per triangle; empty until the scale is known
+  std::vector<double> size_px;                                     ///< per triangle
+  /// Of the windows of its triangles, in samples.
+  [[nodiscard]] std::vector<int> sides() const;
+};
+
+/// Prepares the observer for the sizes that the triangles have at this scale. Errors: those of the observer, with plate
+/// and triangle.
+[[nodiscard]] Result<void> prepare(PreparedPlate& plate, Observer& observer, double scale_px_per_mm,
+                                   int samples_per_pitch);
+
+}  // namespace todbench

@@ -1,0 +1,22 @@
+// One presentation: what the target was told, what it said, what the camera saw.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "tod/presentation/target.h"
+
+namespace todbench {
+
+struct Presentation {
+  std::int64_t presentation = 0;  ///< as in Trial; one that had to be made again has the same number
+  TargetState set;                ///< what the target was told
+  PresentedTarget said;           ///< what it answered
+  /// Effective contrast of the set-up at this set-point, as the camera saw it; nothing: it could not be measured.
+  std::optional<double> delta_t_k;
+  /// When the target was there, on the clock of Trial::host_time_ns; nothing: a simulated scene, which takes no time.
+  std::optional<std::int64_t> host_time_ns;
+  bool operator==(const Presentation&) const = default;
+};
+
+}  // namespace todbench
