@@ -189,7 +189,7 @@ Result<std::unique_ptr<FrameSource>> AravisBackend::open(const std::string& id) 
   auto source = AravisSource::create(std::move(camera), options_, std::move(info), std::move(address));
   if (!source) {
     // A camera that vanishes while it is being opened is not a camera lost in use.
-    return fail("opening " + *name, Error{ErrorCode::not_found, source.error().message});
+    return fail("opening " + *name, with_code(ErrorCode::not_found, source.error()));
   }
   return source;
 }

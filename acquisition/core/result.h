@@ -1,9 +1,12 @@
 // What can go wrong, as a value. No exception crosses an interface of todbench.
 #pragma once
 
+#include <cassert>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+#include <utility>
 
 namespace todbench {
 
@@ -21,10 +24,19 @@ enum class ErrorCode {
   internal,          ///< a defect of the program
 };
 
+/// What a failure is about, for a caller that has another name for it: a form, a command line.
+struct ErrorKey {
+  std::string name;    ///< a key of a description with its section ("target.delta_t_k"), an option ("--seed") or a file
+  std::string reason;  ///< what is wrong with it, without its name: "expected a number above 0, found 0"
+  bool operator==(const ErrorKey&) const = default;
+};
+
 /// A failure in one sentence. The message grows outwards: "opening gige:X: setting PixelFormat=Mono16: access denied".
+/// It is for people: what a caller branches on is `code`, what it names is `key`.
 struct Error {
   ErrorCode code = ErrorCode::internal;
   std::string message;
+  std::optional<ErrorKey> key{};
 };
 
 /// A value, or why there is none.
@@ -36,9 +48,34 @@ using Result = tl::expected<T, Error>;
   return tl::unexpected<Error>(Error{code, std::move(message)});
 }
 
-/// The same error, with what the caller was doing put in front.
+/// The failing side of a Result that is about `name`: "NAME: REASON".
+[[nodiscard]] inline tl::unexpected<Error> fail_at(ErrorCode code, std::string name, std::string reason) {
+  std::string message = name + ": " + reason;
+  return tl::unexpected<Error>(Error{code, std::move(message), ErrorKey{std::move(name), std::move(reason)}});
+}
+
+/// The same error, with what the caller was doing put in front. It stays about what it was about.
+[[nodiscard]] inline Error with_context(std::string_view doing, const Error& cause) {
+  return {cause.code, std::string(doing) + ": " + cause.message, cause.key};
+}
+
+/// with_context() as the failing side of a Result.
 [[nodiscard]] inline tl::unexpected<Error> fail(std::string_view doing, const Error& cause) {
-  return tl::unexpected<Error>(Error{cause.code, std::string(doing) + ": " + cause.message});
+  return tl::unexpected<Error>(with_context(doing, cause));
+}
+
+/// An error about a key under the name by which the caller's user knows it: "NAME: REASON". To be asked with a key
+/// only.
+[[nodiscard]] inline Error renamed(const Error& cause, std::string name) {
+  assert(cause.key);
+  std::string message = name + ": " + cause.key->reason;
+  return {cause.code, std::move(message), ErrorKey{std::move(name), cause.key->reason}};
+}
+
+/// The same error under another code: a caller for whom it means something else.
+[[nodiscard]] inline Error with_code(ErrorCode code, Error cause) {
+  cause.code = code;
+  return cause;
 }
 
 }  // namespace todbench

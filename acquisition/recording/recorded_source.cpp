@@ -36,7 +36,7 @@ class RecordedSource : public FrameSource {
     if (!recorded) {
       dead_ = true;
       return fail("reading frame " + std::to_string(position_) + " of " + recording_.info.id,
-                  Error{ErrorCode::disconnected, recorded.error().message});
+                  with_code(ErrorCode::disconnected, recorded.error()));
     }
     return frame(std::move(*recorded));
   }

@@ -212,7 +212,7 @@ tl::unexpected<Error> SeekSource::failed(const Error& error) {
   if (error.code == ErrorCode::disconnected) lost_ = true;
   // What the camera refused while it was there is no loss of the camera, but nothing can be measured with it.
   const auto code = error.code == ErrorCode::io ? ErrorCode::not_found : error.code;
-  return fail("camera " + info_.id, Error{code, error.message});
+  return fail("camera " + info_.id, with_code(code, error));
 }
 
 Error SeekSource::disconnected() const {

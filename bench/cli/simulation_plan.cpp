@@ -10,27 +10,23 @@
 namespace todbench {
 namespace {
 
-/// A key of a plan as its reader names it, and the option that stands for it.
+/// A key of a plan, and the option that stands for it.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 7> option_of_key{
-    {{"key 'delta_t_k' in [target]", "--delta-t-k"},
-     {"key 'sensor' in [simulation]", "--sensor"},
-     {"key 'accuracy' in [simulation]", "--accuracy"},
-     {"key 'tolerance_percent' in [simulation]", "--tolerance-percent"},
-     {"key 'skip' in [simulation]", "--skip"},
-     {"key 'force' in [simulation]", "--force"},
-     {"key 'name' in [observer]", "--observer"}}};
-constexpr std::string_view origin = "command line";
+    {{"target.delta_t_k", "--delta-t-k"},
+     {"simulation.sensor", "--sensor"},
+     {"simulation.accuracy", "--accuracy"},
+     {"simulation.tolerance_percent", "--tolerance-percent"},
+     {"simulation.skip", "--skip"},
+     {"simulation.force", "--force"},
+     {"observer.name", "--observer"}}};
 
-/// "command line:22: key 'delta_t_k' in [target]: REASON" becomes "--delta-t-k: REASON".
-std::string in_terms_of_options(std::string message) {
-  if (message.starts_with(origin)) {
-    const auto line_end = message.find(": ");
-    if (line_end != std::string::npos) message.erase(0, line_end + 2);
-  }
+/// What is wrong with the plan, said to somebody who wrote options and no plan.
+Error in_terms_of_options(const Error& error) {
+  if (!error.key) return with_context("with these options", error);
   for (const auto& [key, option] : option_of_key) {
-    if (message.starts_with(key)) return std::string(option) + message.substr(key.size());
+    if (error.key->name == key) return renamed(error, std::string(option));
   }
-  return "with these options: " + message;
+  return with_context("with these options", renamed(error, error.key->name));
 }
 
 Result<std::vector<Effect>> effects_of(const std::vector<std::string>& names, std::string_view option) {
@@ -40,9 +36,9 @@ Result<std::vector<Effect>> effects_of(const std::vector<std::string>& names, st
   for (const auto& name : names) {
     const auto effect = effect_from(name);
     if (!effect) {
-      return fail(ErrorCode::invalid_input, std::string(option) + ": unknown effect '" + one_line(name) + "'" +
-                                                nearest_name_hint(name, known) + " (known: " + quoted_list(known) +
-                                                ")");
+      return fail_at(ErrorCode::invalid_input, std::string(option),
+                     "unknown effect '" + one_line(name) + "'" + nearest_name_hint(name, known) +
+                         " (known: " + quoted_list(known) + ")");
     }
     effects.push_back(*effect);
   }
@@ -101,8 +97,8 @@ Result<Plan> simulation_plan(const SimulationOverrides& overrides, std::stop_tok
   if (!overrides.delta_t_k.empty()) plan->target.delta_t_k = overrides.delta_t_k;
   if (auto applied = apply_sensor(overrides, plan->simulation); !applied) return tl::unexpected(applied.error());
   if (auto applied = apply_effects(overrides, plan->simulation); !applied) return tl::unexpected(applied.error());
-  auto checked = parse_plan({.origin = std::string(origin), .text = to_toml(*plan)}, "");
-  if (!checked) return fail(checked.error().code, in_terms_of_options(checked.error().message));
+  auto checked = parse_plan({.origin = "command line", .text = to_toml(*plan)}, "");
+  if (!checked) return tl::unexpected(in_terms_of_options(checked.error()));
   return overrides.plan.empty() ? with_suitable_distance(*std::move(checked), std::move(stop)) : checked;
 }
 

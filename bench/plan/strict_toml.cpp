@@ -36,6 +36,9 @@ struct TomlReader::Table {
   [[nodiscard]] std::string name_of(std::string_view key) const {
     return "key '" + one_line(key) + "'" + (path.empty() ? "" : " in [" + path + "]");
   }
+  [[nodiscard]] std::string path_of(std::string_view key) const {
+    return (path.empty() ? "" : path + ".") + std::string(key);
+  }
 };
 
 /// What all readers of one file share: the parsed tree, the tables opened and the mistakes so far.
@@ -45,17 +48,19 @@ struct TomlReader::Document {
     Kind kind;
     std::uint32_t line;
     std::string message;
+    ErrorKey key;
   };
   std::string file;
   toml::table root;
   std::vector<Mistake> mistakes;
   std::vector<std::unique_ptr<Table>> tables;
 
-  [[nodiscard]] Mistake mistake(Kind kind, std::uint32_t line, const std::string& message) const {
-    return {kind, line, file + ":" + std::to_string(line) + ": " + message};
+  /// `sentence` says it with the key, as the file shows it.
+  [[nodiscard]] Mistake mistake(Kind kind, std::uint32_t line, const std::string& sentence, ErrorKey key) const {
+    return {kind, line, file + ":" + std::to_string(line) + ": " + sentence, std::move(key)};
   }
-  void wrong(const Table& table, std::string_view key, std::uint32_t line, const std::string& sentence) {
-    mistakes.push_back(mistake(Kind::present, line, table.name_of(key) + ": " + sentence));
+  void wrong(const Table& table, std::string_view key, std::uint32_t line, const std::string& reason) {
+    mistakes.push_back(mistake(Kind::present, line, table.name_of(key) + ": " + reason, {table.path_of(key), reason}));
   }
   Table* open(const toml::table* node, const std::string& path, std::uint32_t line) {
     tables.push_back(std::make_unique<Table>());
@@ -69,8 +74,8 @@ struct TomlReader::Document {
     table.asked.emplace(key);
     const toml::node* node = table.node ? table.node->get(key) : nullptr;
     if (!node && required) {
-      mistakes.push_back(
-          mistake(Kind::missing, table.line, "missing " + table.name_of(key) + ", expected " + expected));
+      mistakes.push_back(mistake(Kind::missing, table.line, "missing " + table.name_of(key) + ", expected " + expected,
+                                 {table.path_of(key), "missing, expected " + expected}));
     }
     return node;
   }
@@ -127,8 +132,8 @@ Result<TomlReader> TomlReader::parse(std::string_view text, const std::string& f
   try {
     document->root = toml::parse(text, file);
   } catch (const toml::parse_error& error) {
-    return fail(ErrorCode::invalid_input, file + ":" + std::to_string(error.source().begin.line) +
-                                              ": not valid TOML: " + one_line(error.description()));
+    return fail_at(ErrorCode::invalid_input, file + ":" + std::to_string(error.source().begin.line),
+                   "not valid TOML: " + one_line(error.description()));
   }
   Table* root = document->open(&document->root, "", 1);
   return TomlReader(std::move(document), root);
@@ -272,7 +277,7 @@ TomlReader TomlReader::section(std::string_view key) {
   const toml::table* table = node ? node->as_table() : nullptr;
   if (node && !table)
     document_->wrong(*table_, key, line_of(*node), expected_found("a table [" + std::string(key) + "]", *node));
-  const std::string path = (table_->path.empty() ? "" : table_->path + ".") + std::string(key);
+  const std::string path = table_->path_of(key);
   return {document_, document_->open(table, path, node ? line_of(*node) : table_->line)};
 }
 
@@ -280,7 +285,7 @@ std::vector<TomlReader> TomlReader::sections(std::string_view key) {
   std::vector<TomlReader> readers;
   const toml::node* node = document_->ask(*table_, key, false, "");
   if (!node) return readers;
-  const std::string path = (table_->path.empty() ? "" : table_->path + ".") + std::string(key);
+  const std::string path = table_->path_of(key);
   const auto* list = node->as_array();
   if (!list) {
     document_->wrong(*table_, key, line_of(*node), expected_found("tables [[" + path + "]]", *node));
@@ -325,15 +330,17 @@ Result<void> TomlReader::finish() const {
     for (const auto& [key, value] : *table->node) {
       if (table->asked.contains(key.str())) continue;
       const std::uint32_t line = std::max<std::uint32_t>(1, key.source().begin.line);
-      mistakes.push_back(document_->mistake(
-          Document::Kind::present, line, "unknown " + table->name_of(key.str()) + nearest_name_hint(key.str(), known)));
+      const std::string hint = nearest_name_hint(key.str(), known);
+      mistakes.push_back(document_->mistake(Document::Kind::present, line,
+                                            "unknown " + table->name_of(key.str()) + hint,
+                                            {table->path_of(key.str()), "unknown" + hint}));
     }
   }
   if (mistakes.empty()) return {};
   const auto first = std::min_element(mistakes.begin(), mistakes.end(), [](const auto& a, const auto& b) {
     return std::pair(a.kind, a.line) < std::pair(b.kind, b.line);
   });
-  return fail(ErrorCode::invalid_input, first->message);
+  return tl::unexpected(Error{ErrorCode::invalid_input, first->message, first->key});
 }
 
 }  // namespace todbench

@@ -82,8 +82,8 @@ class TomlReader {
   void reject(std::string_view key, std::size_t index, const std::string& sentence);
 
   /// Success when nothing was wrong and every key of the document was asked for. Otherwise the first mistake in the
-  /// order of lines, unknown keys before missing ones (a misspelt key is usually both). Covers the whole document,
-  /// whichever reader it is called on.
+  /// order of lines, unknown keys before missing ones (a misspelt key is usually both), `invalid_input` with its key.
+  /// Covers the whole document, whichever reader it is called on.
   [[nodiscard]] Result<void> finish() const;
 
  private:

@@ -50,7 +50,7 @@ class SimulatedBackend final : public CameraBackend {
 
   [[nodiscard]] Result<std::unique_ptr<FrameSource>> open(const std::string& id) override {
     auto spec = load_sensor(std::string_view(id).substr(simulated_scheme.size()));
-    if (!spec) return tl::unexpected(Error{ErrorCode::not_found, spec.error().message});
+    if (!spec) return tl::unexpected(with_code(ErrorCode::not_found, spec.error()));
     auto model = std::make_shared<const SensorModel>(*spec, full_plan(*spec, {}, {}), Accuracy::normal(), 1);
     return simulated_source(std::move(model), std::make_shared<SceneHolder>(empty_scene(2)), "1");
   }

@@ -186,10 +186,6 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
   return run;
 }
 
-Error with_context(std::string_view doing, const Error& error) {
-  return {error.code, std::string(doing) + ": " + error.message};
-}
-
 /// Writes report.html from what the folder holds.
 Result<void> write_report_of(SessionFolder& folder) {
   auto session = read_session(folder.path());

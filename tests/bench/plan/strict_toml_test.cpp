@@ -122,5 +122,30 @@ TEST(TomlReader, ARejectedElementIsReportedOnItsOwnLine) {
   EXPECT_EQ(reader->finish().error().message, "f:3: key 'a': three is too many");
 }
 
+std::optional<ErrorKey> key_of_complaint(std::string_view text) {
+  Result<TomlReader> reader = TomlReader::parse(text, "plan.toml");
+  if (!reader) return reader.error().key;
+  TomlReader target = reader->section("target");
+  (void)target.number("distance_m", NumberRange::positive(), std::nullopt);
+  const Result<void> read = reader->finish();
+  return read ? std::nullopt : read.error().key;
+}
+
+TEST(StrictTomlKeys, AnErrorHasTheKeyItIsAboutAndWhatIsWrongWithIt) {
+  EXPECT_EQ(key_of_complaint("[target]\ndistance_m = -2\n"),
+            (ErrorKey{"target.distance_m", "expected a number above 0, found -2"}));
+  EXPECT_EQ(key_of_complaint("[target]\n"), (ErrorKey{"target.distance_m", "missing, expected a number above 0"}));
+  EXPECT_EQ(key_of_complaint("[target]\ndistanc_m = 2\n"),
+            (ErrorKey{"target.distanc_m", "unknown, did you mean 'distance_m'?"}));
+  EXPECT_EQ(key_of_complaint("tarjet = 2\n"), (ErrorKey{"tarjet", "unknown, did you mean 'target'?"}));
+}
+
+TEST(StrictTomlKeys, ABrokenFileIsAboutItsLine) {
+  const auto key = key_of_complaint("a = 1\nb = =\n");
+
+  ASSERT_TRUE(key);
+  EXPECT_EQ(key->name, "plan.toml:2");
+}
+
 }  // namespace
 }  // namespace todbench
