@@ -40,9 +40,12 @@ Result<ReplayOutcome> replay_session(const std::filesystem::path& session, const
   if (!bench) return tl::unexpected(bench.error());
   Plan plan = recorded->plan;
   plan.measurement.record_frames = false;
-  auto inputs = read_inputs(plan);
+  const auto loaded = LoadedPlan::load(std::move(plan));
+  if (!loaded) return tl::unexpected(loaded.error());
+  EffectPlanner planner;
+  auto inputs = experiment_inputs(*loaded, planner);
   if (!inputs) return tl::unexpected(inputs.error());
-  auto run = measure_on_bench(plan, *inputs, *std::move(bench), options, listener, std::move(stop));
+  auto run = measure_on_bench(*loaded, *inputs, *std::move(bench), options, listener, std::move(stop));
   if (!run) return tl::unexpected(run.error());
 
   const bool cut_off = recorded->provenance.state == SessionState::running;
