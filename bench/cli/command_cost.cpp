@@ -49,7 +49,7 @@ Result<LoadedPlan> plan_of(const CostArguments& arguments) {
   if (arguments.session.empty()) return read_plan(arguments.plan);
   auto session = read_session(arguments.session);
   if (!session) return tl::unexpected(session.error());
-  return LoadedPlan::load(std::move(session->plan));
+  return LoadedPlan::of(std::move(session->plan), std::move(session->parts));
 }
 
 /// cost.json and, from the folder as it then is, the report; the manifest follows both.

@@ -93,6 +93,11 @@ Result<LoadedPlan> LoadedPlan::load(Plan plan, const ResourceFinder& find) {
   return LoadedPlan(std::move(plan), std::move(parts));
 }
 
+Result<LoadedPlan> LoadedPlan::of(Plan plan, PlanParts parts) {
+  if (auto valid = validate(plan); !valid) return tl::unexpected(valid.error());
+  return LoadedPlan(std::move(plan), std::move(parts));
+}
+
 Result<LoadedPlan> LoadedPlan::with(Plan plan, const ResourceFinder& find) const {
   if (auto valid = validate(plan); !valid) return tl::unexpected(valid.error());
   PlanParts parts = parts_;

@@ -34,6 +34,8 @@ class LoadedPlan {
   /// Validates the plan and reads its parts through `find`. Errors: `invalid_input` about the key (validate(), or a
   /// part that is not found or wrong).
   [[nodiscard]] static Result<LoadedPlan> load(Plan plan, const ResourceFinder& find = find_resource);
+  /// Of parts that have been read: those that the plan names. Errors: validate().
+  [[nodiscard]] static Result<LoadedPlan> of(Plan plan, PlanParts parts);
   /// Another plan, of which only those parts are read that this one does not name.
   [[nodiscard]] Result<LoadedPlan> with(Plan plan, const ResourceFinder& find = find_resource) const;
 

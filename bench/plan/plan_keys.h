@@ -84,8 +84,7 @@ struct PlanSection {
   [[nodiscard]] std::size_t count(const Plan& plan) const { return repeated() ? rows.count(plan) : 1; }
 };
 
-/// The table, in the order in which a plan is written. A section comes before what its keys fall back to nothing on:
-/// keys that a fallback or check reads are in earlier rows.
+/// The table, in the order in which a plan is read and written: what a fallback or a check looks at comes first.
 [[nodiscard]] const std::vector<PlanSection>& plan_sections();
 
 /// "target.delta_t_k": the name by which Error::key calls it.

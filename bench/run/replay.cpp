@@ -40,7 +40,7 @@ Result<ReplayOutcome> replay_session(const std::filesystem::path& session, const
   if (!bench) return tl::unexpected(bench.error());
   Plan plan = recorded->plan;
   plan.measurement.record_frames = false;
-  const auto loaded = LoadedPlan::load(std::move(plan));
+  const auto loaded = LoadedPlan::of(std::move(plan), recorded->parts);
   if (!loaded) return tl::unexpected(loaded.error());
   EffectPlanner planner;
   auto inputs = experiment_inputs(*loaded, planner);
