@@ -104,7 +104,8 @@ TEST(LoadedPlan, AnInvalidPlanMadeByHandBeginsNoRun) {
   const testing::TemporaryFolder folder;
   Plan plan;
   plan.target.distance_m = -1;
-  plan.camera = {.id = "sim:sc2000", .ifov_mrad = 1.3};
+  plan.camera.id = "sim:sc2000";
+  plan.camera.ifov_mrad = 1.3;
 
   const auto simulated = simulate_plan(plan, {.folder = folder.path() / "s"}, {}, {});
   const auto measured = measure_plan(plan, {.folder = folder.path() / "m"}, {}, {});
