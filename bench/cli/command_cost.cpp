@@ -41,15 +41,15 @@ void print_cost(const Console& console, const CostFrontier& frontier) {
 }
 
 /// The plan that is named, or that of the session.
-Result<Plan> plan_of(const CostArguments& arguments) {
+Result<LoadedPlan> plan_of(const CostArguments& arguments) {
   if (!arguments.plan.empty() && !arguments.session.empty())
     return fail(ErrorCode::invalid_input, "--session: the plan is that of the session, so no PLAN.toml may be named");
   if (arguments.plan.empty() && arguments.session.empty())
     return fail(ErrorCode::invalid_input, "cost: PLAN.toml or --session is required");
-  if (arguments.session.empty()) return load_plan(arguments.plan);
+  if (arguments.session.empty()) return read_plan(arguments.plan);
   auto session = read_session(arguments.session);
   if (!session) return tl::unexpected(session.error());
-  return std::move(session->plan);
+  return LoadedPlan::of(std::move(session->plan), std::move(session->parts));
 }
 
 /// cost.json and, from the folder as it then is, the report; the manifest follows both.
@@ -79,7 +79,12 @@ Result<void> write_results(const CostFrontier& frontier, const CostArguments& ar
 int run_cost(Console& console, const CostArguments& arguments, const Program& program) {
   auto plan = plan_of(arguments);
   if (!plan) return report_error(console, plan.error());
-  if (program.common.seed_given) plan->seed = program.common.seed;
+  if (program.common.seed_given) {
+    Plan seeded = plan->plan();
+    seeded.seed = program.common.seed;
+    plan = plan->with(std::move(seeded));
+    if (!plan) return report_error(console, plan.error());
+  }
   const CostListener listener{
       .on_phase = [&console](std::string_view phase) { console.phase(phase); },
       .on_progress = [&console](std::size_t done, std::size_t points) { console.progress(done, points); }};

@@ -10,9 +10,9 @@
 namespace todbench {
 namespace {
 
-void print_plan(const Console& console, const PlanPrediction& prediction) {
+void print_plan(const Console& console, const ExperimentInputs& inputs, const PlanPrediction& prediction) {
   std::vector<TableRow> effects;
-  for (const auto& d : prediction.effects.plan.decisions) {
+  for (const auto& d : inputs.effects.decisions) {
     effects.push_back({std::string(to_string(d.effect)), d.decision == Decision::simulate ? "simulate" : "skip",
                        fixed(d.predicted_change_percent, 3), d.reason});
   }
@@ -33,24 +33,27 @@ void print_plan(const Console& console, const PlanPrediction& prediction) {
 
 int run_plan(Console& console, SimulationOverrides overrides, const Program& program) {
   if (program.common.seed_given) overrides.seed = program.common.seed;
-  const auto plan = simulation_plan(overrides, program.stop->token());
-  if (!plan) return report_error(console, plan.error());
+  const auto loaded = simulation_plan(overrides, program.stop->token());
+  if (!loaded) return report_error(console, loaded.error());
+  const Plan& plan = loaded->plan();
   EffectPlanner planner;
-  auto prediction = predict_plan(*plan, planner);
+  const auto inputs = experiment_inputs(*loaded, planner);
+  if (!inputs) return report_error(console, inputs.error());
+  auto prediction = predict_plan(plan, *inputs);
   if (!prediction) return report_error(console, prediction.error());
-  if (auto timed = predict_times(*plan, *prediction, planner, program.stop->token()); !timed) {
+  if (auto timed = predict_times(plan, *inputs, *prediction, program.stop->token()); !timed) {
     if (timed.error().code == ErrorCode::interrupted) return report_error(console, timed.error());
     prediction->warnings.push_back("no predicted time: " + timed.error().message);
   }
   if (console.json()) {
-    console.object(plan_json(prediction->effects.plan, prediction->figures));
+    console.object(plan_json(inputs->effects, prediction->figures));
   } else {
-    print_plan(console, *prediction);
+    print_plan(console, *inputs, *prediction);
   }
   for (const auto& warning : prediction->warnings) console.note(warning);
   // Without a camera nothing will be compared.
-  if (!plan->camera.id.empty()) {
-    const std::string forecast = comparison_forecast(*plan, *prediction).sentence;
+  if (!plan.camera.id.empty()) {
+    const std::string forecast = comparison_forecast(plan, *prediction).sentence;
     if (!forecast.empty()) console.note(forecast);
   }
   // A plan that cannot find one of its thresholds is inconclusive before it starts.
@@ -64,23 +67,7 @@ void add_plan_command(CLI::App& app, Program& program) {
       "plan", "which effects will be simulated or skipped and why, how many trials, predicted time and uncertainty");
   auto o = std::make_shared<SimulationOverrides>();
   command->add_option("PLAN.toml", o->plan, "name or file")->required();
-  command->add_option("--sensor", o->sensor, "name or file");
-  command->add_option("--observer", o->observer, "name or file");
-  command->add_option("--microscan", o->microscan, "samples per detector pitch and axis, 1 to 4")
-      ->check(whole_number(1, 4));
-  command->add_option("--delta-t-k", o->delta_t_k, "contrasts in kelvin, separated by commas")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(number_in(-500, 500));
-  command->add_option("--tolerance-percent", o->tolerance_percent, "what may be wrong in the 75 % acuity")
-      ->check(number_above(0, 50));
-  command->add_option("--accuracy", o->accuracy, "draft, normal, reference or auto");
-  command->add_option("--skip", o->skip, "effects not to simulate, separated by commas")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command->add_option("--force", o->force, "effects to simulate, separated by commas")
-      ->delimiter(',')
-      ->allow_extra_args(false);
+  add_key_options(*command, OptionOf::simulations, o->keys);
   finish_command(*command, program, [o, &program](Console& console) { return run_plan(console, *o, program); });
 }
 

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
+#include "bench/cli/key_options.h"
 #include "bench/cli/simulation_plan.h"
 #include "bench/judgement/demand_kinds.h"
 #include "bench/judgement/verdict_record.h"
@@ -20,7 +21,7 @@ struct RunArguments {
   std::string plan;
   std::string out;
   bool overwrite = false;
-  bool record_frames = false;
+  KeyOverrides keys{};
 };
 
 struct SimulateArguments {
@@ -112,17 +113,26 @@ int finish(Console& console, const ExperimentOutcome& outcome) {
   return exit_code(outcome.verdict.decision);
 }
 
+/// The plan with what the command line says in place of it.
+Result<Plan> with_options(Plan plan, const RunArguments& arguments, const Program& program) {
+  if (program.common.seed_given) plan.seed = program.common.seed;
+  if (auto applied = apply(arguments.keys, plan); !applied) return tl::unexpected(applied.error());
+  return plan;
+}
+
 int run_measure(Console& console, const RunArguments& arguments, const Program& program) {
-  auto plan = load_plan(arguments.plan);
-  if (!plan) return report_error(console, plan.error());
-  if (plan->camera.id.empty()) {
+  auto loaded = read_plan(arguments.plan);
+  if (!loaded) return report_error(console, loaded.error());
+  if (loaded->plan().camera.id.empty()) {
     return report_error(console, {ErrorCode::invalid_input,
                                   arguments.plan + ": names no camera, expected key 'id' in [camera] (todbench devices "
                                                    "lists them)"});
   }
-  if (program.common.seed_given) plan->seed = program.common.seed;
-  if (arguments.record_frames) plan->measurement.record_frames = true;
-  auto outcome = measure_plan(*plan, folder_of(arguments, *plan), listener_of(console), program.stop->token());
+  const auto plan = with_options(loaded->plan(), arguments, program);
+  if (!plan) return report_error(console, plan.error());
+  loaded = loaded->with(*plan);
+  if (!loaded) return report_error(console, in_terms_of_options(loaded.error()));
+  auto outcome = measure_plan(*loaded, folder_of(arguments, *plan), listener_of(console), program.stop->token());
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
   if (console.json()) {
@@ -142,9 +152,10 @@ int run_measure(Console& console, const RunArguments& arguments, const Program& 
 
 int run_simulate(Console& console, SimulateArguments arguments, const Program& program) {
   if (program.common.seed_given) arguments.overrides.seed = program.common.seed;
-  auto plan = simulation_plan(arguments.overrides, program.stop->token());
-  if (!plan) return report_error(console, plan.error());
-  auto outcome = simulate_plan(*plan, folder_of(arguments.run, *plan), listener_of(console), program.stop->token());
+  const auto loaded = simulation_plan(arguments.overrides, program.stop->token());
+  if (!loaded) return report_error(console, loaded.error());
+  auto outcome =
+      simulate_plan(*loaded, folder_of(arguments.run, loaded->plan()), listener_of(console), program.stop->token());
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
   if (console.json()) {
@@ -163,9 +174,10 @@ int run_simulate(Console& console, SimulateArguments arguments, const Program& p
 int run_demo(Console& console, const RunArguments& arguments, const std::string& camera, const Program& program) {
 #ifdef TODBENCH_WITH_ARAVIS
   enter_emulation(camera);
-  auto plan = load_plan("demo");
+  const auto shipped = load_plan("demo");
+  if (!shipped) return report_error(console, shipped.error());
+  auto plan = with_options(*shipped, arguments, program);
   if (!plan) return report_error(console, plan.error());
-  if (program.common.seed_given) plan->seed = program.common.seed;
   EmulationArguments emulation = emulation_for(*plan);
   emulation.camera = camera;
   console.phase("starting the emulated laboratory");
@@ -173,7 +185,6 @@ int run_demo(Console& console, const RunArguments& arguments, const std::string&
   if (!laboratory) return report_error(console, laboratory.error());
   *plan = with_laboratory(*plan, **laboratory);
   if (camera != "gige") plan->unit = "emulated " + camera + " camera";
-  if (arguments.record_frames) plan->measurement.record_frames = true;
   auto outcome = measure_plan(*plan, folder_of(arguments, *plan), listener_of(console), program.stop->token());
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
@@ -207,11 +218,6 @@ bool names_a_plan(const std::string& word) {
 
 void add_folder_options(CLI::App& command, RunArguments& arguments) {
   command.add_option("--out", arguments.out, "session folder; default: session-TIME-NAME in the current folder");
-}
-
-void add_record_flag(CLI::App& command, RunArguments& arguments) {
-  command.add_flag("--record-frames", arguments.record_frames,
-                   "keep every frame in the session, for todbench replay (like [measurement] record_frames)");
 }
 
 int run_replay(Console& console, const std::string& session, const RunArguments& arguments, const Program& program) {
@@ -263,7 +269,7 @@ void add_measure_command(CLI::App& app, Program& program) {
   command->add_option("PLAN.toml", a->plan, "name or file")->required();
   add_folder_options(*command, *a);
   command->add_flag("--force", a->overwrite, "overwrite the session in an existing folder");
-  add_record_flag(*command, *a);
+  add_key_options(*command, OptionOf::measurements, a->keys);
   finish_command(*command, program, [a, &program](Console& console) { return run_measure(console, *a, program); });
 }
 
@@ -275,34 +281,24 @@ void add_simulate_command(CLI::App& app, Program& program) {
   command->add_option("PLAN.toml", o.plan,
                       "name or file; without it the options say what to simulate, at a distance that suits the sensor");
   add_folder_options(*command, a->run);
-  command->add_option("--sensor", o.sensor, "name or file");
-  command->add_option("--observer", o.observer, "name or file");
-  command->add_option("--microscan", o.microscan, "samples per detector pitch and axis, 1 to 4")
-      ->check(whole_number(1, 4));
-  command->add_option("--delta-t-k", o.delta_t_k, "contrasts in kelvin, separated by commas")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(number_in(-500, 500));
-  command->add_option("--tolerance-percent", o.tolerance_percent, "what may be wrong in the 75 % acuity")
-      ->check(number_above(0, 50));
-  command->add_option("--accuracy", o.accuracy, "draft, normal or reference");
-  command->add_option("--skip", o.skip, "effects not to simulate, separated by commas")
-      ->delimiter(',')
-      ->allow_extra_args(false);
+  // --force is here also the word for an existing folder.
+  add_key_options(*command, OptionOf::simulations, o.keys, "simulation.force");
+  auto forced = std::make_shared<std::vector<std::string>>();
   auto* force = command->add_option(
-      "--force", o.force,
+      "--force", *forced,
       "with effects: simulate them, neutral or not; alone: overwrite the session in an existing folder");
   force->expected(0, 1)->delimiter(',')->take_all()->trigger_on_parse(false);
-  finish_command(*command, program, [a, force, &program](Console& console) {
+  finish_command(*command, program, [a, force, forced, &program](Console& console) {
     SimulationOverrides& given = a->overrides;
     // The bare flag takes the word behind it for an effect; one that names a plan is the plan.
-    std::erase(given.force, std::string());
-    a->run.overwrite = given.force.size() < force->count();
-    if (given.plan.empty() && !given.force.empty() && names_a_plan(given.force.back())) {
-      given.plan = given.force.back();
-      given.force.pop_back();
+    std::erase(*forced, std::string());
+    a->run.overwrite = forced->size() < force->count();
+    if (given.plan.empty() && !forced->empty() && names_a_plan(forced->back())) {
+      given.plan = forced->back();
+      forced->pop_back();
       a->run.overwrite = true;
     }
+    if (!forced->empty()) given.keys.given["simulation.force"] = *forced;
     return run_simulate(console, std::move(*a), program);
   });
 }
@@ -314,7 +310,7 @@ void add_demo_command(CLI::App& app, Program& program) {
   auto camera = std::make_shared<std::string>(emulated_cameras().front());
   add_folder_options(*command, *a);
   command->add_flag("--force", a->overwrite, "overwrite the session in an existing folder");
-  add_record_flag(*command, *a);
+  add_key_options(*command, OptionOf::measurements, a->keys);
   command->add_option("--camera", *camera, "interface of the emulated camera")
       ->check(CLI::IsMember(emulated_cameras()))
       ->capture_default_str();

@@ -30,8 +30,6 @@ void finish_command(CLI::App& command, Program& program, std::function<int(Conso
 
 /// Checks of option values. Unlike those of the parser they refuse NaN and say what was found.
 [[nodiscard]] CLI::Validator number_in(double low, double high);
-/// Above `low`, up to `high`.
-[[nodiscard]] CLI::Validator number_above(double low, double high);
 [[nodiscard]] CLI::Validator whole_number(std::int64_t low, std::int64_t high);
 
 /// Says what went wrong and returns the exit code for it.

@@ -55,11 +55,6 @@ CLI::Validator number_in(double low, double high) {
                      "from " + number_text(low) + " to " + number_text(high));
 }
 
-CLI::Validator number_above(double low, double high) {
-  return number_that([=](double value) { return value > low && value <= high; },
-                     "above " + number_text(low) + " up to " + number_text(high));
-}
-
 CLI::Validator whole_number(std::int64_t low, std::int64_t high) {
   const std::string expected = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
   return CLI::Validator(

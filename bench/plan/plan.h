@@ -1,6 +1,7 @@
 // The plan of a measurement: what is measured with what, how long, and what is demanded. A value; the file is TOML.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <map>
@@ -36,6 +37,7 @@ enum class TargetKind {
   prompt,  ///< the operator changes the target when asked
   scene,   ///< the simulated scene of a simulated or emulated camera
 };
+inline constexpr std::array all_target_kinds{TargetKind::scpi, TargetKind::prompt, TargetKind::scene};
 [[nodiscard]] std::string_view to_string(TargetKind kind);
 
 /// [target]: what is shown, in every combination.
@@ -70,6 +72,7 @@ enum class ScheduleKind {
   adaptive,  ///< what the answers so far leave open, until intervals are narrow enough
              ///< (tod/schedule/adaptive_schedule.h)
 };
+inline constexpr std::array all_schedule_kinds{ScheduleKind::constant, ScheduleKind::adaptive};
 [[nodiscard]] std::string_view to_string(ScheduleKind kind);
 
 /// [schedule]: of camera and twin.
@@ -79,6 +82,8 @@ struct SchedulePlan {
   int max_presentations = 1000;    ///< adaptive: hard cap over all contrasts
   bool operator==(const SchedulePlan&) const = default;
 };
+
+inline constexpr std::array all_psychometric_forms{PsychometricForm::size, PsychometricForm::acuity};
 
 /// [fit]
 struct FitPlan {
@@ -154,6 +159,8 @@ struct Plan {
   bool operator==(const Plan&) const = default;
 };
 
+/// A plan's keys are the rows of bench/plan/plan_key_table.cpp; docs/plan-keys.md lists them.
+///
 /// Reads a plan by name ("demo") or file. Relative files named in it are relative to its folder and absolute in the
 /// result. `invalid_input` with file and line for anything unknown, missing, of the wrong type, out of range,
 /// contradictory or not found.
@@ -162,6 +169,11 @@ struct Plan {
 [[nodiscard]] Result<Plan> parse_plan(const Resource& resource, const std::filesystem::path& folder);
 /// The plan as TOML with nothing left out: parse_plan() of it is equal.
 [[nodiscard]] std::string to_toml(const Plan& plan);
+
+/// What parse_plan() refuses in a file, of a plan that was made in any other way: values out of range and what
+/// contradicts each other. `invalid_input` about the key. What the plan names is not looked for: that is
+/// LoadedPlan::load() (bench/plan/loaded_plan.h).
+[[nodiscard]] Result<void> validate(const Plan& plan);
 
 /// The instruments whose due date is before `today`, as one sentence with code `calibration`; success when there is
 /// none.

@@ -3,34 +3,12 @@
 #include <algorithm>
 #include <iterator>
 
-#include "bench/plan/descriptions.h"
 #include "tod/schedule/adaptive_schedule.h"
 
 namespace todbench {
 
 std::string_view to_string(Side side) {
   return side == Side::measured ? "measured" : "simulated";
-}
-
-Result<SensorSpec> sensor_of(const Plan& plan) {
-  Result<SensorSpec> sensor = load_sensor(plan.simulation.sensor);
-  if (sensor) sensor->microscan = plan.simulation.microscan;
-  return sensor;
-}
-
-Result<std::vector<TargetPlate>> plates_of(const Plan& plan) {
-  std::vector<TargetPlate> plates;
-  for (const std::string& reference : plan.target.plates) {
-    Result<TargetPlate> plate = load_plate(reference);
-    if (!plate) return tl::unexpected(plate.error());
-    for (const TargetPlate& other : plates) {
-      if (other.name == plate->name) {
-        return fail(ErrorCode::invalid_input, reference + ": a second plate with the name '" + plate->name + "'");
-      }
-    }
-    plates.push_back(*std::move(plate));
-  }
-  return plates;
 }
 
 MeasurementOptions measurement_options(const Plan& plan, const std::vector<TargetPlate>& plates, double ifov_mrad) {

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "bench/plan/plan.h"
-#include "sim_devices/sensor/sensor_spec.h"
 #include "tod/comparison/comparison.h"
 #include "tod/presentation/target.h"
 
@@ -18,10 +17,6 @@ enum class Side {
 };
 [[nodiscard]] std::string_view to_string(Side side);
 
-/// The simulated sensor of a plan, with the microscan of the plan.
-[[nodiscard]] Result<SensorSpec> sensor_of(const Plan& plan);
-/// The plates of a plan, in its order.
-[[nodiscard]] Result<std::vector<TargetPlate>> plates_of(const Plan& plan);
 /// `ifov_mrad` is that of the camera, or of the sensor for the simulated side. The seed is that of the plan.
 [[nodiscard]] MeasurementOptions measurement_options(const Plan& plan, const std::vector<TargetPlate>& plates,
                                                      double ifov_mrad);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,5 +40,7 @@ struct Resource {
 /// Finds a resource; relative files are relative to the current folder. `invalid_input`: unknown name (the known ones
 /// and the nearest are said) or a file that cannot be read.
 [[nodiscard]] Result<Resource> find_resource(ResourceKind kind, std::string_view reference);
+/// find_resource(), or what stands in for it.
+using ResourceFinder = std::function<Result<Resource>(ResourceKind kind, std::string_view reference)>;
 
 }  // namespace todbench

@@ -168,7 +168,10 @@ Alignment look_at_plate(const cv::Mat1d& kelvin, const TargetPlate& mounted_plat
 }
 
 Result<void> align_plan(const Plan& plan, const AlignmentListener& listener, std::stop_token stop) {
-  auto inputs = read_inputs(plan);
+  const auto loaded = LoadedPlan::load(plan);
+  if (!loaded) return tl::unexpected(loaded.error());
+  EffectPlanner planner;
+  auto inputs = experiment_inputs(*loaded, planner);
   if (!inputs) return tl::unexpected(inputs.error());
   if (listener.on_phase) listener.on_phase("opening " + plan.camera.id);
   auto bench = open_bench(plan, inputs->plates, stop);

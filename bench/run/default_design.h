@@ -3,13 +3,13 @@
 
 #include <stop_token>
 
-#include "bench/plan/plan.h"
+#include "bench/plan/loaded_plan.h"
 
 namespace todbench {
 
 /// The plan with the distance at which the sizes of its plates straddle the 75 % sizes that a draft estimate predicts
 /// for its contrasts, as far as the plates fit into the picture. Leaves the distance alone where there is no estimate.
-/// Errors: as load_sensor, load_plate; `interrupted`.
-[[nodiscard]] Result<Plan> with_suitable_distance(Plan plan, std::stop_token stop);
+/// Errors: `interrupted`.
+[[nodiscard]] Result<LoadedPlan> with_suitable_distance(const LoadedPlan& loaded, std::stop_token stop);
 
 }  // namespace todbench

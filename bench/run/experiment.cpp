@@ -238,10 +238,11 @@ ExperimentOutcome concluded(ExperimentOutcome outcome, const Plan& plan, Session
 }
 
 /// Creates the folder and writes what is known before the first frame.
-Result<SessionFolder> begin_session(const Plan& plan, const ExperimentOptions& options, const Provenance& provenance) {
+Result<SessionFolder> begin_session(const LoadedPlan& loaded, const ExperimentOptions& options,
+                                    const Provenance& provenance) {
   auto folder = SessionFolder::create(options.folder, options.existing);
   if (!folder) return folder;
-  if (auto written = folder->write_plan(plan); !written) return tl::unexpected(written.error());
+  if (auto written = folder->write_plan(loaded); !written) return tl::unexpected(written.error());
   if (auto written = folder->write_provenance(provenance); !written) return tl::unexpected(written.error());
   return folder;
 }
@@ -284,8 +285,8 @@ TwinResults run_twin(const Plan& plan, const ExperimentInputs& inputs, const Tod
 }
 
 /// A tolerance beyond the hard caps is refused before anything is simulated or moved.
-Result<void> check_tolerance(const Plan& plan, EffectPlanner& planner) {
-  if (const auto prediction = predict_plan(plan, planner); !prediction) return tl::unexpected(prediction.error());
+Result<void> check_tolerance(const Plan& plan, const ExperimentInputs& inputs) {
+  if (const auto prediction = predict_plan(plan, inputs); !prediction) return tl::unexpected(prediction.error());
   return {};
 }
 
@@ -309,15 +310,23 @@ Result<MeasurementResult> run_measured(const Plan& plan, const ExperimentInputs&
 
 Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOptions& options,
                                         const ExperimentListener& listener, std::stop_token stop) {
+  const auto loaded = LoadedPlan::load(plan);
+  if (!loaded) return tl::unexpected(loaded.error());
+  return simulate_plan(*loaded, options, listener, std::move(stop));
+}
+
+Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const ExperimentOptions& options,
+                                        const ExperimentListener& listener, std::stop_token stop) {
+  const Plan& plan = loaded.plan();
   EffectPlanner planner;
-  auto inputs = read_inputs(plan, planner);
+  auto inputs = experiment_inputs(loaded, planner);
   if (!inputs) return tl::unexpected(inputs.error());
   Provenance provenance = begin_provenance(plan, Side::simulated);
   provenance.effects = inputs->effects;
   provenance.target = "simulated scene";
   if (auto fits = check_simulated_geometry(plan, *inputs); !fits) return tl::unexpected(fits.error());
-  if (auto possible = check_tolerance(plan, planner); !possible) return tl::unexpected(possible.error());
-  auto folder = begin_session(plan, options, provenance);
+  if (auto possible = check_tolerance(plan, *inputs); !possible) return tl::unexpected(possible.error());
+  auto folder = begin_session(loaded, options, provenance);
   if (!folder) return tl::unexpected(folder.error());
   if (listener.on_session) listener.on_session(folder->path());
 
@@ -346,21 +355,30 @@ Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOption
 
 Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions& options,
                                        const ExperimentListener& listener, std::stop_token stop) {
+  const auto loaded = LoadedPlan::load(plan);
+  if (!loaded) return tl::unexpected(loaded.error());
+  return measure_plan(*loaded, options, listener, std::move(stop));
+}
+
+Result<ExperimentOutcome> measure_plan(const LoadedPlan& loaded, const ExperimentOptions& options,
+                                       const ExperimentListener& listener, std::stop_token stop) {
+  const Plan& plan = loaded.plan();
   if (plan.camera.id.empty()) return fail(ErrorCode::invalid_input, "the plan names no camera: [camera] id is missing");
   if (auto valid = check_calibration(plan, today()); !valid) return tl::unexpected(valid.error());
   EffectPlanner planner;
-  auto inputs = read_inputs(plan, planner);
+  auto inputs = experiment_inputs(loaded, planner);
   if (!inputs) return tl::unexpected(inputs.error());
-  if (auto possible = check_tolerance(plan, planner); !possible) return tl::unexpected(possible.error());
+  if (auto possible = check_tolerance(plan, *inputs); !possible) return tl::unexpected(possible.error());
   if (listener.on_phase) listener.on_phase("opening " + plan.camera.id);
   auto bench = open_bench(plan, inputs->plates, stop, options.host);
   if (!bench) return tl::unexpected(bench.error());
-  return measure_on_bench(plan, *inputs, *std::move(bench), options, listener, std::move(stop));
+  return measure_on_bench(loaded, *inputs, *std::move(bench), options, listener, std::move(stop));
 }
 
-Result<ExperimentOutcome> measure_on_bench(const Plan& plan, const ExperimentInputs& inputs, OpenedBench bench,
+Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const ExperimentInputs& inputs, OpenedBench bench,
                                            const ExperimentOptions& options, const ExperimentListener& listener,
                                            std::stop_token stop) {
+  const Plan& plan = loaded.plan();
   if (listener.on_open) listener.on_open(bench.camera->info());
   if (listener.on_frame) bench.camera = observed_source(std::move(bench.camera), listener.on_frame);
   const SourceInfo info = bench.camera->info();
@@ -375,7 +393,7 @@ Result<ExperimentOutcome> measure_on_bench(const Plan& plan, const ExperimentInp
   provenance.effects = inputs.effects;
   provenance.camera = camera_record(info);
   provenance.target = bench.target->capabilities().description;
-  auto folder = begin_session(plan, options, provenance);
+  auto folder = begin_session(loaded, options, provenance);
   if (!folder) return tl::unexpected(folder.error());
   if (listener.on_session) listener.on_session(folder->path());
   for (const auto& warning : info.warnings) note(*folder, listener, warning);
@@ -386,7 +404,7 @@ Result<ExperimentOutcome> measure_on_bench(const Plan& plan, const ExperimentInp
   }
 
   std::string forecast;
-  if (const auto prediction = predict_plan(plan)) forecast = comparison_forecast(plan, *prediction).sentence;
+  if (const auto prediction = predict_plan(plan, inputs)) forecast = comparison_forecast(plan, *prediction).sentence;
   if (!forecast.empty()) note(*folder, listener, forecast);
 
   const auto begin = Clock::now();

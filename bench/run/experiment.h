@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "bench/judgement/verdict.h"
-#include "bench/plan/plan.h"
+#include "bench/plan/loaded_plan.h"
 #include "bench/plan/plan_options.h"
 #include "bench/run/devices.h"
 #include "bench/run/experiment_host.h"
@@ -57,16 +57,22 @@ struct ExperimentOutcome {
 };
 
 /// Measures with the devices of the plan, runs its simulated twin and compares. Fails when nothing could be measured:
-/// without a folder when a device cannot be opened, with a folder marked interrupted after that.
+/// without a folder when a device cannot be opened, with a folder marked interrupted after that. Of what the plan names
+/// nothing is read again.
+[[nodiscard]] Result<ExperimentOutcome> measure_plan(const LoadedPlan& loaded, const ExperimentOptions& options,
+                                                     const ExperimentListener& listener, std::stop_token stop);
+/// The same after LoadedPlan::load().
 [[nodiscard]] Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions& options,
                                                      const ExperimentListener& listener, std::stop_token stop);
 
 /// measure_plan() on a bench that is open already.
-[[nodiscard]] Result<ExperimentOutcome> measure_on_bench(const Plan& plan, const ExperimentInputs& inputs,
+[[nodiscard]] Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const ExperimentInputs& inputs,
                                                          OpenedBench bench, const ExperimentOptions& options,
                                                          const ExperimentListener& listener, std::stop_token stop);
 
 /// The same with the simulated sensor in place of the camera, and its direct estimate.
+[[nodiscard]] Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const ExperimentOptions& options,
+                                                      const ExperimentListener& listener, std::stop_token stop);
 [[nodiscard]] Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOptions& options,
                                                       const ExperimentListener& listener, std::stop_token stop);
 

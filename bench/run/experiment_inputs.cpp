@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
 #include "bench/text/text.h"
 #include "tod/measurement/geometry.h"
@@ -35,33 +34,24 @@ Result<EffectPlan> planned_effects(const Plan& plan, const SensorSpec& sensor, c
                        .force = plan.simulation.force});
 }
 
-Result<ExperimentInputs> read_inputs(const Plan& plan) {
-  EffectPlanner planner;
-  return read_inputs(plan, planner);
-}
-
-Result<ExperimentInputs> read_inputs(const Plan& plan, EffectPlanner& planner) {
+Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlanner& planner) {
+  const Plan& plan = loaded.plan();
   ExperimentInputs inputs;
-  auto plates = plates_of(plan);
-  if (!plates) return tl::unexpected(plates.error());
-  inputs.plates = std::move(*plates);
-  auto observer = load_observer(plan.observer);
-  if (!observer) return tl::unexpected(observer.error());
-  inputs.observer = *observer;
-  auto sensor = sensor_of(plan);
-  if (!sensor) return tl::unexpected(sensor.error());
+  inputs.plates = loaded.plates();
+  inputs.observer = loaded.observer();
   inputs.motion = plan.simulation.motion;
-  auto effects = planned_effects(plan, *sensor, inputs.observer, planner);
+  auto effects = planned_effects(plan, loaded.sensor(), inputs.observer, planner);
   if (effects) {
     inputs.effects = std::move(effects->plan);
+    inputs.outlooks = std::move(effects->outlooks);
     inputs.warnings = std::move(effects->warnings);
   } else {
     inputs.identifiable = false;
     // Without a threshold there is nothing that skipping could change by little.
-    inputs.effects = full_plan(*sensor, plan.simulation.skip, plan.simulation.force, inputs.motion);
+    inputs.effects = full_plan(loaded.sensor(), plan.simulation.skip, plan.simulation.force, inputs.motion);
     inputs.warnings.push_back(effects.error().message);
   }
-  inputs.sensor = as_planned(*sensor, inputs.effects);
+  inputs.sensor = as_planned(loaded.sensor(), inputs.effects);
   auto accuracy = accuracy_of(plan);
   if (!accuracy) return tl::unexpected(accuracy.error());
   inputs.accuracy = *accuracy;

@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "bench/plan/plan.h"
+#include "bench/plan/loaded_plan.h"
 #include "hvs/observer/template_observer.h"
 #include "sim_devices/prediction/effect_planner.h"
 #include "sim_devices/sensor/sensor_plan.h"
@@ -13,12 +13,13 @@
 
 namespace todbench {
 
-/// What a plan names, read once.
+/// What a run works with: the parts of a plan, and what the planner decided about them.
 struct ExperimentInputs {
   std::vector<TargetPlate> plates;
   TemplateObserverSpec observer;
-  SensorSpec sensor;   ///< as planned: parameters of skipped effects at their neutral values
-  SensorPlan effects;  ///< what the scene calls for within the tolerance, and why
+  SensorSpec sensor;                      ///< as planned: parameters of skipped effects at their neutral values
+  SensorPlan effects;                     ///< what the scene calls for within the tolerance, and why
+  std::vector<ContrastOutlook> outlooks;  ///< per contrast that has a threshold
   SceneMotion motion{};
   std::vector<std::string> warnings;  ///< of the planner, a sentence each
   bool identifiable = true;           ///< a contrast has a threshold
@@ -29,9 +30,8 @@ struct ExperimentInputs {
 [[nodiscard]] Result<EffectPlan> planned_effects(const Plan& plan, const SensorSpec& sensor,
                                                  const TemplateObserverSpec& observer, EffectPlanner& planner);
 
-/// Errors as the loaders of the parts. Without a planner, one of its own.
-[[nodiscard]] Result<ExperimentInputs> read_inputs(const Plan& plan, EffectPlanner& planner);
-[[nodiscard]] Result<ExperimentInputs> read_inputs(const Plan& plan);
+/// Asks the planner once; where no contrast has a threshold everything is simulated, and a warning says so.
+[[nodiscard]] Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlanner& planner);
 
 /// How the simulated sensor is measured: as the camera, but nothing has to settle and nothing is corrected.
 [[nodiscard]] MeasurementOptions simulated_options(const Plan& plan, const ExperimentInputs& inputs);

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
+#include "bench/run/bench_time.h"
 #include "bench/run/time_prediction.h"
 #include "bench/text/text.h"
 #include "sim_devices/prediction/direct_timing.h"
@@ -65,18 +65,18 @@ void adapt(ContrastPrediction& point, const Plan& plan, const std::vector<Target
 
 /// A tolerance that the caps do not allow is refused with the best that they do at every contrast, and its price on
 /// this machine.
-Result<void> reachable(const Plan& plan, const Accuracy& accuracy, const EffectPlan& effects,
-                       const TemplateObserverSpec& observer, const SensorSpec& sensor) {
+Result<void> reachable(const Plan& plan, const ExperimentInputs& inputs) {
+  const Accuracy& accuracy = inputs.accuracy;
   const auto draws_at = [&](const ContrastOutlook& outlook) { return needed_draws(accuracy, outlook.q_eff); };
-  const auto worst = std::ranges::max_element(effects.outlooks, {}, draws_at);
-  if (worst == effects.outlooks.end() || draws_at(*worst) <= Accuracy::max_noise_draws) return {};
+  const auto worst = std::ranges::max_element(inputs.outlooks, {}, draws_at);
+  if (worst == inputs.outlooks.end() || draws_at(*worst) <= Accuracy::max_noise_draws) return {};
   // Half the tolerance is the demanded standard error, which falls with the root of the draws.
   const double best = plan.simulation.tolerance_percent * std::sqrt(draws_at(*worst) / Accuracy::max_noise_draws);
   double price_s = 0;
-  for (const auto& outlook : effects.outlooks) {
+  for (const auto& outlook : inputs.outlooks) {
     const double draws = std::min<double>(draws_at(outlook), Accuracy::max_noise_draws);
-    const auto price = measured_direct_seconds(sensor, effects.plan, observer, outlook.delta_t_k, outlook.s75_pitch,
-                                               draws, accuracy, plan.simulation.motion);
+    const auto price = measured_direct_seconds(inputs.sensor, inputs.effects, inputs.observer, outlook.delta_t_k,
+                                               outlook.s75_pitch, draws, accuracy, inputs.motion);
     if (!price) return tl::unexpected(price.error());
     price_s += *price;
   }
@@ -90,37 +90,20 @@ Result<void> reachable(const Plan& plan, const Accuracy& accuracy, const EffectP
 
 }  // namespace
 
-Result<PlanPrediction> predict_plan(const Plan& plan) {
-  EffectPlanner planner;
-  return predict_plan(plan, planner);
+std::optional<double> expected_presentations(const Plan& plan, const std::vector<TargetPlate>& plates,
+                                             const std::vector<ContrastPrediction>& contrasts) {
+  if (plan.schedule.kind != ScheduleKind::adaptive || contrasts.empty() || plates.empty()) return std::nullopt;
+  double triangles = 0, trials = 0;
+  for (const auto& plate : plates) triangles += static_cast<double>(plate.triangles.size());
+  for (const auto& contrast : contrasts) trials += contrast.trials;
+  return triangles > 0 ? std::optional(trials * static_cast<double>(plates.size()) / triangles) : std::nullopt;
 }
 
-Result<PlanPrediction> predict_plan(const Plan& plan, EffectPlanner& planner) {
-  auto plates = plates_of(plan);
-  if (!plates) return tl::unexpected(plates.error());
-  auto observer_spec = load_observer(plan.observer);
-  if (!observer_spec) return tl::unexpected(observer_spec.error());
-  auto sensor = sensor_of(plan);
-  if (!sensor) return tl::unexpected(sensor.error());
-  const auto accuracy = accuracy_of(plan);
-  if (!accuracy) return tl::unexpected(accuracy.error());
-  auto effects = planned_effects(plan, *sensor, *observer_spec, planner);
-  if (!effects) {
-    // No contrast has a threshold: nothing can be left out, nothing will be found.
-    EffectPlan none{.plan = full_plan(*sensor, plan.simulation.skip, plan.simulation.force, plan.simulation.motion),
-                    .skipped_change_percent = 0,
-                    .requested_change_percent = 0,
-                    .outlooks = {},
-                    .warnings = {effects.error().message}};
-    effects = std::move(none);
-  }
-  const SensorSpec simulated = as_planned(*sensor, effects->plan);
-  if (auto met = reachable(plan, *accuracy, *effects, *observer_spec, simulated); !met)
-    return tl::unexpected(met.error());
+Result<PlanPrediction> predict_plan(const Plan& plan, const ExperimentInputs& inputs) {
+  if (auto met = reachable(plan, inputs); !met) return tl::unexpected(met.error());
 
-  PlanPrediction out{.effects = *std::move(effects), .figures = {}, .contrasts = {}, .warnings = {}};
-  out.warnings = out.effects.warnings;
-  const auto levels = levels_of(plan, *plates);
+  PlanPrediction out{.figures = {}, .contrasts = {}, .warnings = inputs.warnings};
+  const auto levels = levels_of(plan, inputs.plates);
   double constant_trials = 0, trials = 0;  // per contrast, of all
   for (const auto& level : levels) constant_trials += level.total;
   bool all_identified = true;
@@ -129,12 +112,12 @@ Result<PlanPrediction> predict_plan(const Plan& plan, EffectPlanner& planner) {
                              .s75_mrad = std::nullopt,
                              .uncertainty_percent = std::nullopt,
                              .trials = constant_trials};
-    for (const auto& outlook : out.effects.outlooks) {
+    for (const auto& outlook : inputs.outlooks) {
       if (outlook.delta_t_k != delta_t_k) continue;
-      point.s75_mrad = outlook.s75_pitch * sensor->ifov_mrad();
+      point.s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
       point.uncertainty_percent = uncertainty_percent(plan, levels, *point.s75_mrad, outlook.weibull_slope);
     }
-    adapt(point, plan, *plates);
+    adapt(point, plan, inputs.plates);
     trials += point.trials;
     if (point.uncertainty_percent) {
       out.figures.predicted_uncertainty_percent =
@@ -150,18 +133,15 @@ Result<PlanPrediction> predict_plan(const Plan& plan, EffectPlanner& planner) {
   return out;
 }
 
-Result<void> predict_times(const Plan& plan, PlanPrediction& prediction, std::stop_token stop) {
-  EffectPlanner planner;
-  return predict_times(plan, prediction, planner, std::move(stop));
-}
-
-Result<void> predict_times(const Plan& plan, PlanPrediction& prediction, EffectPlanner& planner, std::stop_token stop) {
-  const auto inputs = read_inputs(plan, planner);
-  if (!inputs) return tl::unexpected(inputs.error());
-  const auto time = predict_time(plan, *inputs, prediction.effects.outlooks, std::move(stop));
+Result<void> predict_times(const Plan& plan, const ExperimentInputs& inputs, PlanPrediction& prediction,
+                           std::stop_token stop) {
+  const auto time = predict_time(plan, inputs, std::move(stop));
   if (!time) return tl::unexpected(time.error());
   prediction.figures.predicted_s = time->simulation_s;
-  prediction.figures.predicted_measurement_s = time->measurement_s;
+  if (plan.camera.id.empty()) return {};
+  const auto presentations = expected_presentations(plan, inputs.plates, prediction.contrasts);
+  const BenchTime bench = bench_time(plan, inputs.plates, inputs.sensor.frame_rate_hz, presentations);
+  prediction.figures.predicted_measurement_s = time->measuring_s + bench.total_s();
   return {};
 }
 

@@ -22,24 +22,23 @@ struct ContrastPrediction {
 };
 
 struct PlanPrediction {
-  EffectPlan effects;
   PlanFigures figures;  ///< uncertainty: the largest over the contrasts; no times
   std::vector<ContrastPrediction> contrasts;
   std::vector<std::string> warnings;  ///< a sentence each
 };
 
-/// Nothing is simulated; a tenth of a second, and two milliseconds where `planner` knows the scene: plans that
-/// differ in tolerance, trials, schedule and the like. Without a planner, one of its own. Errors: as read_inputs() for
-/// what a plan names, `invalid_input` where the tolerance cannot be met within the hard caps (the message says what can
-/// and for what time). Contrasts without threshold have no uncertainty, and then the plan has none; a warning names
-/// them.
-[[nodiscard]] Result<PlanPrediction> predict_plan(const Plan& plan, EffectPlanner& planner);
-[[nodiscard]] Result<PlanPrediction> predict_plan(const Plan& plan);
+/// Nothing is simulated and nothing read; two milliseconds. `inputs` are those of the plan (experiment_inputs()).
+/// `invalid_input` where the tolerance cannot be met within the hard caps (the message says what can and for what
+/// time). Contrasts without threshold have no uncertainty, and then the plan has none; a warning names them.
+[[nodiscard]] Result<PlanPrediction> predict_plan(const Plan& plan, const ExperimentInputs& inputs);
 
-/// Adds the times to a prediction of the same plan, as predict_time() (bench/run/time_prediction.h); a plan whose times
-/// cannot be predicted keeps none.
-[[nodiscard]] Result<void> predict_times(const Plan& plan, PlanPrediction& prediction, EffectPlanner& planner,
+/// Adds the times to a prediction of the same plan: predict_time() (bench/run/time_prediction.h) and bench_time()
+/// (bench/run/bench_time.h). A plan whose times cannot be predicted keeps none.
+[[nodiscard]] Result<void> predict_times(const Plan& plan, const ExperimentInputs& inputs, PlanPrediction& prediction,
                                          std::stop_token stop);
-[[nodiscard]] Result<void> predict_times(const Plan& plan, PlanPrediction& prediction, std::stop_token stop);
+
+/// Presentations to be expected of an adaptive schedule; nothing of the other, which shows its list.
+[[nodiscard]] std::optional<double> expected_presentations(const Plan& plan, const std::vector<TargetPlate>& plates,
+                                                           const std::vector<ContrastPrediction>& contrasts);
 
 }  // namespace todbench

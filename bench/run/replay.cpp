@@ -40,9 +40,12 @@ Result<ReplayOutcome> replay_session(const std::filesystem::path& session, const
   if (!recording) return tl::unexpected(recording.error());
   Plan plan = recorded->plan;
   plan.measurement.record_frames = false;
-  auto inputs = read_inputs(plan);
+  const auto loaded = LoadedPlan::of(std::move(plan), recorded->parts);
+  if (!loaded) return tl::unexpected(loaded.error());
+  EffectPlanner planner;
+  auto inputs = experiment_inputs(*loaded, planner);
   if (!inputs) return tl::unexpected(inputs.error());
-  auto run = measure_on_bench(plan, *inputs, std::move(recording->bench), options, listener, std::move(stop));
+  auto run = measure_on_bench(*loaded, *inputs, std::move(recording->bench), options, listener, std::move(stop));
   // What was measured with answers to other questions is no replay.
   if (auto agreed = recording->answers->agreed(); !agreed) return tl::unexpected(agreed.error());
   if (!run) return tl::unexpected(run.error());

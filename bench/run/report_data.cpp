@@ -68,9 +68,7 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
   data.distance_m = plan.target.distance_m;
   data.ifov_mrad = plan.camera.ifov_mrad;
   data.target = provenance.target;
-  auto plates = plates_of(plan);
-  if (!plates) return tl::unexpected(plates.error());
-  data.plates = std::move(*plates);
+  data.plates = session.parts.plates;
   data.presentations = session.presentations;
   data.observer = plan.observer;
   data.fit = fit_options(plan);
@@ -81,10 +79,9 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
     data.simulated = session.curve;
   }
   data.comparison = session.comparison;
-  auto sensor = sensor_of(plan);
-  if (!sensor) return tl::unexpected(sensor.error());
-  data.simulated_sensor = *sensor;
-  if (data.ifov_mrad == 0) data.ifov_mrad = sensor->ifov_mrad();
+  data.simulated_sensor = session.parts.sensor;
+  data.simulated_sensor->microscan = plan.simulation.microscan;
+  if (data.ifov_mrad == 0) data.ifov_mrad = session.parts.sensor.ifov_mrad();
   data.plan = provenance.effects;
   data.cost = session.cost;
   data.verdict = verdict_of(session);

@@ -129,21 +129,6 @@ Counts counts_of(const Plan& plan, const ExperimentInputs& inputs, int phases) {
   return counts;
 }
 
-/// What the camera waits for: the target, its frames, its corrections.
-double waiting_s(const Plan& plan, const ExperimentInputs& inputs, const Counts& counts) {
-  if (plan.target.kind == TargetKind::scene) return 0;  // a simulated camera is as fast as the processor
-  const double plates = static_cast<double>(inputs.plates.size());
-  const double set_ups = plates * counts.set_ups, contrasts = set_ups * counts.contrasts;
-  const double shown = plates * counts.presentations;
-  const double changes = plates * plan.target.plate_change_s + (set_ups - plates) * plan.target.mounting_change_s +
-                         (contrasts - set_ups) * plan.target.contrast_change_s +
-                         (shown - contrasts) * plan.target.shift_change_s;
-  const double frames = plates * frames_of(plan, counts) + (shown + contrasts) * plan.measurement.frames_after_change;
-  const double running = changes + frames / inputs.sensor.frame_rate_hz;
-  const double corrections = plan.camera.nuc_interval_s > 0 ? running / plan.camera.nuc_interval_s + 1 : 0;
-  return running + corrections * plan.camera.nuc_wait_s;
-}
-
 }  // namespace
 
 double needed_draws(const Accuracy& accuracy, double q_eff) {
@@ -152,33 +137,30 @@ double needed_draws(const Accuracy& accuracy, double q_eff) {
   return std::max<double>(accuracy.noise_draws, needed);
 }
 
-Result<TimePrediction> predict_time(const Plan& plan, const ExperimentInputs& inputs,
-                                    const std::vector<ContrastOutlook>& outlooks, std::stop_token stop) {
+Result<TimePrediction> predict_time(const Plan& plan, const ExperimentInputs& inputs, std::stop_token stop) {
   const auto model = std::make_shared<const SensorModel>(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
   TemplateObserver observer(inputs.observer, triangle_alternatives());
   const MeasurementOptions options = simulated_options(plan, inputs);
   const Counts simulated = counts_of(plan, inputs, plan.simulation.phases);
   const Counts measured = counts_of(plan, inputs, plan.target.phases);
   TimePrediction out;
-  double camera_s = 0;
   for (const auto& plate : inputs.plates) {
     if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
     const auto speed = speed_on(plate, model, observer, options, inputs, stop);
     if (!speed) return fail("timing plate " + plate.name, speed.error());
     const double drawing = simulated.presentations * speed->draw + frames_of(plan, simulated) * speed->frame;
     out.simulation_s += response_s(*speed) + looking_s(*speed, simulated) + drawing;
-    camera_s += response_s(*speed) + looking_s(*speed, measured) + frames_of(plan, measured) * speed->frame;
-    if (plan.target.kind == TargetKind::scene) camera_s += measured.presentations * speed->draw;
+    out.measuring_s += response_s(*speed) + looking_s(*speed, measured) + frames_of(plan, measured) * speed->frame;
+    if (plan.target.kind == TargetKind::scene) out.measuring_s += measured.presentations * speed->draw;
   }
   out.simulation_s += simulated.contrasts * fit_s;
-  for (const auto& outlook : outlooks) {
+  for (const auto& outlook : inputs.outlooks) {
     const double draws = std::min<double>(needed_draws(inputs.accuracy, outlook.q_eff), Accuracy::max_noise_draws);
     const auto seconds = measured_direct_seconds(inputs.sensor, inputs.effects, inputs.observer, outlook.delta_t_k,
                                                  outlook.s75_pitch, draws, inputs.accuracy, inputs.motion);
     if (!seconds) return tl::unexpected(seconds.error());
     out.simulation_s += *seconds;
   }
-  if (!plan.camera.id.empty()) out.measurement_s = camera_s + waiting_s(plan, inputs, measured);
   return out;
 }
 

@@ -52,9 +52,7 @@ class InputCopies {
   explicit InputCopies(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   /// Copies a description; the result is the reference to be written into session.toml.
-  Result<std::string> copy(ResourceKind kind, const std::string& reference) {
-    const Result<Resource> resource = find_resource(kind, reference);
-    if (!resource) return tl::unexpected(resource.error());
+  Result<std::string> copy(ResourceKind kind, const std::string& reference, const std::string& text) {
     const std::string stem = std::string(to_string(kind)) + "-" + std::filesystem::path(reference).stem().string();
     std::string name = stem + ".toml";
     for (int i = 2; !used_.insert(name).second; ++i) name = stem + "-" + std::to_string(i) + ".toml";
@@ -62,7 +60,7 @@ class InputCopies {
     std::filesystem::create_directories(folder_ / "inputs", problem);
     if (problem)
       return fail(ErrorCode::io, (folder_ / "inputs").string() + ": cannot be created: " + problem.message());
-    if (const Result<void> written = write_file_atomically(folder_ / "inputs" / name, resource->text); !written) {
+    if (const Result<void> written = write_file_atomically(folder_ / "inputs" / name, text); !written) {
       return tl::unexpected(written.error());
     }
     return is_file_reference(reference) ? "inputs/" + name : reference;
@@ -202,14 +200,14 @@ Result<SessionFolder> SessionFolder::create_numbered(const std::filesystem::path
   }
 }
 
-Result<void> SessionFolder::write_plan(const Plan& plan) {
-  Plan stored = plan;
+Result<void> SessionFolder::write_plan(const LoadedPlan& loaded) {
+  Plan stored = loaded.plan();
   InputCopies copies(folder_);
   std::vector<std::pair<ResourceKind, std::string*>> references{{ResourceKind::observer, &stored.observer},
                                                                 {ResourceKind::sensor, &stored.simulation.sensor}};
   for (std::string& plate : stored.target.plates) references.emplace_back(ResourceKind::plate, &plate);
   for (const auto& [kind, reference] : references) {
-    Result<std::string> copied = copies.copy(kind, *reference);
+    Result<std::string> copied = copies.copy(kind, *reference, loaded.parts().sources.at({kind, *reference}).text);
     if (!copied) return tl::unexpected(copied.error());
     *reference = *std::move(copied);
   }
@@ -277,9 +275,10 @@ Result<Session> read_session(const std::filesystem::path& folder) {
     return fail(ErrorCode::invalid_input, folder.string() + ": not a session folder (there is no session.toml)");
   }
   Session session;
-  Result<Plan> plan = load_plan((folder / "session.toml").string());
-  if (!plan) return tl::unexpected(plan.error());
-  session.plan = *std::move(plan);
+  const Result<LoadedPlan> loaded = read_plan((folder / "session.toml").string());
+  if (!loaded) return tl::unexpected(loaded.error());
+  session.plan = loaded->plan();
+  session.parts = loaded->parts();
 
   const std::filesystem::path provenance_file = folder / "provenance.json";
   const Result<Json> provenance_text = read_json(provenance_file);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bench/judgement/verdict.h"
-#include "bench/plan/plan.h"
+#include "bench/plan/loaded_plan.h"
 #include "bench/session/manifest.h"
 #include "bench/session/provenance.h"
 #include "bench/session/targets_csv.h"
@@ -44,7 +44,7 @@ class SessionFolder {
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
   /// session.toml; the plates, sensor and observer used are copied to inputs/, and references to files point there.
   /// References to built-in descriptions stay names.
-  [[nodiscard]] Result<void> write_plan(const Plan& plan);
+  [[nodiscard]] Result<void> write_plan(const LoadedPlan& loaded);
   /// provenance.json. Written with state running at the start and again whenever more is known.
   [[nodiscard]] Result<void> write_provenance(const Provenance& provenance);
   /// trials.csv or trials_simulated.csv.
@@ -73,6 +73,7 @@ class SessionFolder {
 /// A session as values.
 struct Session {
   Plan plan;
+  PlanParts parts;  ///< what the plan names
   Provenance provenance;
   std::vector<Trial> trials;  ///< of the main curve
   std::vector<Trial> twin_trials;

@@ -103,26 +103,25 @@ std::vector<CostChoice> choices_of(const Plan& plan, const SensorSpec& sensor, c
 
 }  // namespace
 
-Result<CostFrontier> cost_of_plan(const Plan& plan, double budget_s, const CostListener& listener,
+Result<CostFrontier> cost_of_plan(const LoadedPlan& loaded, double budget_s, const CostListener& listener,
                                   std::stop_token stop) {
-  // Says in a sentence what a plan cannot reach, before anything is measured.
+  const Plan& plan = loaded.plan();
   EffectPlanner planner;
-  const auto prediction = predict_plan(plan, planner);
-  if (!prediction) return tl::unexpected(prediction.error());
-  if (prediction->effects.outlooks.empty()) {
+  const auto inputs = experiment_inputs(loaded, planner);
+  if (!inputs) return tl::unexpected(inputs.error());
+  // Says in a sentence what a plan cannot reach, before anything is measured.
+  if (const auto prediction = predict_plan(plan, *inputs); !prediction) return tl::unexpected(prediction.error());
+  if (inputs->outlooks.empty()) {
     CostFrontier nothing;
     nothing.budget_s = budget_s;
-    nothing.notes = prediction->effects.warnings;
+    nothing.notes = inputs->warnings;
     return nothing;
   }
-  const auto inputs = read_inputs(plan, planner);
-  if (!inputs) return tl::unexpected(inputs.error());
   if (auto fits = check_simulated_geometry(plan, *inputs); !fits) return tl::unexpected(fits.error());
-  auto sensor = sensor_of(plan);
-  if (!sensor) return tl::unexpected(sensor.error());
-  auto choices = choices_of(plan, *sensor, *inputs, planner);
-  const CostTask task{.sensor = *sensor,
-                      .full = full_plan(*sensor, {}, {}, plan.simulation.motion),
+  const SensorSpec& sensor = loaded.sensor();
+  auto choices = choices_of(plan, sensor, *inputs, planner);
+  const CostTask task{.sensor = sensor,
+                      .full = full_plan(sensor, {}, {}, plan.simulation.motion),
                       .observer = inputs->observer,
                       .motion = inputs->motion,
                       .delta_t_k = plan.target.delta_t_k,

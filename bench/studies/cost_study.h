@@ -3,7 +3,7 @@
 
 #include <stop_token>
 
-#include "bench/plan/plan.h"
+#include "bench/plan/loaded_plan.h"
 #include "sim_devices/prediction/cost_frontier.h"
 
 namespace todbench {
@@ -11,9 +11,9 @@ namespace todbench {
 /// Measures cost_frontier() for a plan. Planner's choices: what the plan asks for (chosen), the effects and accuracy of
 /// tolerances from 0.5 to 5 %, and the named levels with the effects of the plan. Trials: the plan's own measurement on
 /// its simulated sensor with 1, 2, 4, ... of its phases (adaptive: presentations), registration, contrast and
-/// psychometric fit included. Errors: as read_inputs(), check_simulated_geometry() and cost_frontier();
+/// psychometric fit included. Errors: as LoadedPlan::load(), check_simulated_geometry() and cost_frontier();
 /// `invalid_input` where the tolerance of the plan cannot be met.
-[[nodiscard]] Result<CostFrontier> cost_of_plan(const Plan& plan, double budget_s, const CostListener& listener,
+[[nodiscard]] Result<CostFrontier> cost_of_plan(const LoadedPlan& loaded, double budget_s, const CostListener& listener,
                                                 std::stop_token stop);
 
 }  // namespace todbench

@@ -75,15 +75,20 @@ std::vector<TimedPlan> plans() {
 /// The ratio predicted / actual; nothing when the plan cannot be run.
 Result<double> ratio_of(const TimedPlan& timed) {
   const auto folder = std::filesystem::temp_directory_path() / "todbench_predicted_time";
-  auto prediction = predict_plan(timed.plan);
+  const auto loaded = LoadedPlan::load(timed.plan);
+  if (!loaded) return tl::unexpected(loaded.error());
+  EffectPlanner planner;
+  const auto inputs = experiment_inputs(*loaded, planner);
+  if (!inputs) return tl::unexpected(inputs.error());
+  auto prediction = predict_plan(timed.plan, *inputs);
   if (!prediction) return tl::unexpected(prediction.error());
-  if (auto times = predict_times(timed.plan, *prediction, {}); !times) return tl::unexpected(times.error());
+  if (auto times = predict_times(timed.plan, *inputs, *prediction, {}); !times) return tl::unexpected(times.error());
   double predicted_s = *prediction->figures.predicted_s;
   if (timed.side == Side::measured) predicted_s += prediction->figures.predicted_measurement_s.value();
   const ExperimentOptions options{.folder = folder, .existing = ExistingFolder::overwrite};
   const double start = processor_seconds();
-  const auto outcome = timed.side == Side::measured ? measure_plan(timed.plan, options, {}, {})
-                                                    : simulate_plan(timed.plan, options, {}, {});
+  const auto outcome =
+      timed.side == Side::measured ? measure_plan(*loaded, options, {}, {}) : simulate_plan(*loaded, options, {}, {});
   const double actual_s = processor_seconds() - start;
   std::filesystem::remove_all(folder);
   if (!outcome) return tl::unexpected(outcome.error());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "bench/plan/loaded_plan.h"
 #include "bench/plan/plan_options.h"
 #include "bench/run/devices.h"
 #include "tod/schedule/schedule.h"
@@ -32,11 +33,11 @@ Result<OpenedBench> open_for_looking(const Plan& plan, const std::stop_token& st
   const bool driven = plan.target.kind == TargetKind::scene ||
                       (plan.target.kind == TargetKind::scpi && !plan.target.black_body.empty());
   if (driven) {
-    auto plates = plates_of(plan);
-    if (!plates) return tl::unexpected(plates.error());
-    auto bench = open_bench(plan, *plates, stop);
+    const auto loaded = LoadedPlan::load(plan);
+    if (!loaded) return tl::unexpected(loaded.error());
+    auto bench = open_bench(plan, loaded->plates(), stop);
     if (!bench) return bench;
-    if (auto shown = show_first_state(plan, *plates, *bench->target, stop); !shown)
+    if (auto shown = show_first_state(plan, loaded->plates(), *bench->target, stop); !shown)
       return tl::unexpected(shown.error());
     return bench;
   }

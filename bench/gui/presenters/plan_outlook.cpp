@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
+#include "bench/run/bench_time.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "tod/plate/test_pattern.h"
 
@@ -19,24 +19,6 @@ double triangles_of(const std::vector<TargetPlate>& plates) {
   return triangles;
 }
 
-double duration_s(const TargetPlan& target, double presentations, double frames_per_set_up, double frame_rate_hz) {
-  const auto plates = static_cast<double>(target.plates.size());
-  const auto mountings = static_cast<double>(target.mountings.size());
-  const auto contrasts = static_cast<double>(target.delta_t_k.size());
-  // Nested so that what takes longest changes least often.
-  std::vector<std::pair<double, double>> levels{
-      {target.plate_change_s, plates}, {target.mounting_change_s, mountings}, {target.contrast_change_s, contrasts}};
-  std::stable_sort(levels.begin(), levels.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  double changes = 1, seconds = 0;
-  for (const auto& [cost, count] : levels) {
-    changes *= count;
-    seconds += cost * changes;
-  }
-  // Per presentation: the shift, two exposures in flight, the one that is measured.
-  seconds += presentations * (target.shift_change_s + 3 / frame_rate_hz);
-  return seconds + changes * frames_per_set_up / frame_rate_hz;
-}
-
 /// With `phases` in place of `from`: intervals in ln S75 fall with the root of the number of answers.
 std::optional<double> rescaled_percent(std::optional<double> uncertainty_percent, int from, int phases) {
   if (!uncertainty_percent || from == phases || phases <= 0) return uncertainty_percent;
@@ -49,30 +31,20 @@ const ContrastPrediction* at(const std::vector<ContrastPrediction>& contrasts, d
   return found == contrasts.end() ? nullptr : &*found;
 }
 
-/// Answers that an adaptive schedule is expected to need, all contrasts together.
-std::optional<double> adaptive_trials(const Plan& plan, const PlanForecast* seen) {
-  if (plan.schedule.kind != ScheduleKind::adaptive || seen == nullptr || seen->camera.empty()) return std::nullopt;
-  double trials = 0;
-  for (const auto& contrast : seen->camera) trials += contrast.trials;
-  return trials;
-}
-
 }  // namespace
 
-Result<std::vector<ExpectedThreshold>> expected_thresholds(const Plan& plan, std::stop_token stop) {
-  auto sensor = sensor_of(plan);
-  if (!sensor) return tl::unexpected(sensor.error());
-  auto spec = load_observer(plan.observer);
-  if (!spec) return tl::unexpected(spec.error());
-  TemplateObserver observer(*spec, triangle_alternatives());
-  const SensorPlan effects = full_plan(*sensor, plan.simulation.skip, plan.simulation.force, plan.simulation.motion);
+Result<std::vector<ExpectedThreshold>> expected_thresholds(const LoadedPlan& loaded, std::stop_token stop) {
+  const Plan& plan = loaded.plan();
+  const SensorSpec& sensor = loaded.sensor();
+  TemplateObserver observer(loaded.observer(), triangle_alternatives());
+  const SensorPlan effects = full_plan(sensor, plan.simulation.skip, plan.simulation.force, plan.simulation.motion);
   std::vector<ExpectedThreshold> out;
   for (const double contrast : plan.target.delta_t_k) {
     ExpectedThreshold expected{.delta_t_k = contrast, .s75_mrad = {}};
-    const auto point = direct_estimate(as_planned(*sensor, effects), effects, observer, {std::abs(contrast)},
+    const auto point = direct_estimate(as_planned(sensor, effects), effects, observer, {std::abs(contrast)},
                                        {.motion = plan.simulation.motion, .accuracy = Accuracy::draft(), .stop = stop});
     if (!point && point.error().code == ErrorCode::interrupted) return tl::unexpected(point.error());
-    if (point) expected.s75_mrad = point->front().s75_pitch * sensor->ifov_mrad();
+    if (point) expected.s75_mrad = point->front().s75_pitch * sensor.ifov_mrad();
     out.push_back(expected);
   }
   return out;
@@ -89,26 +61,25 @@ TodCurve as_curve(const std::vector<ExpectedThreshold>& expected) {
   return curve;
 }
 
-Result<PlanForecast> forecast(const Plan& plan, EffectPlanner& planner, std::stop_token stop) {
+Result<PlanForecast> forecast(const LoadedPlan& loaded, EffectPlanner& planner, std::stop_token stop) {
+  const Plan& plan = loaded.plan();
   PlanForecast out;
   out.plan = plan;
-  auto prediction = predict_plan(plan, planner);
+  auto inputs = experiment_inputs(loaded, planner);
+  if (!inputs) return tl::unexpected(inputs.error());
+  auto prediction = predict_plan(plan, *inputs);
+  // A tolerance that the simulation cannot meet does not keep the effects from being planned.
+  out.warnings = prediction ? prediction->warnings : inputs->warnings;
   if (prediction) {
-    if (auto timed = predict_times(plan, *prediction, planner, stop);
+    if (auto timed = predict_times(plan, *inputs, *prediction, stop);
         !timed && timed.error().code == ErrorCode::interrupted)
       return tl::unexpected(timed.error());
-    out.effects = std::move(prediction->effects.plan);
-    out.warnings = std::move(prediction->warnings);
     out.twin = std::move(prediction->contrasts);
     out.twin_s = prediction->figures.predicted_s;
   } else {
-    // A tolerance that the simulation cannot meet does not keep the effects from being planned.
-    auto inputs = read_inputs(plan, planner);
-    if (!inputs) return tl::unexpected(inputs.error());
-    out.effects = std::move(inputs->effects);
-    out.warnings = std::move(inputs->warnings);
     out.problem = prediction.error().message;
   }
+  out.effects = inputs->effects;
   if (out.problem.empty() && plan.simulation.phases == plan.target.phases) {
     out.camera = out.twin;
     return out;
@@ -117,7 +88,10 @@ Result<PlanForecast> forecast(const Plan& plan, EffectPlanner& planner, std::sto
   camera.simulation.phases = plan.target.phases;
   // What limits the simulation does not limit the camera.
   camera.simulation.accuracy = "draft";
-  if (auto seen = predict_plan(camera, planner)) out.camera = std::move(seen->contrasts);
+  auto accuracy = accuracy_of(camera);
+  if (!accuracy) return tl::unexpected(accuracy.error());
+  inputs->accuracy = *accuracy;
+  if (auto seen = predict_plan(camera, *inputs)) out.camera = std::move(seen->contrasts);
   return out;
 }
 
@@ -133,18 +107,13 @@ std::optional<double> PlanOutlook::uncertainty_percent() const {
 PlanOutlook outlook(const Plan& plan, const std::vector<TargetPlate>& plates, const PlanForecast* seen,
                     double frame_rate_hz) {
   PlanOutlook out;
-  const double repeats = static_cast<double>(plan.target.mountings.size()) * std::max(plan.target.phases, 0) *
-                         static_cast<double>(plan.target.delta_t_k.size());
-  double presentations = repeats * static_cast<double>(plates.size()), trials = repeats * triangles_of(plates);
   const bool adaptive = plan.schedule.kind == ScheduleKind::adaptive;
-  if (const auto expected = adaptive_trials(plan, seen); expected && trials > 0) {
-    presentations *= *expected / trials;
-    trials = *expected;
-  }
-  out.presentations = static_cast<std::uint64_t>(std::llround(presentations));
-  out.trials = static_cast<std::uint64_t>(std::llround(trials));
-  out.bench_s = duration_s(plan.target, presentations,
-                           plan.measurement.registration_frames + plan.measurement.contrast_frames, frame_rate_hz);
+  const auto expected = seen != nullptr ? expected_presentations(plan, plates, seen->camera) : std::optional<double>();
+  const BenchTime bench = bench_time(plan, plates, frame_rate_hz, expected);
+  out.presentations = bench.presentations;
+  out.bench_s = bench.total_s();
+  const double per_presentation = plates.empty() ? 0 : triangles_of(plates) / static_cast<double>(plates.size());
+  out.trials = static_cast<std::uint64_t>(std::llround(static_cast<double>(bench.presentations) * per_presentation));
   const auto scaled = [&](const ContrastPrediction* c, int from, int phases) -> std::optional<double> {
     if (c == nullptr) return std::nullopt;
     return adaptive ? c->uncertainty_percent : rescaled_percent(c->uncertainty_percent, from, phases);
@@ -187,15 +156,18 @@ Plan with_tolerance(Plan plan, const PlanForecast* seen, double tolerance_percen
   return plan;
 }
 
-std::vector<AccuracyPrice> accuracy_prices(const Plan& plan, const PlanForecast& seen,
-                                           const std::vector<TargetPlate>& plates, double frame_rate_hz,
+std::vector<AccuracyPrice> accuracy_prices(const LoadedPlan& loaded, const PlanForecast& seen, double frame_rate_hz,
                                            EffectPlanner& planner, const std::stop_token& stop) {
   std::vector<AccuracyPrice> prices;
   for (const double tolerance : {0.5, 1.0, 2.0, 3.0, 5.0, 7.5, 10.0, 20.0}) {
     if (stop.stop_requested()) break;
-    const Plan priced = with_tolerance(plan, &seen, tolerance);
-    auto found = predict_plan(priced, planner);
-    if (found && !predict_times(priced, *found, planner, stop) && stop.stop_requested()) break;
+    const auto at = loaded.with(with_tolerance(loaded.plan(), &seen, tolerance));
+    if (!at) continue;
+    const Plan& priced = at->plan();
+    const auto inputs = experiment_inputs(*at, planner);
+    if (!inputs) continue;
+    auto found = predict_plan(priced, *inputs);
+    if (found && !predict_times(priced, *inputs, *found, stop) && stop.stop_requested()) break;
     PlanForecast at_tolerance = seen;
     at_tolerance.twin_s.reset();
     if (found) {
@@ -203,7 +175,7 @@ std::vector<AccuracyPrice> accuracy_prices(const Plan& plan, const PlanForecast&
       at_tolerance.camera = at_tolerance.twin = found->contrasts;
       at_tolerance.twin_s = found->figures.predicted_s;
     }
-    const PlanOutlook out = outlook(priced, plates, &at_tolerance, frame_rate_hz);
+    const PlanOutlook out = outlook(priced, loaded.plates(), &at_tolerance, frame_rate_hz);
     const auto reached = out.uncertainty_percent();
     if (!reached || *reached > tolerance * (1 + 1e-6)) continue;
     prices.push_back({tolerance, priced.target.phases, out.bench_s, out.twin_s});

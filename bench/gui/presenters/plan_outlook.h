@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/plan/plan.h"
+#include "bench/plan/loaded_plan.h"
 #include "bench/report/svg_plot.h"
 #include "bench/run/prediction.h"
 #include "tod/psychometric/tod_curve.h"
@@ -20,8 +20,9 @@ struct ExpectedThreshold {
   std::optional<double> s75_mrad;  ///< nothing: no size has a threshold at this contrast
 };
 
-/// By the direct estimate at draft accuracy: a second or so. Errors: as the loaders; `interrupted`.
-[[nodiscard]] Result<std::vector<ExpectedThreshold>> expected_thresholds(const Plan& plan, std::stop_token stop);
+/// By the direct estimate at draft accuracy: a second or so. Errors: `interrupted`.
+[[nodiscard]] Result<std::vector<ExpectedThreshold>> expected_thresholds(const LoadedPlan& loaded,
+                                                                         std::stop_token stop);
 /// The same as a curve without intervals.
 [[nodiscard]] TodCurve as_curve(const std::vector<ExpectedThreshold>& expected);
 
@@ -36,9 +37,9 @@ struct PlanForecast {
   std::string problem;                     ///< why the tolerance cannot be met; empty: it can
 };
 
-/// Errors: as the loaders of what the plan names; `interrupted`. `planner` remembers what only tolerance and trials
-/// leave as it is.
-[[nodiscard]] Result<PlanForecast> forecast(const Plan& plan, EffectPlanner& planner, std::stop_token stop = {});
+/// Errors: `interrupted`. `planner` remembers what only tolerance and trials leave as it is.
+[[nodiscard]] Result<PlanForecast> forecast(const LoadedPlan& loaded, EffectPlanner& planner,
+                                            std::stop_token stop = {});
 
 struct PlannedContrast {
   double delta_t_k = 0;
@@ -48,7 +49,7 @@ struct PlannedContrast {
 
 struct PlanOutlook {
   std::uint64_t presentations = 0, trials = 0;  ///< of the camera; of an adaptive schedule what is expected
-  double bench_s = 0;                           ///< changes of the target and frames
+  double bench_s = 0;                           ///< as bench_time() (bench/run/bench_time.h)
   std::optional<double> twin_s;
   std::vector<PlannedContrast> contrasts;
   /// Of the camera, the largest of the contrasts; nothing when one has no threshold.
@@ -75,9 +76,9 @@ struct AccuracyPrice {
 
 /// predict_plan() and predict_times() for tolerances from 0.5 to 20 %; those that 256 phases do not reach are left out.
 /// Ends early, with what there is, when stop is requested. Does not depend on tolerance and phases of the plan.
-[[nodiscard]] std::vector<AccuracyPrice> accuracy_prices(const Plan& plan, const PlanForecast& seen,
-                                                         const std::vector<TargetPlate>& plates, double frame_rate_hz,
-                                                         EffectPlanner& planner, const std::stop_token& stop);
+[[nodiscard]] std::vector<AccuracyPrice> accuracy_prices(const LoadedPlan& loaded, const PlanForecast& seen,
+                                                         double frame_rate_hz, EffectPlanner& planner,
+                                                         const std::stop_token& stop);
 
 /// Uncertainty against time on the bench and time of the simulation; the plan itself is the square.
 [[nodiscard]] Plot accuracy_plot(const std::vector<AccuracyPrice>& prices, const PlanOutlook& now);

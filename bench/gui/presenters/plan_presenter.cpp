@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "bench/plan/plan_options.h"
 #include "bench/run/experiment_inputs.h"
 #include "bench/text/files.h"
 
@@ -38,20 +37,25 @@ struct LookAhead {
 };
 
 /// `expected` where the thresholds of the plan are known already.
-Result<LookAhead> looked_ahead(const Plan& plan, std::optional<std::vector<ExpectedThreshold>> expected,
+Result<LookAhead> looked_ahead(const LoadedPlan& loaded, std::optional<std::vector<ExpectedThreshold>> expected,
                                EffectPlanner& planner, const std::stop_token& stop) {
   LookAhead out{.expected = std::move(expected), .misfit = {}};
-  if (auto inputs = read_inputs(plan, planner)) {
-    if (auto fits = check_simulated_geometry(plan, *inputs); !fits) out.misfit = sentence(fits.error());
+  if (auto inputs = experiment_inputs(loaded, planner)) {
+    if (auto fits = check_simulated_geometry(loaded.plan(), *inputs); !fits) out.misfit = sentence(fits.error());
   } else {
     out.misfit = sentence(inputs.error());
   }
   if (!out.expected) {
-    auto found = expected_thresholds(plan, stop);
+    auto found = expected_thresholds(loaded, stop);
     if (!found) return tl::unexpected(found.error());
     out.expected = std::move(*found);
   }
   return out;
+}
+
+double frame_rate_hz(const LoadedPlan& loaded) {
+  constexpr double usual_hz = 50;
+  return loaded.sensor().frame_rate_hz > 0 ? loaded.sensor().frame_rate_hz : usual_hz;
 }
 
 }  // namespace
@@ -74,22 +78,24 @@ QString PlanPresenter::toml() const {
   return QString::fromStdString(to_toml(bench_.plan()));
 }
 
+QString PlanPresenter::take(const Result<LoadedPlan>& loaded) {
+  if (!loaded) return sentence(loaded.error());
+  loaded_ = *loaded;
+  if (loaded->plan() != bench_.plan()) bench_.set_plan(loaded->plan());
+  return {};
+}
+
 QString PlanPresenter::apply(const Plan& plan) {
-  return apply_toml(QString::fromStdString(to_toml(plan)));
+  Plan absolute = with_absolute_references(plan, std::filesystem::current_path());
+  return take(loaded_ ? loaded_->with(std::move(absolute)) : LoadedPlan::load(std::move(absolute)));
 }
 
 QString PlanPresenter::apply_toml(const QString& text) {
-  auto plan = parse_plan({"plan", text.toStdString()}, std::filesystem::current_path());
-  if (!plan) return sentence(plan.error());
-  if (*plan != bench_.plan()) bench_.set_plan(*plan);
-  return {};
+  return take(read_plan({"plan", text.toStdString()}, std::filesystem::current_path()));
 }
 
 QString PlanPresenter::load(const QString& reference) {
-  auto plan = load_plan(reference.toStdString());
-  if (!plan) return sentence(plan.error());
-  bench_.set_plan(*plan);
-  return {};
+  return take(read_plan(reference.toStdString()));
 }
 
 QString PlanPresenter::save(const QString& file) const {
@@ -134,6 +140,11 @@ QStringList PlanPresenter::warnings() const {
 }
 
 void PlanPresenter::plan_changed() {
+  if (!loaded_ || loaded_->plan() != bench_.plan()) {
+    auto loaded = loaded_ ? loaded_->with(bench_.plan()) : LoadedPlan::load(bench_.plan());
+    trouble_ = loaded ? QString() : sentence(loaded.error());
+    loaded_ = loaded ? std::optional(*std::move(loaded)) : std::nullopt;
+  }
   if (!expected_of_ || !same_thresholds(*expected_of_, bench_.plan())) expected_.clear();
   if (!prices_of_ || without_tolerance(bench_.plan()) != *prices_of_) prices_.clear();
   // Another contrast, plate or sensor: what was foreseen is of something else.
@@ -144,19 +155,20 @@ void PlanPresenter::plan_changed() {
 }
 
 void PlanPresenter::refresh() {
-  const Plan& plan = bench_.plan();
-  if (auto plates = plates_of(plan)) plates_ = std::move(*plates);
-  if (auto sensor = sensor_of(plan)) frame_rate_hz_ = sensor->frame_rate_hz > 0 ? sensor->frame_rate_hz : 50;
-  outlook_ = todbench::outlook(plan, plates_, forecast_ ? &*forecast_ : nullptr, frame_rate_hz_);
+  if (loaded_) {
+    outlook_ = todbench::outlook(loaded_->plan(), loaded_->plates(), forecast_ ? &*forecast_ : nullptr,
+                                 frame_rate_hz(*loaded_));
+  }
   emit updated();
 }
 
 void PlanPresenter::foresee() {
+  if (!loaded_) return;
   const bool priced = !prices_.empty();
   const bool measuring = bench_.activity() == Activity::measuring || bench_.activity() == Activity::replaying;
-  forecasts_.start([this, plan = bench_.plan(), plates = plates_, rate_hz = frame_rate_hz_, priced,
-                    measuring](const std::stop_token& stop) {
-    auto seen = todbench::forecast(plan, planner_);
+  forecasts_.start([this, loaded = *loaded_, priced, measuring](const std::stop_token& stop) {
+    const Plan& plan = loaded.plan();
+    auto seen = todbench::forecast(loaded, planner_);
     // Also when a newer plan waits: while a slider moves the table follows plan by plan.
     bench_.post([this, plan, seen] {
       if (without_tolerance(plan) != without_tolerance(bench_.plan())) return;
@@ -165,7 +177,7 @@ void PlanPresenter::foresee() {
       refresh();
     });
     if (!seen || priced || measuring) return;
-    auto prices = accuracy_prices(plan, *seen, plates, rate_hz, planner_, stop);
+    auto prices = accuracy_prices(loaded, *seen, frame_rate_hz(loaded), planner_, stop);
     if (stop.stop_requested()) return;
     bench_.post([this, plan, prices = std::move(prices)] {
       if (without_tolerance(plan) != without_tolerance(bench_.plan())) return;
@@ -177,12 +189,13 @@ void PlanPresenter::foresee() {
 }
 
 void PlanPresenter::look_ahead() {
-  const Plan plan = bench_.plan();
+  if (!loaded_) return;
   // A running measurement needs the processor more than a forecast does.
   if (bench_.activity() == Activity::measuring || bench_.activity() == Activity::replaying) return;
   const auto known = expected_.empty() ? std::nullopt : std::optional(expected_);
-  jobs_.start([this, plan, known](const std::stop_token& stop) {
-    auto seen = looked_ahead(plan, known, planner_, stop);
+  jobs_.start([this, loaded = *loaded_, known](const std::stop_token& stop) {
+    const Plan& plan = loaded.plan();
+    auto seen = looked_ahead(loaded, known, planner_, stop);
     if (!seen && seen.error().code == ErrorCode::interrupted) return;
     bench_.post([this, plan, seen = std::move(seen)] {
       if (plan != bench_.plan()) return;

@@ -9,6 +9,7 @@
 
 #include "bench/gui/presenters/plan_outlook.h"
 #include "bench/gui/presenters/workbench.h"
+#include "bench/plan/loaded_plan.h"
 
 namespace todbench {
 
@@ -16,7 +17,7 @@ namespace todbench {
 enum class EffectChoice { planner, simulate, skip };
 inline constexpr std::array all_effect_choices{EffectChoice::planner, EffectChoice::simulate, EffectChoice::skip};
 
-/// Every change goes through TOML and its reader: what the form accepts is what a file may say. Counts and bench time
+/// Every change is validated as a file is: what the form accepts is what a file may say. Counts and bench time
 /// follow in the call; the planner's decisions, uncertainties and the time of the simulation come from predict_plan()
 /// in the background, one after the other while a slider moves. In the window's thread.
 class PlanPresenter final : public QObject {
@@ -58,6 +59,7 @@ class PlanPresenter final : public QObject {
   void updated();
 
  private:
+  QString take(const Result<LoadedPlan>& loaded);
   void plan_changed();
   void foresee();
   void look_ahead();
@@ -66,12 +68,11 @@ class PlanPresenter final : public QObject {
   Workbench& bench_;
   QTimer delay_;
   std::vector<ExpectedThreshold> expected_;
-  std::vector<TargetPlate> plates_;
+  std::optional<LoadedPlan> loaded_;  ///< of the plan; nothing while a part of it cannot be read
   PlanOutlook outlook_;
   std::optional<PlanForecast> forecast_;
   std::vector<AccuracyPrice> prices_;
   QString misfit_, trouble_;
-  double frame_rate_hz_ = 50;
   std::optional<Plan> expected_of_, prices_of_;
   EffectPlanner planner_;  // of both jobs
   JobRunner forecasts_, jobs_;

@@ -98,6 +98,7 @@ QWidget* PlanView::form_page() {
   for (PlanField& field : fields) {
     auto* edit = new QLineEdit;
     edit->setObjectName(field.object_name);
+    edit->setToolTip(field.tool_tip);
     form->addRow(field.label, edit);
     connect(edit, &QLineEdit::editingFinished, this, [this, index = lines_.size()] { enter(lines_[index]); });
     lines_.push_back({edit, std::move(field)});

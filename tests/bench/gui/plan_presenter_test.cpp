@@ -75,8 +75,13 @@ TEST(PlanPresenter, ForeseesWhatTheCommandLinePredicts) {
   ASSERT_EQ(b.presenter.set_tolerance_percent(4).toStdString(), "");
   ASSERT_TRUE(wait_until([&] { return b.presenter.forecast_current(); }));
 
-  auto predicted = predict_plan(b.presenter.plan());
-  ASSERT_TRUE(predicted && predict_times(b.presenter.plan(), *predicted, {}));
+  const auto loaded = LoadedPlan::load(b.presenter.plan());
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  EffectPlanner planner;
+  const auto inputs = experiment_inputs(*loaded, planner);
+  ASSERT_TRUE(inputs);
+  auto predicted = predict_plan(loaded->plan(), *inputs);
+  ASSERT_TRUE(predicted && predict_times(loaded->plan(), *inputs, *predicted, {}));
 
   // Both time the machine, each at its own moment.
   ASSERT_TRUE(b.presenter.outlook().twin_s);
@@ -87,11 +92,11 @@ TEST(PlanPresenter, ForeseesWhatTheCommandLinePredicts) {
     EXPECT_EQ(b.presenter.outlook().contrasts[i].s75_mrad, predicted->contrasts[i].s75_mrad);
   }
   const auto& decisions = b.presenter.forecast()->effects.decisions;
-  ASSERT_EQ(decisions.size(), predicted->effects.plan.decisions.size());
+  ASSERT_EQ(decisions.size(), inputs->effects.decisions.size());
   for (std::size_t i = 0; i < decisions.size(); ++i) {
-    EXPECT_EQ(decisions[i].decision, predicted->effects.plan.decisions[i].decision);
-    EXPECT_EQ(decisions[i].reason, predicted->effects.plan.decisions[i].reason);
-    EXPECT_EQ(decisions[i].predicted_change_percent, predicted->effects.plan.decisions[i].predicted_change_percent);
+    EXPECT_EQ(decisions[i].decision, inputs->effects.decisions[i].decision);
+    EXPECT_EQ(decisions[i].reason, inputs->effects.decisions[i].reason);
+    EXPECT_EQ(decisions[i].predicted_change_percent, inputs->effects.decisions[i].predicted_change_percent);
   }
 }
 

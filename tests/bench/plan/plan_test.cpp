@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "bench/plan/loaded_plan.h"
 #include "bench/plan/plan_options.h"
 #include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
@@ -179,11 +180,11 @@ TEST(Plan, FilesNamedInAPlanAreRelativeToThePlan) {
   folder.write("parts/mine.toml", testing::content_of(source_file("sim_devices/sensors/sc2000.toml")));
   const std::filesystem::path file = folder.write("plan.toml", "[simulation]\nsensor = \"parts/mine.toml\"\n");
 
-  const Result<Plan> plan = load_plan(file.string());
+  const Result<LoadedPlan> loaded = read_plan(file.string());
 
-  ASSERT_TRUE(plan) << plan.error().message;
-  EXPECT_EQ(plan->simulation.sensor, (folder.path() / "parts/mine.toml").string());
-  EXPECT_EQ(sensor_of(*plan).value().name, "sc2000");
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  EXPECT_EQ(loaded->plan().simulation.sensor, (folder.path() / "parts/mine.toml").string());
+  EXPECT_EQ(loaded->sensor().name, "sc2000");
 }
 
 TEST(Plan, TheMicroscanOfTheSensorHoldsUnlessThePlanSaysOtherwise) {
@@ -218,7 +219,7 @@ TEST(Plan, AnInstrumentIsOverdueFromTheDayAfterItsDueDate) {
 
 TEST(PlanOptions, ReachThePartsThatUseThem) {
   const Plan plan = unusual_plan();
-  const std::vector<TargetPlate> plates = plates_of(plan).value();
+  const std::vector<TargetPlate> plates = LoadedPlan::load(plan).value().plates();
 
   const MeasurementOptions measurement = measurement_options(plan, plates, 1.5);
   const ConstantStimuliOptions measured = stimuli_options(plan, plates, 1.5, Side::measured);
@@ -238,7 +239,7 @@ TEST(PlanOptions, ReachThePartsThatUseThem) {
   EXPECT_EQ(fit_options(plan).fixed_lapse, std::nullopt);
   EXPECT_EQ(comparison_options(plan).margin_percent, 12.5);
   EXPECT_EQ(accuracy_of(plan).value().acuity_tolerance_percent, 2.5);
-  EXPECT_EQ(sensor_of(plan).value().microscan, 2);
+  EXPECT_EQ(LoadedPlan::load(plan).value().sensor().microscan, 2);
 }
 
 TEST(PlanOptions, TwoPlatesOfOneNameAreRefused) {
@@ -247,10 +248,10 @@ TEST(PlanOptions, TwoPlatesOfOneNameAreRefused) {
   plan.target.plates = {"tcat-a",
                         folder.write("copy.toml", testing::content_of(source_file("tod/plate/tcat-a.toml"))).string()};
 
-  const auto plates = plates_of(plan);
+  const auto loaded = LoadedPlan::load(plan);
 
-  ASSERT_FALSE(plates);
-  EXPECT_THAT(plates.error().message, HasSubstr("a second plate with the name 'tcat-a'"));
+  ASSERT_FALSE(loaded);
+  EXPECT_THAT(loaded.error().message, HasSubstr("a second plate with the name 'tcat-a'"));
 }
 
 TEST(Plan, AsksForConstantStimuliUnlessItsScheduleIsAdaptive) {

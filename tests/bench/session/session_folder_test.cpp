@@ -80,7 +80,7 @@ std::filesystem::path write_session(const testing::TemporaryFolder& parent, cons
   Plan plan;
   plan.name = "acceptance";
   auto folder = SessionFolder::create(parent.path() / "session", ExistingFolder::refuse).value();
-  EXPECT_TRUE(folder.write_plan(plan));
+  EXPECT_TRUE(folder.write_plan(LoadedPlan::load(plan).value()));
   Provenance provenance = full_provenance(plan);
   EXPECT_TRUE(folder.write_provenance(provenance));
   EXPECT_TRUE(folder.log("started"));
@@ -233,7 +233,7 @@ TEST(SessionFolder, TheStoredPlanStandsOnItsOwnWhenItsFilesAreGone) {
   std::string sensor = testing::content_of(source_file("sim_devices/sensors/sc2000.toml"));
   sensor.replace(sensor.find("netd_k = 0.07"), 13, "netd_k = 0.05");
   parent.write("parts/sc2000.toml", sensor);
-  const auto plan = load_plan(parent.write("plan.toml", "[simulation]\nsensor = \"parts/sc2000.toml\"\n").string());
+  const auto plan = read_plan(parent.write("plan.toml", "[simulation]\nsensor = \"parts/sc2000.toml\"\n").string());
   ASSERT_TRUE(plan) << plan.error().message;
   auto folder = SessionFolder::create(parent.path() / "s", ExistingFolder::refuse).value();
 
@@ -241,9 +241,9 @@ TEST(SessionFolder, TheStoredPlanStandsOnItsOwnWhenItsFilesAreGone) {
   std::filesystem::remove_all(parent.path() / "parts");
   std::filesystem::rename(parent.path() / "s", parent.path() / "moved");
 
-  const auto stored = load_plan((parent.path() / "moved/session.toml").string());
+  const auto stored = read_plan((parent.path() / "moved/session.toml").string());
   ASSERT_TRUE(stored) << stored.error().message;
-  EXPECT_EQ(sensor_of(*stored).value().netd_k, 0.05);
+  EXPECT_EQ(stored->sensor().netd_k, 0.05);
 }
 
 TEST(SessionFolder, ANonEmptyFolderIsRefusedUnlessItMayBeOverwritten) {
@@ -277,7 +277,7 @@ TEST(SessionFolder, AFileInTheWayIsRefused) {
 TEST(SessionFolder, ARunThatWasCutOffIsReadableAndNotComplete) {
   const testing::TemporaryFolder parent;
   auto folder = SessionFolder::create(parent.path() / "s", ExistingFolder::refuse).value();
-  ASSERT_TRUE(folder.write_plan(Plan{}));
+  ASSERT_TRUE(folder.write_plan(LoadedPlan::load(Plan{}).value()));
   ASSERT_TRUE(folder.write_provenance(begin_provenance(Plan{}, Side::measured)));
   TrialsWriter writer = folder.open_trials(SessionCurve::main).value();
   for (const Trial& trial : testing::random_trials(7)) ASSERT_TRUE(writer.append(trial));
@@ -295,7 +295,7 @@ TEST(SessionFolder, ARunThatWasCutOffIsReadableAndNotComplete) {
 TEST(SessionFolder, AnInterruptedRunSaysSoAndHasAManifest) {
   const testing::TemporaryFolder parent;
   auto folder = SessionFolder::create(parent.path() / "s", ExistingFolder::refuse).value();
-  ASSERT_TRUE(folder.write_plan(Plan{}));
+  ASSERT_TRUE(folder.write_plan(LoadedPlan::load(Plan{}).value()));
   Provenance provenance = begin_provenance(Plan{}, Side::measured);
   provenance.run = full_run();
   provenance.run->ended_by = "stopped on request";

@@ -43,9 +43,11 @@ inline Plan plan_to_study(ScheduleKind kind, double half_width_percent) {
 
 inline StudiedRun run_of(Plan plan, std::uint64_t seed) {
   plan.seed = seed;
-  const auto prediction = predict_plan(plan);
+  const LoadedPlan loaded = LoadedPlan::load(plan).value();
+  EffectPlanner planner;
+  const auto prediction = predict_plan(plan, experiment_inputs(loaded, planner).value());
   const TemporaryFolder folder;
-  const auto outcome = simulate_plan(plan, {.folder = folder.path() / "s"}, {}, {});
+  const auto outcome = simulate_plan(loaded, {.folder = folder.path() / "s"}, {}, {});
   StudiedRun found;
   if (!prediction || !outcome) {
     ADD_FAILURE() << (prediction ? outcome.error().message : prediction.error().message);

@@ -1,0 +1,102 @@
+#include "bench/cli/key_options.h"
+
+#include <utility>
+
+#include "bench/cli/commands.h"
+
+namespace todbench {
+namespace {
+
+/// Text in, yes or no out: what a parser can say before there is a plan.
+CLI::Validator check_of(const KeyType& type) {
+  return {[type](const std::string& text) {
+            const auto value = value_from_text(type, text);
+            return value ? std::string() : value.error().message;
+          },
+          ""};
+}
+
+/// The check of one word: of a list, of one of its elements.
+std::optional<CLI::Validator> word_check(const KeyType& type) {
+  if (const auto* numbers = std::get_if<NumbersKey>(&type)) return check_of(NumberKey{numbers->range});
+  if (std::holds_alternative<NumberKey>(type) || std::holds_alternative<WholeKey>(type)) return check_of(type);
+  return std::nullopt;
+}
+
+bool is_list(const KeyType& type) {
+  return std::holds_alternative<NumbersKey>(type) || std::holds_alternative<ChoicesKey>(type) ||
+         std::holds_alternative<ResourcesKey>(type);
+}
+
+std::string description_of(const PlanKey& key) {
+  const std::string unit = key.unit.empty() || key.unit == "%" ? "" : " (" + std::string(key.unit) + ")";
+  return std::string(key.sentence) + unit + (is_list(key.type) ? ", separated by commas" : "") +
+         (std::holds_alternative<ChoiceKey>(key.type) ? ": " + expected_of(key.type) : "");
+}
+
+void add_key_option(CLI::App& command, const KeyAt& at, KeyOverrides& overrides) {
+  const std::string path = path_of(*at.section, *at.key), name(at.key->option.name);
+  const auto keep = [&overrides, path](const std::vector<std::string>& words) {
+    overrides.given[path] = words;
+    return true;
+  };
+  if (std::holds_alternative<FlagKey>(at.key->type)) {
+    command.add_flag_callback(
+        name, [&overrides, path] { overrides.given[path] = {"yes"}; }, description_of(*at.key));
+    return;
+  }
+  CLI::Option* option = command.add_option(name, keep, description_of(*at.key));
+  option->type_name("TEXT")->type_size(1);
+  if (is_list(at.key->type)) {
+    option->expected(1, CLI::detail::expected_max_vector_size)->delimiter(',')->allow_extra_args(false);
+    option->take_all();
+  }
+  if (const auto check = word_check(at.key->type)) option->check(*check);
+}
+
+}  // namespace
+
+bool KeyOverrides::has(std::string_view path) const {
+  return given.find(path) != given.end();
+}
+
+void add_key_options(CLI::App& command, OptionOf of, KeyOverrides& overrides, std::string_view without) {
+  for (const PlanSection& section : plan_sections()) {
+    for (const PlanKey& key : section.keys) {
+      if (key.option.name.empty() || key.option.of != of || path_of(section, key) == without) continue;
+      add_key_option(command, {&section, &key, 0}, overrides);
+    }
+  }
+}
+
+Result<KeyValue> given_value(const KeyOverrides& overrides, std::string_view path) {
+  const PlanKey& key = *plan_key(path).key;
+  std::string text;
+  for (const std::string& word : overrides.given.find(path)->second) text += (text.empty() ? "" : ",") + word;
+  Result<KeyValue> value = value_from_text(key.type, text);
+  if (!value) return fail_at(value.error().code, std::string(key.option.name), value.error().message);
+  return value;
+}
+
+Result<void> apply(const KeyOverrides& overrides, Plan& plan) {
+  for (const auto& [path, words] : overrides.given) {
+    const auto value = given_value(overrides, path);
+    if (!value) return tl::unexpected(value.error());
+    plan_key(path).key->place.set(plan, 0, *value);
+  }
+  plan = with_absolute_references(std::move(plan), "");
+  return {};
+}
+
+Error in_terms_of_options(const Error& error) {
+  if (!error.key) return with_context("with these options", error);
+  for (const PlanSection& section : plan_sections()) {
+    for (const PlanKey& key : section.keys) {
+      if (key.option.name.empty() || error.key->name != path_of(section, key)) continue;
+      return renamed(error, std::string(key.option.name));
+    }
+  }
+  return with_context("with these options", renamed(error, error.key->name));
+}
+
+}  // namespace todbench

@@ -1,0 +1,131 @@
+// Members of a plan as values of keys: for the rows of the table of keys.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "bench/plan/plan_keys.h"
+
+namespace todbench {
+
+constexpr const auto& values_of(const TargetKind&) {
+  return all_target_kinds;
+}
+constexpr const auto& values_of(const ScheduleKind&) {
+  return all_schedule_kinds;
+}
+constexpr const auto& values_of(const PsychometricForm&) {
+  return all_psychometric_forms;
+}
+constexpr const auto& values_of(const Mounting&) {
+  return all_mountings;
+}
+constexpr const auto& values_of(const Effect&) {
+  return all_effects;
+}
+
+/// The names of an enumeration.
+template <typename Values>
+std::vector<std::string> names_of(const Values& values) {
+  std::vector<std::string> names;
+  for (const auto value : values) names.emplace_back(to_string(value));
+  return names;
+}
+
+/// The value of that name; the first where there is none, which the reader has said then.
+template <typename E>
+E value_named(const std::string& name) {
+  for (const E value : values_of(E{})) {
+    if (to_string(value) == name) return value;
+  }
+  return values_of(E{})[0];
+}
+
+template <typename T>
+KeyValue to_key_value(const T& member) {
+  if constexpr (std::is_enum_v<T>) {
+    return std::string(to_string(member));
+  } else if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
+    return static_cast<std::int64_t>(member);
+  } else {
+    return member;
+  }
+}
+inline KeyValue to_key_value(const std::optional<double>& member) {
+  return member ? KeyValue(*member) : KeyValue();
+}
+inline KeyValue to_key_value(const SceneMotion& member) {
+  return std::vector<double>{member.x_mrad_s, member.y_mrad_s};
+}
+template <typename E>
+requires std::is_enum_v<E> KeyValue to_key_value(const std::vector<E>& member) {
+  return names_of(member);
+}
+
+template <typename T>
+void from_key_value(T& member, const KeyValue& value) {
+  if constexpr (std::is_enum_v<T>) {
+    member = value_named<T>(std::get<std::string>(value));
+  } else if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
+    member = static_cast<T>(std::get<std::int64_t>(value));
+  } else {
+    member = std::get<T>(value);
+  }
+}
+inline void from_key_value(std::optional<double>& member, const KeyValue& value) {
+  const auto* number = std::get_if<double>(&value);
+  member = number != nullptr ? std::optional(*number) : std::nullopt;
+}
+/// Of another length than two: what the reader has refused.
+inline void from_key_value(SceneMotion& member, const KeyValue& value) {
+  const auto& numbers = std::get<std::vector<double>>(value);
+  if (numbers.size() == 2) member = {.x_mrad_s = numbers[0], .y_mrad_s = numbers[1]};
+}
+template <typename E>
+requires std::is_enum_v<E>
+void from_key_value(std::vector<E>& member, const KeyValue& value) {
+  member.clear();
+  for (const std::string& name : std::get<std::vector<std::string>>(value)) member.push_back(value_named<E>(name));
+}
+
+/// `reach(plan, row)` is the struct, const or not as the plan is.
+template <typename Reach, typename Struct, typename T>
+KeyPlace place_of(Reach reach, T Struct::*member) {
+  return {.get = [=](const Plan& plan, std::size_t row) { return to_key_value(reach(plan, row).*member); },
+          .set = [=](Plan& plan, std::size_t row,
+                     const KeyValue& value) { from_key_value(reach(plan, row).*member, value); }};
+}
+
+/// Members of the plan itself.
+template <typename T>
+KeyPlace in_plan(T Plan::*member) {
+  return place_of(
+      [](auto& plan, std::size_t) -> auto& { return plan; }, member);
+}
+
+/// Members of one of its structs.
+template <typename Struct, typename T>
+KeyPlace in(Struct Plan::*section, T Struct::*member) {
+  return place_of(
+      [section](auto& plan, std::size_t) -> auto& { return plan.*section; }, member);
+}
+
+/// The rows of a list that `reach(plan)` finds.
+template <typename Reach>
+SectionRows rows_of(Reach reach) {
+  return {.count = [=](const Plan& plan) { return reach(plan).size(); },
+          .resize = [=](Plan& plan, std::size_t count) { reach(plan).resize(count); }};
+}
+template <typename Reach, typename Struct, typename T>
+KeyPlace in_row(Reach reach, T Struct::*member) {
+  return place_of(
+      [=](auto& plan, std::size_t row) -> auto& { return reach(plan)[row]; }, member);
+}
+
+}  // namespace todbench

@@ -1,0 +1,141 @@
+#include "bench/plan/loaded_plan.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "bench/plan/descriptions.h"
+#include "bench/plan/plan_keys.h"
+
+namespace todbench {
+namespace {
+
+/// A description from its text, which is kept.
+template <typename T>
+Result<T> read_part(ResourceKind kind, const std::string& reference, const ResourceFinder& find, PlanParts& parts,
+                    Result<T> (*parse)(const Resource&)) {
+  Result<Resource> resource = find(kind, reference);
+  if (!resource) return tl::unexpected(resource.error());
+  Result<T> part = parse(*resource);
+  parts.sources.insert_or_assign({kind, reference}, *std::move(resource));
+  return part;
+}
+
+template <typename T>
+std::vector<ValueMistake> keep(Result<T> read, T& part) {
+  if (!read) return {{std::nullopt, read.error().message}};
+  part = *std::move(read);
+  return {};
+}
+
+std::vector<ValueMistake> read_plates(const std::vector<std::string>& references, const ResourceFinder& find,
+                                      PlanParts& parts) {
+  std::vector<ValueMistake> mistakes;
+  parts.plates.clear();
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    const auto here = references.begin() + static_cast<std::ptrdiff_t>(i);
+    // One that is listed twice is said to be so; it is not another plate of that name.
+    if (std::find(references.begin(), here, *here) != here) continue;
+    Result<TargetPlate> plate = read_part(ResourceKind::plate, *here, find, parts, parse_plate);
+    if (!plate) {
+      mistakes.push_back({i, plate.error().message});
+      continue;
+    }
+    for (const TargetPlate& other : parts.plates) {
+      if (other.name != plate->name) continue;
+      mistakes.push_back({i, *here + ": a second plate with the name '" + other.name + "'"});
+    }
+    parts.plates.push_back(*std::move(plate));
+  }
+  return mistakes;
+}
+
+/// The parts whose names are not those of `known`.
+Result<void> read_changed(const Plan& plan, const Plan* known, const ResourceFinder& find, PlanParts& parts) {
+  for (const PlanSection& section : plan_sections()) {
+    for (const PlanKey& key : section.keys) {
+      const auto* one = std::get_if<ResourceKey>(&key.type);
+      const auto* many = std::get_if<ResourcesKey>(&key.type);
+      if (one == nullptr && many == nullptr) continue;
+      if (known != nullptr && key.place.get(plan, 0) == key.place.get(*known, 0)) continue;
+      const auto mistakes = read_parts(one != nullptr ? one->kind : many->kind, plan, find, parts);
+      if (!mistakes.empty()) return tl::unexpected(error_of({.at = {&section, &key, 0}, .mistake = mistakes.front()}));
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<ValueMistake> read_parts(ResourceKind kind, const Plan& plan, const ResourceFinder& find,
+                                     PlanParts& parts) {
+  switch (kind) {
+    case ResourceKind::plate:
+      return read_plates(plan.target.plates, find, parts);
+    case ResourceKind::observer:
+      return keep(read_part(kind, plan.observer, find, parts, parse_observer), parts.observer);
+    case ResourceKind::sensor:
+      return keep(read_part(kind, plan.simulation.sensor, find, parts, parse_sensor), parts.sensor);
+    case ResourceKind::plan:
+      break;
+  }
+  return {};
+}
+
+LoadedPlan::LoadedPlan(Plan plan, PlanParts parts)
+    : plan_(std::move(plan)), parts_(std::move(parts)), sensor_(parts_.sensor) {
+  sensor_.microscan = plan_.simulation.microscan;
+}
+
+Result<LoadedPlan> LoadedPlan::load(Plan plan, const ResourceFinder& find) {
+  if (auto valid = validate(plan); !valid) return tl::unexpected(valid.error());
+  PlanParts parts;
+  if (auto read = read_changed(plan, nullptr, find, parts); !read) return tl::unexpected(read.error());
+  return LoadedPlan(std::move(plan), std::move(parts));
+}
+
+Result<LoadedPlan> LoadedPlan::of(Plan plan, PlanParts parts) {
+  if (auto valid = validate(plan); !valid) return tl::unexpected(valid.error());
+  return LoadedPlan(std::move(plan), std::move(parts));
+}
+
+Result<LoadedPlan> LoadedPlan::with(Plan plan, const ResourceFinder& find) const {
+  if (auto valid = validate(plan); !valid) return tl::unexpected(valid.error());
+  PlanParts parts = parts_;
+  if (auto read = read_changed(plan, &plan_, find, parts); !read) return tl::unexpected(read.error());
+  return LoadedPlan(std::move(plan), std::move(parts));
+}
+
+Plan with_absolute_references(Plan plan, const std::filesystem::path& folder) {
+  for (const PlanSection& section : plan_sections()) {
+    for (const PlanKey& key : section.keys) {
+      if (!std::holds_alternative<ResourceKey>(key.type) && !std::holds_alternative<ResourcesKey>(key.type)) continue;
+      KeyValue value = key.place.get(plan, 0);
+      if (auto* one = std::get_if<std::string>(&value)) *one = absolute_reference(*one, folder);
+      if (auto* many = std::get_if<std::vector<std::string>>(&value)) {
+        for (std::string& reference : *many) reference = absolute_reference(reference, folder);
+      }
+      key.place.set(plan, 0, value);
+    }
+  }
+  return plan;
+}
+
+Result<LoadedPlan> read_plan(std::string_view reference, const ResourceFinder& find) {
+  const Result<Resource> resource = find(ResourceKind::plan, reference);
+  if (!resource) return tl::unexpected(resource.error());
+  return read_plan(*resource, is_file_reference(reference) ? std::filesystem::path(reference).parent_path() : "", find);
+}
+
+Result<Plan> load_plan(std::string_view reference) {
+  const Result<LoadedPlan> loaded = read_plan(reference);
+  if (!loaded) return tl::unexpected(loaded.error());
+  return loaded->plan();
+}
+
+Result<Plan> parse_plan(const Resource& resource, const std::filesystem::path& folder) {
+  const Result<LoadedPlan> loaded = read_plan(resource, folder);
+  if (!loaded) return tl::unexpected(loaded.error());
+  return loaded->plan();
+}
+
+}  // namespace todbench

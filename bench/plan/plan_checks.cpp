@@ -1,0 +1,116 @@
+#include "bench/plan/plan_checks.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "bench/text/text.h"
+#include "tod/psychometric/tod_curve.h"
+
+namespace todbench {
+namespace {
+
+bool is_host_and_port(std::string_view address) {
+  const std::size_t colon = address.rfind(':');
+  if (colon == std::string_view::npos || colon == 0) return false;
+  const std::string_view port = address.substr(colon + 1);
+  int number = 0;
+  const auto [end, problem] = std::from_chars(port.data(), port.data() + port.size(), number);
+  return problem == std::errc() && end == port.data() + port.size() && number >= 1 && number <= 65535 &&
+         address.find(' ') == std::string_view::npos;
+}
+
+ValueMistakes check_address(const Plan& plan, const std::string& address) {
+  if (address.empty()) {
+    if (plan.target.kind != TargetKind::scpi) return {};
+    return {{std::nullopt, "needed for kind \"scpi\", expected \"HOST:PORT\""}};
+  }
+  if (is_host_and_port(address)) return {};
+  return {{std::nullopt, "expected \"HOST:PORT\", found \"" + one_line(address) + "\""}};
+}
+
+}  // namespace
+
+ValueMistakes check_camera_id(const Plan& plan, std::size_t /*row*/) {
+  const std::string& id = plan.camera.id;
+  if (id.empty() || (id.find(':') != std::string::npos && !id.starts_with(':') && !id.ends_with(':'))) return {};
+  return {{std::nullopt, "expected SCHEME:NAME as listed by 'todbench devices', found \"" + one_line(id) + "\""}};
+}
+
+ValueMistakes check_black_body(const Plan& plan, std::size_t /*row*/) {
+  return check_address(plan, plan.target.black_body);
+}
+
+ValueMistakes check_stage(const Plan& plan, std::size_t /*row*/) {
+  return check_address(plan, plan.target.stage);
+}
+
+ValueMistakes check_contrasts(const Plan& plan, std::size_t /*row*/) {
+  ValueMistakes mistakes;
+  const std::vector<double>& contrasts = plan.target.delta_t_k;
+  for (std::size_t i = 0; i < contrasts.size(); ++i) {
+    if (contrasts[i] == 0) mistakes.push_back({i, "a contrast of 0 K shows nothing"});
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!same_contrast(contrasts[i], contrasts[j])) continue;
+      mistakes.push_back({i, number_text(contrasts[i]) + " K is listed twice (contrasts within 0.5 % count as equal)"});
+    }
+  }
+  return mistakes;
+}
+
+ValueMistakes check_force(const Plan& plan, std::size_t /*row*/) {
+  ValueMistakes mistakes;
+  for (std::size_t i = 0; i < plan.simulation.force.size(); ++i) {
+    for (const auto skipped : plan.simulation.skip) {
+      if (skipped != plan.simulation.force[i]) continue;
+      mistakes.push_back({i, "'" + std::string(to_string(skipped)) + "' is also in skip"});
+    }
+  }
+  return mistakes;
+}
+
+ValueMistakes check_limit_contrast(const Plan& plan, std::size_t row) {
+  ValueMistakes mistakes;
+  const double limit = plan.limits.acuity[row].delta_t_k;
+  bool shown = false;
+  for (const double contrast : plan.target.delta_t_k) shown = shown || same_contrast(limit, contrast);
+  if (!shown) mistakes.push_back({std::nullopt, number_text(limit) + " K is not among the contrasts of [target]"});
+  for (std::size_t other = 0; other < row; ++other) {
+    if (same_contrast(limit, plan.limits.acuity[other].delta_t_k))
+      mistakes.push_back({std::nullopt, "a second limit at " + number_text(limit) + " K"});
+  }
+  return mistakes;
+}
+
+ValueMistakes check_due_date(const Plan& plan, std::size_t row) {
+  const std::string& date = plan.instruments[row].calibration_due;
+  if (date.empty() || parse_date(date)) return {};
+  return {{std::nullopt, "expected a date \"YYYY-MM-DD\", found \"" + one_line(date) + "\""}};
+}
+
+std::optional<std::chrono::year_month_day> parse_date(std::string_view text) {
+  const auto digits = [&](std::size_t first, std::size_t count) {
+    int value = -1;
+    const auto [end, problem] = std::from_chars(text.data() + first, text.data() + first + count, value);
+    return problem == std::errc() && end == text.data() + first + count ? value : -1;
+  };
+  if (text.size() != 10 || text[4] != '-' || text[7] != '-') return std::nullopt;
+  const int year = digits(0, 4), month = digits(5, 2), day = digits(8, 2);
+  if (year < 0 || month < 0 || day < 0) return std::nullopt;
+  const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day))};
+  return date.ok() ? std::optional(date) : std::nullopt;
+}
+
+Result<void> check_calibration(const Plan& plan, std::chrono::year_month_day today) {
+  std::string overdue;
+  for (const InstrumentPlan& instrument : plan.instruments) {
+    const std::optional<std::chrono::year_month_day> due = parse_date(instrument.calibration_due);
+    if (!due || *due >= today) continue;
+    overdue += (overdue.empty() ? "" : ", ") + instrument.name +
+               (instrument.serial.empty() ? "" : " " + instrument.serial) + " (due " + instrument.calibration_due + ")";
+  }
+  if (!overdue.empty()) return fail(ErrorCode::calibration, "calibration overdue: " + overdue);
+  return {};
+}
+
+}  // namespace todbench

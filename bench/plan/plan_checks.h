@@ -1,0 +1,33 @@
+// What the rest of a plan says against the value of one of its keys.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "bench/plan/key_types.h"
+#include "bench/plan/plan.h"
+
+namespace todbench {
+
+using ValueMistakes = std::vector<ValueMistake>;
+
+/// SCHEME:NAME, or empty.
+[[nodiscard]] ValueMistakes check_camera_id(const Plan& plan, std::size_t row);
+/// HOST:PORT; needed for kind scpi.
+[[nodiscard]] ValueMistakes check_black_body(const Plan& plan, std::size_t row);
+[[nodiscard]] ValueMistakes check_stage(const Plan& plan, std::size_t row);
+/// None of 0 K, none twice.
+[[nodiscard]] ValueMistakes check_contrasts(const Plan& plan, std::size_t row);
+/// None that is also skipped.
+[[nodiscard]] ValueMistakes check_force(const Plan& plan, std::size_t row);
+/// Among the contrasts of the target, and not in an earlier row.
+[[nodiscard]] ValueMistakes check_limit_contrast(const Plan& plan, std::size_t row);
+[[nodiscard]] ValueMistakes check_due_date(const Plan& plan, std::size_t row);
+
+/// "YYYY-MM-DD", a day that there is.
+[[nodiscard]] std::optional<std::chrono::year_month_day> parse_date(std::string_view text);
+
+}  // namespace todbench

@@ -1,0 +1,409 @@
+// The rows. A new key is a member in plan.h and a row here.
+#include <limits>
+
+#include "bench/plan/key_places.h"
+#include "bench/plan/plan_checks.h"
+#include "bench/plan/plan_keys.h"
+
+namespace todbench {
+
+namespace {
+
+const NumberRange positive = NumberRange::positive();
+const NumberRange not_negative = NumberRange::not_negative();
+const NumberRange share = NumberRange::between(0, 1);
+constexpr std::string_view right_and_down = "two numbers, right and down";
+
+PlanSection about_section() {
+  return {
+      .name = "",
+      .sentence = "What the measurement is called and who makes it; for the report.",
+      .keys = {
+          {.name = "name",
+           .type = TextKey{},
+           .sentence = "of the measurement; the session folder is called after it",
+           .place = in_plan(&Plan::name),
+           .form = {"Name", "planName"}},
+          {.name = "description", .type = TextKey{}, .sentence = "in the report", .place = in_plan(&Plan::description)},
+          {.name = "operator",
+           .type = TextKey{},
+           .sentence = "who measures",
+           .place = in_plan(&Plan::operator_name),
+           .form = {"Operator", "planOperator"}},
+          {.name = "place",
+           .type = TextKey{},
+           .sentence = "where it is measured",
+           .place = in_plan(&Plan::place),
+           .form = {"Place", "planPlace"}},
+          {.name = "unit",
+           .type = TextKey{},
+           .sentence = "unit under test, in the words of who tests it",
+           .place = in_plan(&Plan::unit),
+           .form = {"Unit under test", "planUnit"}},
+          {.name = "notes",
+           .type = TextKey{},
+           .sentence = "anything else that belongs into the report",
+           .place = in_plan(&Plan::notes),
+           .form = {"Notes", "planNotes"}},
+          {.name = "seed",
+           .type = WholeKey{0, std::numeric_limits<std::int64_t>::max()},
+           .sentence = "of everything random: the same seed gives the same result",
+           .place = in_plan(&Plan::seed)},
+      }};
+}
+
+PlanSection camera_section() {
+  const auto of = [](auto member) { return in(&Plan::camera, member); };
+  return {
+      .name = "camera",
+      .sentence = "The real or emulated camera. Without an id the plan can only be simulated.",
+      .keys = {
+          {.name = "id",
+           .type = TextKey{},
+           .sentence = "as `todbench devices` lists it, SCHEME:NAME",
+           .place = of(&CameraPlan::id),
+           .form = {"Camera", "planCamera"},
+           .check = check_camera_id},
+          {.name = "ifov_mrad",
+           .type = NumberKey{not_negative},
+           .unit = "mrad",
+           .sentence = "of one pixel; above 0, and required, where the camera has an id",
+           .place = of(&CameraPlan::ifov_mrad),
+           .form = {"IFOV of a pixel", "planIfov"},
+           .narrowed =
+               [](const Plan& plan) { return plan.camera.id.empty() ? std::nullopt : std::optional(positive); }},
+          {.name = "nuc_interval_s",
+           .type = NumberKey{not_negative},
+           .unit = "s",
+           .sentence = "the camera is told to correct its non-uniformity this often; 0: never",
+           .place = of(&CameraPlan::nuc_interval_s),
+           .form = {"Correct camera every", "planNuc"}},
+          {.name = "reconnect_s",
+           .type = NumberKey{not_negative},
+           .unit = "s",
+           .sentence = "how long a lost camera is waited for; 0: not at all",
+           .place = of(&CameraPlan::reconnect_s)},
+          {.name = "nuc_wait_s",
+           .type = NumberKey{not_negative},
+           .unit = "s",
+           .sentence = "frames within this time after a correction are not measured",
+           .place = of(&CameraPlan::nuc_wait_s)},
+          {.name = "settings",
+           .type = FreeTableKey{},
+           .sentence = "features of the camera and their values, [camera.settings]; set before the run and read back",
+           .place = of(&CameraPlan::settings)},
+      }};
+}
+
+std::vector<PlanKey> change_keys() {
+  const auto key = [](std::string_view name, std::string_view sentence, double TargetPlan::*member) {
+    return PlanKey{.name = name,
+                   .type = NumberKey{not_negative},
+                   .unit = "s",
+                   .sentence = sentence,
+                   .place = in(&Plan::target, member)};
+  };
+  return {key("plate_change_s", "what another plate takes; the order of presentations follows from these four",
+              &TargetPlan::plate_change_s),
+          key("mounting_change_s", "what another mounting of a plate takes", &TargetPlan::mounting_change_s),
+          key("contrast_change_s", "what another contrast takes", &TargetPlan::contrast_change_s),
+          key("shift_change_s", "what a sub-pixel shift takes", &TargetPlan::shift_change_s)};
+}
+
+PlanSection target_section() {
+  const auto of = [](auto member) { return in(&Plan::target, member); };
+  PlanSection section{
+      .name = "target",
+      .sentence = "What is shown: every plate in every mounting at every contrast in every phase.",
+      .keys = {
+          {.name = "kind",
+           .type = ChoiceKey{names_of(all_target_kinds)},
+           .sentence = "instruments on the network, an operator who is prompted, or the scene of a simulated camera",
+           .place = of(&TargetPlan::kind)},
+          {.name = "black_body",
+           .type = TextKey{},
+           .sentence = "HOST:PORT of the black body; needed for kind scpi",
+           .place = of(&TargetPlan::black_body),
+           .check = check_black_body},
+          {.name = "stage",
+           .type = TextKey{},
+           .sentence = "HOST:PORT of the stage that moves the plate; needed for kind scpi",
+           .place = of(&TargetPlan::stage),
+           .check = check_stage},
+          // A distance that was not stated would silently scale every result: a file has to say it.
+          {.name = "distance_m",
+           .type = NumberKey{positive},
+           .unit = "m",
+           .sentence = "entrance pupil to plate; required in a file with a [target]",
+           .place = of(&TargetPlan::distance_m),
+           .required = Required::with_section,
+           .form = {"Distance to plate", "planDistance"}},
+          {.name = "plates",
+           .type = ResourcesKey{ResourceKind::plate},
+           .sentence = "names or files",
+           .place = of(&TargetPlan::plates),
+           .form = {"Plates", "planPlates"}},
+          {.name = "mountings",
+           .type = ChoicesKey{names_of(all_mountings), "mounting"},
+           .sentence = "how each plate is held",
+           .place = of(&TargetPlan::mountings),
+           .form = {"Mountings", "planMountings"}},
+          {.name = "delta_t_k",
+           .type = NumbersKey{NumberRange::between(-500, 500), "contrast"},
+           .unit = "K",
+           .sentence = "contrasts, never 0; the sign is the polarity",
+           .place = of(&TargetPlan::delta_t_k),
+           .form = {"Contrasts ΔT", "planContrasts"},
+           .option = {"--delta-t-k"},
+           .check = check_contrasts},
+          {.name = "phases",
+           .type = WholeKey{1, 10000},
+           .sentence = "sub-pixel shifts per plate, mounting and contrast",
+           .place = of(&TargetPlan::phases),
+           .form = {"Phases (sub-pixel shifts)", "planPhases"}},
+          {.name = "settle_timeout_s",
+           .type = NumberKey{positive},
+           .unit = "s",
+           .sentence = "a target that is not stable by then ends the run",
+           .place = of(&TargetPlan::settle_timeout_s)},
+      }};
+  for (PlanKey& key : change_keys()) section.keys.push_back(std::move(key));
+  return section;
+}
+
+PlanSection observer_section() {
+  return {.name = "observer",
+          .sentence = "Who judges the pictures, of the camera and of its twin.",
+          .keys = {{.name = "name",
+                    .type = ResourceKey{ResourceKind::observer},
+                    .sentence = "name or file",
+                    .place = in_plan(&Plan::observer),
+                    .form = {"Observer", "planObserver"},
+                    .option = {"--observer"}}}};
+}
+
+PlanSection simulation_section() {
+  const auto of = [](auto member) { return in(&Plan::simulation, member); };
+  const auto effects = [](MayBeEmpty may_be_empty) {
+    return ChoicesKey{names_of(all_effects), "effect", may_be_empty};
+  };
+  return {.name = "simulation",
+          .sentence = "The simulated sensor: alone, or as the twin of the camera.",
+          .keys = {
+              {.name = "sensor",
+               .type = ResourceKey{ResourceKind::sensor},
+               .sentence = "name or file",
+               .place = of(&SimulationPlan::sensor),
+               .form = {"Simulated sensor", "planSensor"},
+               .option = {"--sensor"}},
+              {.name = "accuracy",
+               .type = ChoiceKey{{"draft", "normal", "reference", "auto"}},
+               .sentence = "of the images; auto: everything from tolerance_percent",
+               .place = of(&SimulationPlan::accuracy),
+               .form = {"Accuracy", "planAccuracy"},
+               .option = {"--accuracy"}},
+              {.name = "tolerance_percent",
+               .type = NumberKey{NumberRange::above_to(0, 50)},
+               .unit = "%",
+               .sentence = "what may be wrong in the 75 % acuity",
+               .place = of(&SimulationPlan::tolerance_percent),
+               .option = {"--tolerance-percent"}},
+              {.name = "microscan",
+               .type = WholeKey{1, 4},
+               .sentence = "samples per detector pitch and axis",
+               .place = of(&SimulationPlan::microscan),
+               .fallback = {"that of the sensor",
+                            [](const Plan&, const PlanParts& parts) { return to_key_value(parts.sensor.microscan); }},
+               .option = {"--microscan"}},
+              {.name = "phases",
+               .type = WholeKey{1, 100000},
+               .sentence = "sub-pixel shifts per plate, mounting and contrast",
+               .place = of(&SimulationPlan::phases),
+               .fallback = {"that of [target]",
+                            [](const Plan& plan, const PlanParts&) { return to_key_value(plan.target.phases); }}},
+              {.name = "motion_mrad_s",
+               .type = NumbersKey{NumberRange::between(-1e4, 1e4), right_and_down, 2},
+               .unit = "mrad/s",
+               .sentence = "of the target; matters where the sensor has a time constant",
+               .place = of(&SimulationPlan::motion)},
+              {.name = "skip",
+               .type = effects(MayBeEmpty::yes),
+               .sentence = "effects not to simulate, whatever the planner says",
+               .place = of(&SimulationPlan::skip),
+               .option = {"--skip"}},
+              {.name = "force",
+               .type = effects(MayBeEmpty::yes),
+               .sentence = "effects to simulate, neutral or not",
+               .place = of(&SimulationPlan::force),
+               .option = {"--force"},
+               .check = check_force},
+          }};
+}
+
+PlanSection schedule_section() {
+  const auto of = [](auto member) { return in(&Plan::schedule, member); };
+  return {.name = "schedule",
+          .sentence = "What is shown next, to camera and twin.",
+          .keys = {{.name = "kind",
+                    .type = ChoiceKey{names_of(all_schedule_kinds)},
+                    .sentence = "every combination, or what the answers so far leave open",
+                    .place = of(&SchedulePlan::kind)},
+                   {.name = "half_width_percent",
+                    .type = NumberKey{NumberRange::above_to(0, 100)},
+                    .unit = "%",
+                    .sentence = "adaptive: wanted half-width of the 95 % interval of S75",
+                    .place = of(&SchedulePlan::half_width_percent)},
+                   {.name = "max_presentations",
+                    .type = WholeKey{1, 1000000},
+                    .sentence = "adaptive: hard cap over all contrasts",
+                    .place = of(&SchedulePlan::max_presentations)}}};
+}
+
+PlanSection fit_section() {
+  return {.name = "fit",
+          .sentence = "The psychometric function that is fitted to the answers.",
+          .keys = {{.name = "form",
+                    .type = ChoiceKey{names_of(all_psychometric_forms)},
+                    .sentence = "a Weibull function in size or in acuity",
+                    .place = in(&Plan::fit, &FitPlan::form)},
+                   {.name = "lapse",
+                    .type = NumberOrWordKey{NumberRange::between(0, 0.1), "free"},
+                    .sentence = "share of wrong answers to triangles that are plainly seen",
+                    .place = in(&Plan::fit, &FitPlan::lapse)}}};
+}
+
+PlanSection measurement_section() {
+  const auto of = [](auto member) { return in(&Plan::measurement, member); };
+  return {.name = "measurement",
+          .sentence = "How frames are taken and when they are refused.",
+          .keys = {
+              {.name = "registration_frames",
+               .type = WholeKey{1, 10000},
+               .sentence = "averaged to find the plate, once per plate and mounting",
+               .place = of(&MeasurementPlan::registration_frames)},
+              {.name = "contrast_frames",
+               .type = WholeKey{1, 10000},
+               .sentence = "averaged for the effective contrast, once per plate, mounting and contrast",
+               .place = of(&MeasurementPlan::contrast_frames)},
+              {.name = "min_reference_px",
+               .type = NumberKey{positive},
+               .unit = "px",
+               .sentence = "triangles from this size measure the effective contrast",
+               .place = of(&MeasurementPlan::min_reference_px)},
+              {.name = "frames_after_change",
+               .type = WholeKey{0, 10000},
+               .sentence = "exposures discarded after the target moved",
+               .place = of(&MeasurementPlan::frames_after_change)},
+              {.name = "max_rejected_share",
+               .type = NumberKey{share},
+               .sentence = "of the frames; beyond it, after 100 frames, the run ends",
+               .place = of(&MeasurementPlan::max_rejected_share)},
+              {.name = "max_saturated_share",
+               .type = NumberKey{share},
+               .sentence = "of the pixels of a frame that is measured",
+               .place = of(&MeasurementPlan::max_saturated_share)},
+              {.name = "frame_timeout_ms",
+               .type = WholeKey{1, 600000},
+               .unit = "ms",
+               .sentence = "a camera that is silent for longer is lost",
+               .place = of(&MeasurementPlan::frame_timeout_ms)},
+              {.name = "max_scale_deviation",
+               .type = NumberKey{NumberRange::above_to(0, 0.5)},
+               .sentence = "share by which the magnification may differ from that of distance and IFOV",
+               .place = of(&MeasurementPlan::max_scale_deviation)},
+              {.name = "max_rotation_deg",
+               .type = NumberKey{NumberRange::above_to(0, 45)},
+               .unit = "deg",
+               .sentence = "by which the plate may be turned",
+               .place = of(&MeasurementPlan::max_rotation_deg)},
+              {.name = "max_residual_px",
+               .type = NumberKey{NumberRange::above_to(0, 5)},
+               .unit = "px",
+               .sentence = "rms by which the triangles may miss their places",
+               .place = of(&MeasurementPlan::max_residual_px)},
+              {.name = "max_readback_deviation_k",
+               .type = NumberKey{NumberRange::positive()},
+               .unit = "K",
+               .sentence = "by which the contrast that a target reads back may miss its set-point without a note",
+               .place = of(&MeasurementPlan::max_readback_deviation_k)},
+              {.name = "record_frames",
+               .type = FlagKey{},
+               .sentence = "keep every frame in the session, for todbench replay",
+               .place = of(&MeasurementPlan::record_frames),
+               .form = {"Keep frames, for a replay", "planRecord"},
+               .option = {"--record-frames", OptionOf::measurements}},
+          }};
+}
+
+PlanSection limits_section() {
+  return {.name = "limits",
+          .sentence = "What is demanded of the result.",
+          .keys = {{.name = "equivalence_margin_percent",
+                    .type = OptionalNumberKey{NumberRange::above_to(0, 100)},
+                    .unit = "%",
+                    .sentence = "demanded agreement with the twin; without it none is demanded",
+                    .place = in(&Plan::limits, &LimitsPlan::equivalence_margin_percent),
+                    .form = {"Equivalence margin, empty: none", "planMargin"}}}};
+}
+
+PlanSection acuity_limits_section() {
+  const auto rows = [](auto& plan) -> auto& {
+    return plan.limits.acuity;
+  };
+  return {.name = "limits.acuity",
+          .sentence = "The 75 % acuity demanded at a contrast.",
+          .keys = {{.name = "delta_t_k",
+                    .type = NumberKey{NumberRange::any()},
+                    .unit = "K",
+                    .sentence = "one of the contrasts of [target]",
+                    .place = in_row(rows, &AcuityLimit::delta_t_k),
+                    .required = Required::always,
+                    .check = check_limit_contrast},
+                   {.name = "least_acuity_per_mrad",
+                    .type = NumberKey{positive},
+                    .unit = "1/mrad",
+                    .sentence = "what the unit has to reach there",
+                    .place = in_row(rows, &AcuityLimit::least_acuity_per_mrad),
+                    .required = Required::always}},
+          .rows = rows_of(rows),
+          .form = {"Limits, ΔT (K): least acuity (1/mrad)", "planLimits"}};
+}
+
+PlanSection instrument_section() {
+  const auto rows = [](auto& plan) -> auto& {
+    return plan.instruments;
+  };
+  return {.name = "instrument",
+          .sentence = "An instrument that the calibration of the result hangs on; for the report.",
+          .keys = {{.name = "name",
+                    .type = TextKey{},
+                    .sentence = "what it is",
+                    .place = in_row(rows, &InstrumentPlan::name),
+                    .required = Required::always},
+                   {.name = "serial",
+                    .type = TextKey{},
+                    .sentence = "its serial number",
+                    .place = in_row(rows, &InstrumentPlan::serial)},
+                   {.name = "certificate",
+                    .type = TextKey{},
+                    .sentence = "number of its calibration certificate",
+                    .place = in_row(rows, &InstrumentPlan::certificate)},
+                   {.name = "calibration_due",
+                    .type = TextKey{},
+                    .sentence = "\"YYYY-MM-DD\", the last valid day; a date that has passed refuses the measurement",
+                    .place = in_row(rows, &InstrumentPlan::calibration_due),
+                    .check = check_due_date}},
+          .rows = rows_of(rows)};
+}
+
+}  // namespace
+
+const std::vector<PlanSection>& plan_sections() {
+  static const std::vector<PlanSection> sections{about_section(),         camera_section(),      target_section(),
+                                                 observer_section(),      simulation_section(),  schedule_section(),
+                                                 fit_section(),           measurement_section(), limits_section(),
+                                                 acuity_limits_section(), instrument_section()};
+  return sections;
+}
+
+}  // namespace todbench

@@ -1,0 +1,93 @@
+#include "bench/run/bench_time.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/plan/plan_options.h"
+
+namespace todbench {
+namespace {
+
+/// The list of a constant schedule. An adaptive one stays in a set-up for a visit, whatever a change takes.
+std::vector<TargetState> listed_states(const Plan& plan, const std::vector<TargetPlate>& plates) {
+  ConstantStimuliOptions stimuli = stimuli_options(plan, plates, plan.camera.ifov_mrad, Side::measured);
+  // Shifts are counted, not measured: a plan without a camera has them too.
+  stimuli.pixel_mm = 1;
+  if (plan.schedule.kind == ScheduleKind::adaptive) {
+    const double visit_order[] = {3, 2, 1, 0};
+    std::copy(std::begin(visit_order), std::end(visit_order), std::begin(stimuli.change_cost_s));
+  }
+  return constant_stimuli(stimuli, RandomStream(plan.seed, "schedule"));
+}
+
+/// One presentation after another, as measure() goes through them.
+class Walk {
+ public:
+  explicit Walk(const Plan& plan) : plan_(plan) {}
+
+  void present(const TargetState* before, const TargetState& state) {
+    const bool plate = before == nullptr || before->plate != state.plate;
+    const bool mounting = before == nullptr || before->mounting != state.mounting;
+    const bool contrast = before == nullptr || before->delta_t_k != state.delta_t_k;
+    const bool shift = before == nullptr || before->shift_mm != state.shift_mm;
+    ++time_.presentations;
+    time_.plate_changes += plate ? 1 : 0;
+    time_.mounting_changes += mounting ? 1 : 0;
+    time_.contrast_changes += contrast ? 1 : 0;
+    time_.shift_changes += shift ? 1 : 0;
+    const TargetPlan& target = plan_.target;
+    time_.changes_s += std::max({plate ? target.plate_change_s : 0, mounting ? target.mounting_change_s : 0,
+                                 contrast ? target.contrast_change_s : 0, shift ? target.shift_change_s : 0});
+    take_frames(plate || mounting, contrast);
+  }
+
+  [[nodiscard]] BenchTime finished(double frame_rate_hz) {
+    // A simulated camera is as fast as the processor, and so is what it looks at.
+    if (plan_.target.kind == TargetKind::scene) {
+      time_.changes_s = 0;
+      return time_;
+    }
+    time_.frames_s = frame_rate_hz > 0 ? static_cast<double>(time_.frames) / frame_rate_hz : 0;
+    const double running = time_.changes_s + time_.frames_s;
+    if (plan_.camera.nuc_interval_s > 0)
+      time_.corrections_s = (running / plan_.camera.nuc_interval_s + 1) * plan_.camera.nuc_wait_s;
+    return time_;
+  }
+
+ private:
+  void take_frames(bool new_set_up, bool new_contrast) {
+    const MeasurementPlan& measurement = plan_.measurement;
+    int frames = measurement.frames_after_change + 1;
+    if (new_set_up) frames += measurement.registration_frames;
+    if (new_set_up || new_contrast) frames += measurement.contrast_frames;
+    // Where a hand has moved the plate it is looked for.
+    if (!new_set_up && plan_.target.kind == TargetKind::prompt) frames += measurement.contrast_frames;
+    time_.frames += static_cast<std::uint64_t>(frames);
+  }
+
+  const Plan& plan_;
+  BenchTime time_;
+};
+
+}  // namespace
+
+BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates, double frame_rate_hz,
+                     std::optional<double> presentations) {
+  const std::vector<TargetState> states = listed_states(plan, plates);
+  Walk walk(plan);
+  if (states.empty()) return walk.finished(frame_rate_hz);
+  std::uint64_t count = states.size();
+  if (plan.schedule.kind == ScheduleKind::adaptive) {
+    const auto cap = static_cast<double>(plan.schedule.max_presentations);
+    count = static_cast<std::uint64_t>(std::llround(std::min(presentations.value_or(cap), cap)));
+  }
+  const TargetState* before = nullptr;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const TargetState& state = states[i % states.size()];
+    walk.present(before, state);
+    before = &state;
+  }
+  return walk.finished(frame_rate_hz);
+}
+
+}  // namespace todbench

@@ -1,0 +1,186 @@
+#include "bench/plan/plan_keys.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <set>
+
+#include "bench/plan/plan_options.h"
+#include "tests/support/source_file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace todbench {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Every key of the table, repeated sections with one row.
+std::vector<KeyAt> all_keys() {
+  std::vector<KeyAt> keys;
+  for (const PlanSection& section : plan_sections()) {
+    for (const PlanKey& key : section.keys) keys.push_back({&section, &key, 0});
+  }
+  return keys;
+}
+
+/// The defaults, with one row in every repeated section.
+Plan with_rows() {
+  Plan plan;
+  for (const PlanSection& section : plan_sections()) {
+    if (section.repeated()) section.rows.resize(plan, 1);
+  }
+  return plan;
+}
+
+TEST(PlanKeys, HaveTheDefaultsOfThePlansStructsAndNoOthers) {
+  Plan plan = with_rows();
+
+  for (const KeyAt& at : all_keys()) at.key->place.set(plan, 0, default_of(at));
+
+  EXPECT_EQ(plan, with_rows());
+  EXPECT_EQ(parse_plan({"plan.toml", ""}, "").value(), Plan{});
+}
+
+TEST(PlanKeys, DefaultsAreThoseOfThePartsThatUseThem) {
+  const LoadedPlan loaded = LoadedPlan::load(Plan{}).value();
+  const MeasurementOptions planned = measurement_options(loaded.plan(), loaded.plates(), 1), own;
+  const ConstantStimuliOptions stimuli = stimuli_options(loaded.plan(), loaded.plates(), 1, Side::measured), shown;
+
+  EXPECT_EQ(planned.registration_frames, own.registration_frames);
+  EXPECT_EQ(planned.contrast_frames, own.contrast_frames);
+  EXPECT_EQ(planned.min_reference_px, own.min_reference_px);
+  EXPECT_EQ(planned.frames_after_change, own.frames_after_change);
+  EXPECT_EQ(planned.nuc_interval_s, own.nuc_interval_s);
+  EXPECT_EQ(planned.nuc_wait_s, own.nuc_wait_s);
+  EXPECT_EQ(planned.max_rejected_share, own.max_rejected_share);
+  EXPECT_EQ(planned.frame_timeout, own.frame_timeout);
+  EXPECT_EQ(planned.integrity.max_saturated_share, own.integrity.max_saturated_share);
+  EXPECT_EQ(planned.registration.max_scale_deviation, own.registration.max_scale_deviation);
+  EXPECT_EQ(planned.registration.max_rotation_deg, own.registration.max_rotation_deg);
+  EXPECT_EQ(planned.registration.max_residual_px, own.registration.max_residual_px);
+  EXPECT_EQ(stimuli.phases, shown.phases);
+  EXPECT_THAT(stimuli.change_cost_s, ::testing::ElementsAreArray(shown.change_cost_s));
+}
+
+TEST(PlanKeys, AreNamedOnceAndSayWhatTheyAre) {
+  std::set<std::string> paths, lines, options;
+  for (const KeyAt& at : all_keys()) {
+    const std::string path = path_of(*at.section, *at.key);
+    EXPECT_TRUE(paths.insert(path).second) << path;
+    EXPECT_FALSE(at.key->sentence.empty()) << path;
+    EXPECT_EQ(plan_key(path).key, at.key);
+    if (!at.key->form.label.empty()) EXPECT_TRUE(lines.insert(std::string(at.key->form.object_name)).second) << path;
+    if (!at.key->option.name.empty()) EXPECT_TRUE(options.insert(std::string(at.key->option.name)).second) << path;
+  }
+}
+
+TEST(PlanKeys, ThePageInTheDocumentsIsWhatTheTableSays) {
+  EXPECT_EQ(testing::content_of(source_file("docs/plan-keys.md")), plan_keys_page())
+      << "write it again: plan_keys_page docs/plan-keys.md";
+}
+
+TEST(PlanKeys, TextsOfFormsAndCommandLinesReadBackEqual) {
+  for (const KeyAt& at : all_keys()) {
+    if (std::holds_alternative<FreeTableKey>(at.key->type)) continue;
+    const KeyValue value = default_of(at);
+    if (at.key->required == Required::always) continue;  // the default of a row is no value of its own
+
+    const auto back = value_from_text(at.key->type, plain_text(at.key->type, value));
+
+    ASSERT_TRUE(back) << path_of(*at.section, *at.key) << ": " << back.error().message;
+    EXPECT_TRUE(*back == value) << path_of(*at.section, *at.key);
+  }
+}
+
+/// A value that no range allows; nothing for types without one.
+std::optional<KeyValue> impossible(const KeyType& type) {
+  const double nan = std::nan("");
+  if (std::holds_alternative<NumberKey>(type) || std::holds_alternative<OptionalNumberKey>(type) ||
+      std::holds_alternative<NumberOrWordKey>(type))
+    return nan;
+  if (std::holds_alternative<NumbersKey>(type)) return std::vector<double>{nan, 1};
+  if (std::holds_alternative<WholeKey>(type)) return std::int64_t{-1};
+  return std::nullopt;
+}
+
+TEST(ValidPlan, NoNumberLeavesItsRangeWhoeverMadeThePlan) {
+  Plan good = with_rows();
+  good.limits.acuity = {{16.9, 0.4}};
+  ASSERT_TRUE(validate(good)) << validate(good).error().message;
+  int tried = 0;
+  for (const KeyAt& at : all_keys()) {
+    const auto wrong = impossible(at.key->type);
+    if (!wrong) continue;
+    Plan plan = good;
+    at.key->place.set(plan, 0, *wrong);
+
+    const auto valid = validate(plan);
+
+    ASSERT_FALSE(valid) << path_of(*at.section, *at.key);
+    EXPECT_EQ(valid.error().code, ErrorCode::invalid_input);
+    ASSERT_TRUE(valid.error().key);
+    // A contrast that is no number is not among those of a limit either: the first in the table is said.
+    EXPECT_EQ(valid.error().key->name, path_of(*at.section, *at.key));
+    ++tried;
+  }
+  EXPECT_GT(tried, 30);
+}
+
+struct Contradiction {
+  const char* path;
+  void (*make)(Plan&);
+  const char* toml;
+  const char* sentence;
+};
+
+TEST(ValidPlan, IsRefusedWithTheSentenceOfAFileThatSaysTheSame) {
+  const std::string target = "[target]\ndistance_m = 2\n";
+  const Contradiction all[] = {
+      {"target.delta_t_k",
+       [](Plan& p) {
+         p.target.delta_t_k = {1, 0};
+       },
+       "delta_t_k = [1, 0]\n", "a contrast of 0 K shows nothing"},
+      {"target.plates", [](Plan& p) { p.target.plates = {}; }, "plates = []\n", "expected at least one plate"},
+      {"target.mountings", [](Plan& p) { p.target.mountings = {}; }, "mountings = []\n",
+       "expected at least one mounting"},
+      {"target.black_body", [](Plan& p) { p.target.kind = TargetKind::scpi; }, "kind = \"scpi\"\n",
+       "needed for kind \"scpi\", expected \"HOST:PORT\""},
+      {"simulation.accuracy", [](Plan& p) { p.simulation.accuracy = "good"; }, "[simulation]\naccuracy = \"good\"\n",
+       "expected one of 'draft', 'normal', 'reference', 'auto', found \"good\""},
+      {"simulation.force", [](Plan& p) { p.simulation.skip = p.simulation.force = {Effect::detector}; },
+       "[simulation]\nskip = [\"detector\"]\nforce = [\"detector\"]\n", "'detector' is also in skip"},
+      {"camera.id", [](Plan& p) { p.camera.id = "A-1", p.camera.ifov_mrad = 1; },
+       "[camera]\nid = \"A-1\"\nifov_mrad = 1\n",
+       "expected SCHEME:NAME as listed by 'todbench devices', found \"A-1\""},
+      {"camera.ifov_mrad", [](Plan& p) { p.camera.id = "gige:A-1"; }, "[camera]\nid = \"gige:A-1\"\nifov_mrad = 0\n",
+       "expected a number above 0, found 0"},
+      {"limits.acuity.delta_t_k",
+       [](Plan& p) {
+         p.limits.acuity = {{5, 1}};
+       },
+       "[[limits.acuity]]\ndelta_t_k = 5\nleast_acuity_per_mrad = 1\n", "5 K is not among the contrasts of [target]"},
+      {"instrument.calibration_due",
+       [](Plan& p) {
+         p.instruments = {{"x", "", "", "soon"}};
+       },
+       "[[instrument]]\nname = \"x\"\ncalibration_due = \"soon\"\n", "expected a date \"YYYY-MM-DD\", found \"soon\""}};
+  for (const Contradiction& wrong : all) {
+    Plan plan;
+    wrong.make(plan);
+
+    const auto valid = validate(plan);
+    const auto read = parse_plan({"plan.toml", target + wrong.toml}, "");
+
+    ASSERT_FALSE(valid) << wrong.path;
+    ASSERT_TRUE(valid.error().key);
+    EXPECT_EQ(valid.error().key->name, wrong.path);
+    EXPECT_EQ(valid.error().key->reason, wrong.sentence);
+    ASSERT_FALSE(read) << wrong.path;
+    EXPECT_EQ(read.error().key, valid.error().key);
+    EXPECT_THAT(read.error().message, HasSubstr(valid.error().message));
+  }
+}
+
+}  // namespace
+}  // namespace todbench
