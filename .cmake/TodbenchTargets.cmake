@@ -109,7 +109,7 @@ function(todbench_test name)
   if(ARG_DEPENDS MATCHES "_test_support")
     set(main GTest::gmock)
   endif()
-  target_link_libraries(${name} PRIVATE ${ARG_DEPENDS} todbench_source_file ${main})
+  target_link_libraries(${name} PRIVATE ${ARG_DEPENDS} todbench_patience todbench_source_file ${main})
   # Compiling assertions costs more than running them.
   target_compile_options(${name} PRIVATE -O1)
   if(NOT ARG_PRECOMPILED)

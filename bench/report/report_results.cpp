@@ -136,7 +136,7 @@ Markup limit_cell(const Demand& demand) {
 /// The column says 95 %; another confidence stands with the number.
 Markup result_cell(const Demand& demand) {
   if (demand.interval_percent == 95 || (!demand.interval.low && !demand.interval.high))
-    return interval_cell(demand.result, demand.interval, "no value");
+    return interval_or_missing(demand.result, demand.interval, "no value");
   return unbroken(with_interval(demand.result, demand.interval) + " (" + std::to_string(demand.interval_percent) +
                   " %)");
 }

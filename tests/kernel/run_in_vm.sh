@@ -58,7 +58,8 @@ echo "$*" >root/test/arguments
 (cd root && find . | cpio -o -H newc --quiet) | gzip -1 >initramfs.gz
 
 # No hardware support is asked for: nested machines seldom have it, and the result must not depend on it.
-timeout 220 qemu-system-x86_64 -M q35 -accel tcg,thread=multi -cpu max -smp 2 -m 1024 -nographic -no-reboot -net none \
+# It takes a minute or two on an idle host; what takes this long hangs.
+timeout 1500 qemu-system-x86_64 -M q35 -accel tcg,thread=multi -cpu max -smp 2 -m 1024 -nographic -no-reboot -net none \
   -kernel kernel/boot/vmlinuz-"$version" -initrd initramfs.gz \
   -append "console=ttyS0 quiet panic=-1 random.trust_cpu=on rdinit=/init" </dev/null >console.log 2>&1 || true
 grep -q "TODBENCH-EXIT" console.log || { tail -n 40 console.log; echo "the virtual machine did not come to its end"; exit 1; }

@@ -7,6 +7,7 @@
 #include <QTextDocument>
 
 #include "tests/bench/gui/gui_test_support.h"
+#include "tests/support/patience.h"
 
 namespace todbench::testing {
 namespace {
@@ -21,7 +22,7 @@ QString output_of(const QString& program, const QStringList& arguments) {
   QProcess process;
   process.start(program, arguments);
   EXPECT_TRUE(process.waitForStarted()) << program.toStdString() << " of poppler-utils is needed";
-  EXPECT_TRUE(process.waitForFinished(60'000));
+  EXPECT_TRUE(process.waitForFinished(static_cast<int>(testing_support::patience(std::chrono::minutes(1)).count())));
   EXPECT_EQ(process.exitCode(), 0) << process.readAllStandardError().toStdString();
   return QString::fromUtf8(process.readAllStandardOutput());
 }
