@@ -5,6 +5,7 @@
 #include "bench/report/number_format.h"
 #include "bench/report/report_pieces.h"
 #include "bench/report/tod_figures.h"
+#include "tod/psychometric/acuity.h"
 
 namespace todbench {
 namespace {
@@ -78,7 +79,7 @@ std::vector<Markup> curve_row(const TodPoint& point, bool with_direct) {
   std::vector<Markup> row{cell(stated(point.set_delta_t_k)),
                           contrast_cell(point),
                           interval_cell(fit.threshold, fit.ci95, reason),
-                          interval_cell(reciprocal(fit.threshold), reciprocal(fit.ci95), reason),
+                          interval_cell(acuity_per_mrad(fit), acuity_interval(fit.ci95), reason),
                           optional_number(fit.slope, 3, reason),
                           lapse_cell(point),
                           trials_cell(fit),

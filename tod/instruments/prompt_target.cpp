@@ -1,12 +1,12 @@
 #include "tod/instruments/prompt_target.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <ostream>
 #include <system_error>
@@ -67,16 +67,12 @@ const char* instruction(Mounting mounting) {
 }
 
 std::string kelvin(double value) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%+.3f K", value);
-  return text.data();
+  return fmt::format("{:+.3f} K", value);
 }
 
 std::string millimetres(cv::Point2d move) {
-  std::array<char, 96> text{};
-  std::snprintf(text.data(), text.size(), "%.1f mm %s and %.1f mm %s", std::abs(move.x), move.x < 0 ? "left" : "right",
-                std::abs(move.y), move.y < 0 ? "up" : "down");
-  return text.data();
+  return fmt::format("{:.1f} mm {} and {:.1f} mm {}", std::abs(move.x), move.x < 0 ? "left" : "right", std::abs(move.y),
+                     move.y < 0 ? "up" : "down");
 }
 
 std::vector<std::string> what_to_do(const std::optional<TargetState>& last, const TargetState& next) {

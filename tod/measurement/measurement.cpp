@@ -1,9 +1,9 @@
 #include "tod/measurement/measurement.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <span>
 #include <thread>
@@ -160,10 +160,8 @@ class Run {
                               .away_s = static_cast<double>(options_.now_ns() - lost_ns) * 1e-9,
                               .moved_px = before ? cv::norm(base_.pixel({0, 0}) - *before) : 0,
                               .reason = why.message};
-    char text[120];
-    std::snprintf(text, sizeof text, "the camera is back after %.1f s; the plate is %.2f pixels from where it was",
-                  interruption.away_s, interruption.moved_px);
-    note(text);
+    note(fmt::format("the camera is back after {:.1f} s; the plate is {:.2f} pixels from where it was",
+                     interruption.away_s, interruption.moved_px));
     result_.interruptions.push_back(std::move(interruption));
     if (listener_.on_resumed) listener_.on_resumed();
     return {};
@@ -310,20 +308,16 @@ class Run {
     auto contrast = effective_contrast(picture->kelvin, mounted_plate, registration, options_.min_reference_px);
     if (!contrast) return fail("measuring the effective contrast", contrast.error());
     if (!(contrast->value * state.delta_t_k > 0)) {
-      char text[160];
-      std::snprintf(text, sizeof text, "the target was set to %+.3f K but the camera sees %+.3f K +- %.3f K",
-                    state.delta_t_k, contrast->value, contrast->standard_error);
-      return fail(ErrorCode::calibration, text);
+      return fail(ErrorCode::calibration,
+                  fmt::format("the target was set to {:+.3f} K but the camera sees {:+.3f} K +- {:.3f} K",
+                              state.delta_t_k, contrast->value, contrast->standard_error));
     }
     const auto response = options_.contrast_response.find(state.plate);
     contrast_k_ = contrast->value / (response == options_.contrast_response.end() ? 1.0 : response->second);
     const double deviation = contrast_k_ / state.delta_t_k - 1;
     if (std::abs(deviation) > 0.2 && std::abs(contrast_k_ - state.delta_t_k) > 3 * contrast->standard_error) {
-      char text[200];
-      std::snprintf(text, sizeof text, "plate %s, mounting %s: the camera sees %.3f K where %.3f K were set (%+.0f %%)",
-                    state.plate.c_str(), std::string(to_string(state.mounting)).c_str(), contrast_k_, state.delta_t_k,
-                    100 * deviation);
-      note(text);
+      note(fmt::format("plate {}, mounting {}: the camera sees {:.3f} K where {:.3f} K were set ({:+.0f} %)",
+                       state.plate, to_string(state.mounting), contrast_k_, state.delta_t_k, 100 * deviation));
     }
     return {};
   }
@@ -408,12 +402,10 @@ Result<std::vector<std::string>> sizes_that_do_not_fit(const MeasurementOptions&
       out.push_back("plate " + plate.name + ", " + problem.triangle + ": " + problem.reason);
     }
     if (plate.width_mm * scale > frame_width || plate.height_mm * scale > frame_height) {
-      char text[200];
-      std::snprintf(text, sizeof text,
-                    "plate %s: its %.0f x %.0f mm are %.0f x %.0f pixels at %.2f m, the picture has %d x %d",
-                    plate.name.c_str(), plate.width_mm, plate.height_mm, plate.width_mm * scale,
-                    plate.height_mm * scale, options.distance_m, frame_width, frame_height);
-      out.emplace_back(text);
+      out.push_back(fmt::format(
+          "plate {}: its {:.0f} x {:.0f} mm are {:.0f} x {:.0f} pixels at {:.2f} m, the picture has {} x {}",
+          plate.name, plate.width_mm, plate.height_mm, plate.width_mm * scale, plate.height_mm * scale,
+          options.distance_m, frame_width, frame_height));
     }
   }
   return out;

@@ -1,8 +1,8 @@
 #include "tod/registration/patch_windows.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace todbench {
 namespace {
@@ -60,10 +60,9 @@ std::vector<WindowProblem> touching_windows(const TargetPlate& plate, double sca
       const Polygon shape = triangle(other.size_mm * scale_px_per_mm, other.apex, other.position_mm * scale_px_per_mm);
       const double gap = distance(window, shape);
       if (gap >= blur_allowance_px) continue;
-      char reason[160];
-      std::snprintf(reason, sizeof reason, "its window of %d px comes within %.1f px of %s; %.1f px are needed",
-                    sides[i], gap, other.name.c_str(), blur_allowance_px);
-      problems.push_back({plate.triangles[i].name, reason});
+      problems.push_back({plate.triangles[i].name,
+                          fmt::format("its window of {} px comes within {:.1f} px of {}; {:.1f} px are needed",
+                                      sides[i], gap, other.name, blur_allowance_px)});
       break;
     }
   }
@@ -77,11 +76,10 @@ std::vector<WindowProblem> windows_out_of_picture(const TargetPlate& mounted_pla
   for (std::size_t i = 0; i < mounted_plate.triangles.size(); ++i) {
     const auto window = patch_window(registration.pixel(mounted_plate.triangles[i].position_mm), sides[i]).pixels;
     if ((window & inner) == window) continue;
-    char reason[160];
-    std::snprintf(reason, sizeof reason,
-                  "its window, columns %d to %d and rows %d to %d, leaves the picture of %d x %d", window.x,
-                  window.x + window.width - 1, window.y, window.y + window.height - 1, picture.width, picture.height);
-    problems.push_back({mounted_plate.triangles[i].name, reason});
+    problems.push_back({mounted_plate.triangles[i].name,
+                        fmt::format("its window, columns {} to {} and rows {} to {}, leaves the picture of {} x {}",
+                                    window.x, window.x + window.width - 1, window.y, window.y + window.height - 1,
+                                    picture.width, picture.height)});
   }
   return problems;
 }

@@ -11,6 +11,7 @@
 #include "bench/report/plot_ticks.h"
 #include "bench/report/tod_figures.h"
 #include "tests/bench/report/report_sample.h"
+#include "tod/psychometric/acuity.h"
 
 namespace todbench {
 namespace {
@@ -93,9 +94,9 @@ TEST(NumberFormat, SignificantDigitsNeedNoExponent) {
   EXPECT_EQ(stated(0.25), "0.25");
 }
 
-TEST(NumberFormat, TheReciprocalOfAnIntervalExchangesItsBounds) {
-  const Interval acuity = reciprocal(Interval{2.0, 4.0});
-  const Interval open = reciprocal(Interval{0.0, 4.0});
+TEST(Acuity, TheIntervalHasItsBoundsExchanged) {
+  const Interval acuity = acuity_interval(Interval{2.0, 4.0});
+  const Interval open = acuity_interval(Interval{0.0, 4.0});
 
   EXPECT_EQ(acuity.low, 0.25);
   EXPECT_EQ(acuity.high, 0.5);
