@@ -3,6 +3,7 @@
 #include <QTextCursor>
 #include <QTextTable>
 #include <algorithm>
+#include <vector>
 
 namespace todbench {
 namespace {
@@ -126,7 +127,7 @@ class TextWriter {
   void operator()(const ValueTable& table) {
     if (table.values.empty()) return;
     caption(table.caption);
-    QTextTable* cells = begin_table(static_cast<int>(table.values.size()), 2);
+    QTextTable* cells = begin_table(static_cast<int>(table.values.size()), 2, ruled({38, 62}));
     for (std::size_t r = 0; r < table.values.size(); ++r) {
       fill(cells->cellAt(static_cast<int>(r), 0), plain(table.values[r].name), true);
       fill(cells->cellAt(static_cast<int>(r), 1), table.values[r].value, false);
@@ -141,17 +142,17 @@ class TextWriter {
   }
 
   void operator()(const FigurePairs& pairs) {
-    const int count = static_cast<int>(pairs.figures.size());
-    if (count == 0) return;
-    QTextTable* cells = begin_table((count + 1) / 2, 2, borderless());
-    for (int i = 0; i < count; ++i) {
-      const Figure& figure = pairs.figures[static_cast<std::size_t>(i)];
-      cursor_ = cells->cellAt(i / 2, i % 2).firstCursorPosition();
-      draw(figure);
-      cursor_.insertBlock(spaced(0, after_paragraph));
-      cursor_.insertText(qt(figure.caption), letters(text_px, soft));
+    // A table for each row, so that a row can move to the next page as a whole.
+    for (std::size_t i = 0; i < pairs.figures.size(); i += 2) {
+      QTextTable* cells = begin_table(1, 2, borderless({50, 50}));
+      for (std::size_t k = i; k < std::min(i + 2, pairs.figures.size()); ++k) {
+        cursor_ = cells->cellAt(0, static_cast<int>(k - i)).firstCursorPosition();
+        draw(pairs.figures[k]);
+        cursor_.insertBlock(spaced(0, after_paragraph));
+        cursor_.insertText(qt(pairs.figures[k].caption), letters(text_px, soft));
+      }
+      end_table();
     }
-    end_table();
   }
 
   void operator()(const TablePairs& pairs) {
@@ -180,7 +181,8 @@ class TextWriter {
   void operator()(const Signatures& signatures) {
     const int columns = static_cast<int>(signatures.signatories.size());
     if (columns == 0) return;
-    QTextTable* cells = begin_table(4, columns);
+    QTextTable* cells =
+        begin_table(4, columns, ruled(std::vector<double>(signatures.signatories.size(), 100.0 / columns)));
     for (int i = 0; i < columns; ++i) {
       const auto& [role, name] = signatures.signatories[static_cast<std::size_t>(i)];
       fill(cells->cellAt(0, i), plain(role), true);
@@ -196,8 +198,12 @@ class TextWriter {
   }
 
  private:
-  static QTextTableFormat borderless() {
+  /// Widths of the columns in per cent; none: by what is in them.
+  static QTextTableFormat borderless(const std::vector<double>& widths_percent = {}) {
     QTextTableFormat format;
+    QList<QTextLength> widths;
+    for (const double width : widths_percent) widths << QTextLength(QTextLength::PercentageLength, width);
+    format.setColumnWidthConstraints(widths);
     format.setBorder(0);
     format.setCellSpacing(0);
     format.setCellPadding(0);
@@ -207,8 +213,8 @@ class TextWriter {
     return format;
   }
 
-  static QTextTableFormat ruled() {
-    QTextTableFormat format = borderless();
+  static QTextTableFormat ruled(const std::vector<double>& widths_percent = {}) {
+    QTextTableFormat format = borderless(widths_percent);
     format.setBorder(1);
     format.setBorderStyle(QTextFrameFormat::BorderStyle_Solid);
     format.setBorderBrush(rule);
@@ -233,8 +239,7 @@ class TextWriter {
       cursor_.setBlockFormat(empty);
       cursor_.setBlockCharFormat(letters(1));
     }
-    QTextTable* table = cursor_.insertTable(rows, columns, format);
-    return table;
+    return cursor_.insertTable(rows, columns, format);
   }
 
   void end_table() {

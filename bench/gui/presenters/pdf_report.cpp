@@ -54,15 +54,30 @@ QTextBlock belongs_to(const QTextBlock& block) {
   return content;
 }
 
-/// A heading or caption at the foot of a page moves to the next one, with what it is about. Every move shifts what
-/// follows, so the whole document is laid out again each time: Qt leaves blocks without lines where only the changed
-/// one is.
-void keep_headings_with_text(QTextDocument& document) {
+/// A table of one row, which holds figures side by side or the verdict, begins a page where it would go over two.
+void keep_row_together(QTextDocument& document, QTextTable& table) {
+  const QTextBlock first = table.firstCursorPosition().block();
+  if (table.rows() > 1 || page_of(document, first) == page_of(document, table.lastCursorPosition().block())) return;
+  QTextTableFormat format = table.format();
+  format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
+  table.setFormat(format);
+  document.markContentsDirty(0, document.characterCount());
+}
+
+/// A heading, a caption or a figure at the foot of a page moves to the next one, with what it belongs to. Every move
+/// shifts what follows, so the whole document is laid out again each time: Qt leaves blocks without lines where only
+/// the changed one is.
+void keep_together(QTextDocument& document) {
   for (QTextBlock block = document.begin(); block.isValid(); block = block.next()) {
-    if (table_at(block) != nullptr || block.text().trimmed().isEmpty()) continue;
+    if (QTextTable* table = table_at(block); table != nullptr) {
+      if (table->firstCursorPosition().block() == block) keep_row_together(document, *table);
+      continue;
+    }
+    if (block.text().trimmed().isEmpty()) continue;
     const QTextBlock next = content_after(block);
     const bool stands_over_a_table = next.isValid() && table_at(next) != nullptr;
-    if (block.blockFormat().headingLevel() == 0 && !stands_over_a_table) continue;
+    const bool figure = block.text().contains(QChar::ObjectReplacementCharacter);
+    if (block.blockFormat().headingLevel() == 0 && !stands_over_a_table && !figure) continue;
     const QTextBlock content = belongs_to(block);
     if (!content.isValid() || page_of(document, content) == page_of(document, block)) continue;
     QTextBlockFormat format = block.blockFormat();
@@ -126,7 +141,7 @@ Result<void> write_pdf(const Document& document, const std::filesystem::path& fi
   text.documentLayout()->registerHandler(DrawingTextObject::object_type, &drawings);
   write_text(text, drawings, document);
   text.setPageSize({text_width, text_height});
-  keep_headings_with_text(text);
+  keep_together(text);
   if (const auto lost = lost_text(text))
     return fail(ErrorCode::internal, "the PDF would leave out \"" + lost->toStdString() + "\"");
 
