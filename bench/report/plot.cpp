@@ -172,10 +172,13 @@ class Canvas {
         draw_marker(series.marker, {x(*point.x), y(*point.y) + series.dodge_px}, series.tone);
   }
 
+  enum class IntervalEnd { with_cap, with_arrow };
+
   /// An end of an interval: a cap where it is inside, an arrow where it is open or beyond the edge. `outward` is the
   /// direction in which the interval goes on, of length one.
-  void draw_end(Place end, Place outward, bool bounded, PlotTone tone) {
+  void draw_end(Place end, Place outward, IntervalEnd kind, PlotTone tone) {
     const Place across{cap * std::abs(outward.y), cap * std::abs(outward.x)};
+    const bool bounded = kind == IntervalEnd::with_cap;
     const double back = bounded ? 0 : arrow;
     const Place tail{end.x - back * outward.x, end.y - back * outward.y};
     const Place one{tail.x - across.x, tail.y - across.y}, other{tail.x + across.x, tail.y + across.y};
@@ -192,8 +195,8 @@ class Canvas {
     const double height = y(*point.y) + series.dodge_px;
     const Place from{low ? x(*interval.low) : margin_left, height}, to{high ? x(*interval.high) : right_, height};
     draw({Segment{from, to}, Pen::bar, series.tone});
-    draw_end(from, {-1, 0}, low, series.tone);
-    draw_end(to, {1, 0}, high, series.tone);
+    draw_end(from, {-1, 0}, low ? IntervalEnd::with_cap : IntervalEnd::with_arrow, series.tone);
+    draw_end(to, {1, 0}, high ? IntervalEnd::with_cap : IntervalEnd::with_arrow, series.tone);
   }
 
   void draw_y_interval(const PlotPoint& point, const PlotSeries& series) {
@@ -205,8 +208,8 @@ class Canvas {
     const Place from{across, (low ? y(*interval.low) : bottom_) + series.dodge_px};
     const Place to{across, (high ? y(*interval.high) : margin_top) + series.dodge_px};
     draw({Segment{from, to}, Pen::bar, series.tone});
-    draw_end(from, {0, 1}, low, series.tone);
-    draw_end(to, {0, -1}, high, series.tone);
+    draw_end(from, {0, 1}, low ? IntervalEnd::with_cap : IntervalEnd::with_arrow, series.tone);
+    draw_end(to, {0, -1}, high ? IntervalEnd::with_cap : IntervalEnd::with_arrow, series.tone);
   }
 
   void draw_marker(PlotMarker marker, Place at, PlotTone tone) {

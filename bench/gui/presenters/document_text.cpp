@@ -69,7 +69,10 @@ QTextBlockFormat spaced(double above, double below) {
   return format;
 }
 
-QTextTableCellFormat cell_format(const QTextCharFormat& base, bool header) {
+enum class CellKind { header, value };
+
+QTextTableCellFormat cell_format(const QTextCharFormat& base, CellKind kind) {
+  const bool header = kind == CellKind::header;
   QTextTableCellFormat format;
   format.merge(header ? bold(base) : base);
   format.setPadding(cell_padding);
@@ -117,10 +120,11 @@ class TextWriter {
     caption(table.caption);
     QTextTable* cells = begin_table(static_cast<int>(table.rows.size()) + 1, static_cast<int>(table.header.size()));
     for (std::size_t i = 0; i < table.header.size(); ++i)
-      fill(cells->cellAt(0, static_cast<int>(i)), plain(table.header[i]), true);
+      fill(cells->cellAt(0, static_cast<int>(i)), plain(table.header[i]), CellKind::header);
     for (std::size_t r = 0; r < table.rows.size(); ++r)
       for (std::size_t i = 0; i < table.rows[r].size(); ++i)
-        fill(cells->cellAt(static_cast<int>(r) + 1, static_cast<int>(i)), table.rows[r][i], i == 0);
+        fill(cells->cellAt(static_cast<int>(r) + 1, static_cast<int>(i)), table.rows[r][i],
+             i == 0 ? CellKind::header : CellKind::value);
     end_table();
   }
 
@@ -129,8 +133,8 @@ class TextWriter {
     caption(table.caption);
     QTextTable* cells = begin_table(static_cast<int>(table.values.size()), 2, ruled({38, 62}));
     for (std::size_t r = 0; r < table.values.size(); ++r) {
-      fill(cells->cellAt(static_cast<int>(r), 0), plain(table.values[r].name), true);
-      fill(cells->cellAt(static_cast<int>(r), 1), table.values[r].value, false);
+      fill(cells->cellAt(static_cast<int>(r), 0), plain(table.values[r].name), CellKind::header);
+      fill(cells->cellAt(static_cast<int>(r), 1), table.values[r].value, CellKind::value);
     }
     end_table();
   }
@@ -185,10 +189,10 @@ class TextWriter {
         begin_table(4, columns, ruled(std::vector<double>(signatures.signatories.size(), 100.0 / columns)));
     for (int i = 0; i < columns; ++i) {
       const auto& [role, name] = signatures.signatories[static_cast<std::size_t>(i)];
-      fill(cells->cellAt(0, i), plain(role), true);
-      fill(cells->cellAt(1, i), plain(name.empty() ? "Name:" : "Name: " + name), false);
-      fill(cells->cellAt(2, i), plain("Date:"), false);
-      fill(cells->cellAt(3, i), plain("Signature:"), false);
+      fill(cells->cellAt(0, i), plain(role), CellKind::header);
+      fill(cells->cellAt(1, i), plain(name.empty() ? "Name:" : "Name: " + name), CellKind::value);
+      fill(cells->cellAt(2, i), plain("Date:"), CellKind::value);
+      fill(cells->cellAt(3, i), plain("Signature:"), CellKind::value);
       QTextTableCell place = cells->cellAt(3, i);
       QTextTableCellFormat room = place.format().toTableCellFormat();
       room.setBottomPadding(room_to_sign_px);
@@ -252,11 +256,11 @@ class TextWriter {
     if (!text.empty()) line(qt(text), bold(letters(text_px)), spaced(4, 0));
   }
 
-  static void fill(QTextTableCell cell, const RichText& text, bool header) {
+  static void fill(QTextTableCell cell, const RichText& text, CellKind kind) {
     const QTextCharFormat base = letters(text_px);
-    cell.setFormat(cell_format(base, header));
+    cell.setFormat(cell_format(base, kind));
     QTextCursor cursor = cell.firstCursorPosition();
-    insert(cursor, text, header ? bold(base) : base);
+    insert(cursor, text, kind == CellKind::header ? bold(base) : base);
   }
 
   void draw(const Figure& figure) {
