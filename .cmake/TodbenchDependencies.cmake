@@ -12,6 +12,8 @@ foreach(part core imgproc imgcodecs calib3d)
 endforeach()
 
 pkg_check_modules(FFTW3 REQUIRED IMPORTED_TARGET fftw3)
+# Not by its CMake package, which defines a macro (FMT_SHARED) that only Windows needs and that precompiled headers would have to share.
+pkg_check_modules(FMT REQUIRED IMPORTED_TARGET fmt>=9)
 find_package(Eigen3 3.4 REQUIRED)
 find_package(Boost 1.74 REQUIRED)
 find_package(tl-expected REQUIRED)

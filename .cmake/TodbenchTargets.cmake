@@ -4,6 +4,8 @@ add_library(todbench_options INTERFACE)
 target_include_directories(todbench_options INTERFACE "${CMAKE_SOURCE_DIR}")
 # Everywhere, because the packages of some libraries want it and precompiled headers need the same macros.
 target_compile_options(todbench_options INTERFACE -pthread)
+# Numbers in text, in any library.
+target_link_libraries(todbench_options INTERFACE PkgConfig::FMT)
 # -ffp-contract=off: the same sums on every compiler and instruction set, so that results repeat bit for bit.
 target_compile_options(todbench_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wunused

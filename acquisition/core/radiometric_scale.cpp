@@ -1,8 +1,8 @@
 #include "acquisition/core/radiometric_scale.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace todbench {
 namespace {
@@ -115,24 +115,19 @@ std::optional<double> RadiometricScale::kelvin_per_count(double counts) const {
 }
 
 std::string RadiometricScale::describe() const {
-  char text[160];
-  return std::visit(Overloaded{[](const Uncalibrated&) -> std::string { return "uncalibrated"; },
-                               [&](const LinearScale& s) -> std::string {
-                                 std::snprintf(text, sizeof text, "%.6g K/count, %.6g K at 0 counts",
-                                               s.kelvin_per_count, s.offset_k);
-                                 return text;
-                               },
-                               [&](const TableScale& s) -> std::string {
-                                 std::snprintf(text, sizeof text, "table of %zu points, %.2f to %.2f K",
-                                               s.counts.size(), s.temperature_k.front(), s.temperature_k.back());
-                                 return text;
-                               },
-                               [&](const PlanckScale& s) -> std::string {
-                                 std::snprintf(text, sizeof text, "T = B/ln(R/(S-O)+F), R=%.8g B=%.8g F=%.8g O=%.8g",
-                                               s.r, s.b, s.f, s.o);
-                                 return text;
-                               }},
-                    scale_);
+  return std::visit(
+      Overloaded{[](const Uncalibrated&) -> std::string { return "uncalibrated"; },
+                 [&](const LinearScale& s) -> std::string {
+                   return fmt::format("{:.6g} K/count, {:.6g} K at 0 counts", s.kelvin_per_count, s.offset_k);
+                 },
+                 [&](const TableScale& s) -> std::string {
+                   return fmt::format("table of {} points, {:.2f} to {:.2f} K", s.counts.size(),
+                                      s.temperature_k.front(), s.temperature_k.back());
+                 },
+                 [&](const PlanckScale& s) -> std::string {
+                   return fmt::format("T = B/ln(R/(S-O)+F), R={:.8g} B={:.8g} F={:.8g} O={:.8g}", s.r, s.b, s.f, s.o);
+                 }},
+      scale_);
 }
 
 }  // namespace todbench

@@ -21,7 +21,7 @@ constexpr tmsize_t most_memory = tmsize_t{256} << 20;
 int keep_message(TIFF*, void* user, const char* /*module*/, const char* format, va_list arguments) {
   auto& message = *static_cast<std::string*>(user);
   if (message.empty()) {
-    char text[200];
+    char text[200];  // libtiff speaks in formats of printf
     std::vsnprintf(text, sizeof text, format, arguments);
     message = text;
   }

@@ -1,7 +1,7 @@
 #include "acquisition/usb/usb_connection.h"
 
+#include <fmt/format.h>
 #include <array>
-#include <cstdio>
 
 namespace todbench {
 namespace {
@@ -53,10 +53,9 @@ Result<std::vector<SeekOnBus>> seek_cameras(libusb_context* context) {
     if (libusb_get_device_descriptor(devices[k], &descriptor) != 0) continue;
     const auto model = seek_model(descriptor.idVendor, descriptor.idProduct);
     if (!model) continue;
-    std::array<char, 32> address{};
-    std::snprintf(address.data(), address.size(), "/dev/bus/usb/%03u/%03u", unsigned{libusb_get_bus_number(devices[k])},
-                  unsigned{libusb_get_device_address(devices[k])});
-    cameras.push_back({UsbDevicePtr(libusb_ref_device(devices[k])), *model, address.data()});
+    cameras.push_back({UsbDevicePtr(libusb_ref_device(devices[k])), *model,
+                       fmt::format("/dev/bus/usb/{:03}/{:03}", libusb_get_bus_number(devices[k]),
+                                   libusb_get_device_address(devices[k]))});
   }
   libusb_free_device_list(devices, 1);
   return cameras;

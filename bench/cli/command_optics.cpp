@@ -1,4 +1,5 @@
 // todbench render, todbench mtf
+#include <fmt/format.h>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -112,16 +113,12 @@ int run_render(Console& console, const RenderArguments& a, std::uint64_t seed) {
   for (int j = 0; j < image.values.rows; ++j) {
     std::string line;
     for (int i = 0; i < image.values.cols; ++i) {
-      char text[32];
-      std::snprintf(text, sizeof text, "%s%10.6f", i == 0 ? "" : " ", image.values(j, i));
-      line += text;
+      line += fmt::format("{}{:10.6f}", i == 0 ? "" : " ", image.values(j, i));
     }
     console.text(line);
   }
-  char text[120];
-  std::snprintf(text, sizeof text, "kelvin of contrast; %.6f mrad between samples; numerical error below about %.1e K",
-                pitch_mrad, image.max_error_estimate);
-  console.text(text);
+  console.text(fmt::format("kelvin of contrast; {:.6f} mrad between samples; numerical error below about {:.1e} K",
+                           pitch_mrad, image.max_error_estimate));
   return 0;
 }
 

@@ -4,6 +4,7 @@
 
 #include "bench/cli/commands.h"
 #include "bench/judgement/verdict.h"
+#include "bench/report/html.h"
 #include "bench/studies/eo_vista.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
@@ -84,7 +85,7 @@ int run_reproduce(Console& console, const ReproduceArguments& arguments, const P
   if (!found) return report_error(console, found.error());
   const Json json = json_of(*found);
   const auto page = *folder / "reproduction.html";
-  if (auto written = write_file_atomically(page, render_reproduction(*found)); !written)
+  if (auto written = write_file_atomically(page, render_html(reproduction_document(*found))); !written)
     return report_error(console, written.error());
   if (auto written = write_file_atomically(*folder / "reproduction.json", to_page(json)); !written)
     return report_error(console, written.error());

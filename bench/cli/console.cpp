@@ -1,5 +1,6 @@
 #include "bench/cli/console.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -30,13 +31,7 @@ bool is_numeric(const std::string& cell) {
 
 std::string duration(double seconds) {
   const int whole = static_cast<int>(std::lround(std::max(0.0, seconds)));
-  char text[32];
-  if (whole < 120) {
-    std::snprintf(text, sizeof text, "%d s", whole);
-  } else {
-    std::snprintf(text, sizeof text, "%d:%02d min", whole / 60, whole % 60);
-  }
-  return text;
+  return whole < 120 ? fmt::format("{} s", whole) : fmt::format("{}:{:02} min", whole / 60, whole % 60);
 }
 
 }  // namespace
@@ -140,11 +135,9 @@ Result<void> finish_output() {
 
 std::string fixed(const std::optional<double>& value, int decimals) {
   if (!value || !std::isfinite(*value)) return "–";
-  char text[64];
   // Sides of intervals may be orders of magnitude away: zeros and long figures would say less.
   const bool shows = *value == 0 || (std::abs(*value) < 1e5 && std::abs(*value) * std::pow(10, decimals) >= 0.5);
-  std::snprintf(text, sizeof text, shows ? "%.*f" : "%.*g", shows ? decimals : 3, *value);
-  return text;
+  return shows ? fmt::format("{:.{}f}", *value, decimals) : fmt::format("{:.3g}", *value);
 }
 
 std::string range(const Interval& interval, int decimals) {

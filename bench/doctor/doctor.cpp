@@ -1,8 +1,8 @@
 #include "bench/doctor/doctor.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "bench/doctor/system_files.h"
 
@@ -20,9 +20,7 @@ constexpr std::int64_t frames_in_flight = 8;
 constexpr double comfortable_bits_per_s = 400e6;
 
 std::string number(double value, int digits) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
+  return fmt::format("{:.{}f}", value, digits);
 }
 
 std::string mib(double bytes) {

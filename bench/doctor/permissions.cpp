@@ -1,7 +1,6 @@
 // Who may open the nodes of cameras.
+#include <fmt/format.h>
 #include <sys/stat.h>
-
-#include <cstdio>
 
 #include "bench/doctor/doctor.h"
 #include "bench/doctor/system_files.h"
@@ -43,10 +42,9 @@ std::vector<CameraNode> camera_nodes(const fs::path& root) {
     const auto bus = file_number(device / "busnum");
     const auto number = file_number(device / "devnum");
     if (!bus || !number || !is_usb_camera(device)) continue;
-    char node[40];
-    std::snprintf(node, sizeof node, "dev/bus/usb/%03d/%03d", static_cast<int>(*bus), static_cast<int>(*number));
-    nodes.push_back({node, "SUBSYSTEM==\"usb\", ATTR{idVendor}==\"" + file_text(device / "idVendor").value_or("") +
-                               "\", MODE=\"0660\", TAG+=\"uaccess\""});
+    nodes.push_back({fmt::format("dev/bus/usb/{:03}/{:03}", *bus, *number),
+                     "SUBSYSTEM==\"usb\", ATTR{idVendor}==\"" + file_text(device / "idVendor").value_or("") +
+                         "\", MODE=\"0660\", TAG+=\"uaccess\""});
   }
   for (const auto& device : entries_of(root / "sys/class/video4linux")) {
     nodes.push_back({"dev/" + device.filename().string(),

@@ -6,6 +6,7 @@
 
 #include "bench/report/number_format.h"
 #include "bench/report/report_pieces.h"
+#include "bench/report/svg.h"
 
 namespace todbench {
 namespace {
@@ -85,22 +86,22 @@ Plot plot_of(const CostFrontier& frontier, std::span<const KnobStyle> styles, st
   return plot;
 }
 
-Markup point_table(const CostFrontier& frontier) {
-  MarkupTable rows;
+Table point_table(const CostFrontier& frontier) {
+  Table rows;
   rows.caption = "Every way of computing that was measured";
   rows.header = {"Knob", "Setting", "Wall time (s)", "Error of acuity (%)", "Standard error (%)", "Remark"};
   for (const CostPoint& point : frontier.points) {
     const auto number = [&](const std::optional<double>& value) {
-      return value ? escaped(significant(*value, 2)) : missing(point.measured() ? "not stated" : "not measured");
+      return value ? plain(significant(*value, 2)) : missing(point.measured() ? "not stated" : "not measured");
     };
     std::string remark = point.not_measured;
     if (point.best) remark = "best";
     if (point.chosen) remark = remark.empty() ? "chosen" : "chosen; " + remark;
-    rows.rows.push_back({escaped(point.knob), escaped(point.setting), number(point.wall_s), number(point.error_percent),
+    rows.rows.push_back({plain(point.knob), plain(point.setting), number(point.wall_s), number(point.error_percent),
                          point.paired ? missing("same random numbers") : number(point.standard_error_percent),
-                         escaped(remark)});
+                         plain(remark)});
   }
-  return table(rows);
+  return rows;
 }
 
 }  // namespace
@@ -126,28 +127,34 @@ Plot cost_knob_plot(const CostFrontier& frontier) {
 }
 
 Result<std::string> cost_document(const CostFrontier& frontier) {
-  return svg_document(std::array{cost_result_plot(frontier), cost_knob_plot(frontier)});
+  std::vector<Drawing> drawings;
+  for (const Plot& plot : {cost_result_plot(frontier), cost_knob_plot(frontier)}) {
+    auto drawing = drawn(plot);
+    if (!drawing) return tl::unexpected(drawing.error());
+    drawings.push_back(*std::move(drawing));
+  }
+  return svg_document(drawings);
 }
 
-Markup cost_section(const CostFrontier& frontier) {
-  Markup content = paragraph(
-      escaped("Thresholds of the simulated sensor, computed in ways that take more or less time, against the reference "
-              "level (" +
-              std::to_string(frontier.reference_draws) + " draws per size, " + significant(frontier.reference_s, 2) +
-              " s, standard error " + significant(frontier.reference_standard_error_percent, 2) +
-              " %). Measured on one core of the machine that wrote this session."));
-  content +=
-      figure(svg_plot(cost_result_plot(frontier)),
+Section cost_section(const CostFrontier& frontier) {
+  Section section{"What accuracy costs", {}};
+  section.blocks.emplace_back(Paragraph{
+      plain("Thresholds of the simulated sensor, computed in ways that take more or less time, against the reference "
+            "level (" +
+            std::to_string(frontier.reference_draws) + " draws per size, " + significant(frontier.reference_s, 2) +
+            " s, standard error " + significant(frontier.reference_standard_error_percent, 2) +
+            " %). Measured on one core of the machine that wrote this session.")});
+  section.blocks.emplace_back(
+      Figure{drawn(cost_result_plot(frontier)),
              "Error of the 75 % acuity, the largest over the contrasts, with its standard error, over wall time. "
-             "Best in the table: nothing measured is both faster and nearer.");
-  content += figure(svg_plot(cost_knob_plot(frontier)),
-                    "The same for one numerical knob alone, the others at the reference level, with the random numbers "
-                    "of its reference; errors below 0.001 % are drawn there.");
-  content += point_table(frontier);
-  Markup notes;
-  for (const std::string& note : frontier.notes) notes += element("li", escaped(note)) + literal("\n");
-  if (!notes.empty()) content += element("ul", notes);
-  return section("What accuracy costs", content);
+             "Best in the table: nothing measured is both faster and nearer."});
+  section.blocks.emplace_back(
+      Figure{drawn(cost_knob_plot(frontier)),
+             "The same for one numerical knob alone, the others at the reference level, with the random numbers of its "
+             "reference; errors below 0.001 % are drawn there."});
+  section.blocks.emplace_back(point_table(frontier));
+  if (!frontier.notes.empty()) section.blocks.emplace_back(list_of(frontier.notes));
+  return section;
 }
 
 }  // namespace todbench

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "bench/report/markup.h"
-#include "bench/report/svg_plot.h"
+#include "bench/report/document.h"
+#include "bench/report/plot.h"
 #include "sim_devices/prediction/cost_frontier.h"
 
 namespace todbench {
@@ -18,6 +18,6 @@ namespace todbench {
 [[nodiscard]] Result<std::string> cost_document(const CostFrontier& frontier);
 
 /// Figures, table and notes.
-[[nodiscard]] Markup cost_section(const CostFrontier& frontier);
+[[nodiscard]] Section cost_section(const CostFrontier& frontier);
 
 }  // namespace todbench

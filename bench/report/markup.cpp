@@ -7,9 +7,6 @@
 namespace todbench {
 namespace {
 
-// A table of up to this many rows is not broken over two pages.
-constexpr std::size_t rows_kept_together = 14;
-
 constexpr std::string_view replacement = "\xEF\xBF\xBD";
 
 bool continuation(char byte) {
@@ -94,45 +91,6 @@ Markup element(std::string_view tag, const Markup& content, std::string_view att
   if (!attributes.empty()) text.append(" ").append(attributes);
   text.append(">").append(content.text).append("</").append(tag).append(">");
   return result;
-}
-
-Markup table(const MarkupTable& table) {
-  Markup head;
-  for (const std::string& name : table.header) head += element("th", escaped(name), "scope=\"col\"");
-  Markup body;
-  for (const std::vector<Markup>& row : table.rows) {
-    Markup cells;
-    for (std::size_t i = 0; i < row.size(); ++i)
-      cells += i == 0 ? element("th", row[i], "scope=\"row\"") : element("td", row[i]);
-    body += element("tr", cells) + literal("\n");
-  }
-  const Markup caption = table.caption.empty() ? Markup{} : element("caption", escaped(table.caption));
-  return element(
-             "div",
-             element("table", caption + element("thead", element("tr", head)) + literal("\n") + element("tbody", body)),
-             table.rows.size() <= rows_kept_together ? "class=\"wide short\"" : "class=\"wide\"") +
-         literal("\n");
-}
-
-Markup table_of_values(const std::string& caption, const std::vector<NamedValue>& values) {
-  Markup body;
-  for (const NamedValue& entry : values)
-    body +=
-        element("tr", element("th", escaped(entry.name), "scope=\"row\"") + element("td", entry.value)) + literal("\n");
-  const Markup title = caption.empty() ? Markup{} : element("caption", escaped(caption));
-  return element("table", title + element("tbody", body), "class=\"values\"") + literal("\n");
-}
-
-Markup unbroken(std::string_view plain) {
-  return element("span", escaped(plain), "class=\"unbroken\"");
-}
-
-Markup missing(std::string_view reason) {
-  return literal("– ") + element("span", literal("(") + escaped(reason) + literal(")"), "class=\"why\"");
-}
-
-Markup text_or_missing(std::string_view plain, std::string_view reason) {
-  return plain.empty() ? missing(reason) : escaped(plain);
 }
 
 }  // namespace todbench

@@ -1,8 +1,7 @@
 #include "bench/report/number_format.h"
 
+#include <fmt/format.h>
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 
 namespace todbench {
@@ -18,11 +17,7 @@ bool finite(std::optional<double> value) {
 
 std::string fixed(double value, int decimals) {
   if (!std::isfinite(value)) return "–";
-  // 309 digits before the point of the largest double, the point, a sign, and the decimals.
-  std::array<char, 340> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::fixed,
-                                 std::clamp(decimals, 0, 17));
-  std::string text(buffer.data(), end.ptr);
+  std::string text = fmt::format("{:.{}f}", value, std::clamp(decimals, 0, 17));
   if (text.front() == '-' && text.find_first_not_of("-0.") == std::string::npos) text.erase(0, 1);
   return text;
 }
@@ -82,15 +77,6 @@ std::string with_interval(std::optional<double> value, const Interval& interval)
   }
   if (!finite(value)) return bounds.empty() ? "–" : low && high ? "[" + bounds + "]" : bounds;
   return shown(*value, decimals) + (bounds.empty() ? "" : " [" + bounds + "]");
-}
-
-std::optional<double> reciprocal(std::optional<double> value) {
-  if (!finite(value) || *value <= 0) return {};
-  return 1 / *value;
-}
-
-Interval reciprocal(const Interval& interval) {
-  return {reciprocal(interval.high), reciprocal(interval.low)};
 }
 
 std::string probability(double p) {

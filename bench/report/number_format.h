@@ -33,10 +33,6 @@ namespace todbench {
 /// Whether there is a value or a bound.
 [[nodiscard]] bool anything_known(std::optional<double> value, const Interval& interval);
 
-/// 1 / value with the bounds exchanged: acuity from size. A bound that is not positive becomes open.
-[[nodiscard]] Interval reciprocal(const Interval& interval);
-[[nodiscard]] std::optional<double> reciprocal(std::optional<double> value);
-
 /// "0.032", "< 0.001".
 [[nodiscard]] std::string probability(double p);
 

@@ -3,17 +3,17 @@
 #include <algorithm>
 
 #include "bench/report/cost_figure.h"
+#include "bench/report/html.h"
 #include "bench/report/report_pieces.h"
-#include "bench/report/svg_plot.h"
 
 namespace todbench {
 namespace {
 
-Markup subtitle(const ReportData& data) {
+std::string subtitle(const ReportData& data) {
   std::string text = data.camera ? data.camera->vendor + " " + data.camera->model : "Simulation";
   if (data.camera && !data.camera->serial.empty()) text += ", serial number " + data.camera->serial;
   if (!data.finished.empty()) text += " · " + data.finished;
-  return paragraph(escaped(text), "subtitle");
+  return text;
 }
 
 /// What every printed page must name: the report and the item.
@@ -33,37 +33,36 @@ ReportVerdict report_verdict(const ReportData& data) {
   return limits_asked(*data.verdict) ? ReportVerdict::pass : ReportVerdict::not_judged;
 }
 
-std::vector<Plot> report_plots(const ReportData& data) {
-  std::vector<Plot> plots;
-  if (data.measured || data.simulated) plots.push_back(tod_plot(data));
-  for (auto& plot : psychometric_plots(data)) plots.push_back(std::move(plot));
-  for (auto& plot : human_plots(data)) plots.push_back(std::move(plot));
-  if (data.cost) {
-    plots.push_back(cost_result_plot(*data.cost));
-    plots.push_back(cost_knob_plot(*data.cost));
-  }
-  return plots;
+Document report_document(const ReportData& data) {
+  Document document{.title = data.title + (data.session.empty() ? "" : " – " + data.session),
+                    .heading = data.title,
+                    .subtitle = subtitle(data),
+                    .page_label = page_label(data),
+                    .opening = {verdict_box(data)},
+                    .sections = {}};
+  const auto add = [&](std::optional<Section> section) {
+    if (section) document.sections.push_back(*std::move(section));
+  };
+  add(identification_section(data));
+  add(limits_section(data));
+  add(curve_section(data));
+  add(psychometric_section(data));
+  add(human_section(data));
+  add(comparison_section(data));
+  add(set_up_section(data));
+  add(effects_section(data));
+  if (data.cost) add(cost_section(*data.cost));
+  add(frames_section(data));
+  add(provenance_section(data));
+  add(notes_section(data));
+  add(statements_section(data));
+  add(signature_section(data));
+  add(answers_section(data));
+  return document;
 }
 
 std::string render_report(const ReportData& data) {
-  const Markup head =
-      literal(
-          "<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n") +
-      element("title", escaped(data.title + (data.session.empty() ? "" : " – " + data.session))) + literal("\n") +
-      element("style", literal(report_style(page_label(data)) + plot_style())) + literal("\n");
-  Markup body = element("header", element("h1", escaped(data.title)) + literal("\n") + subtitle(data)) + literal("\n");
-  body += verdict_box(data);
-  body += identification_section(data) + limits_section(data) + curve_section(data) + psychometric_section(data) +
-          human_section(data);
-  body += comparison_section(data) + set_up_section(data) + effects_section(data);
-  if (data.cost) body += cost_section(*data.cost);
-  body += frames_section(data);
-  body += provenance_section(data) + statements_section(data) + signature_section(data) + answers_section(data);
-  return "<!DOCTYPE html>\n" +
-         element("html", element("head", head) + literal("\n") + element("body", element("main", body)),
-                 "lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\"")
-             .text +
-         "\n";
+  return render_html(report_document(data));
 }
 
 }  // namespace todbench

@@ -10,7 +10,8 @@
 
 #include "acquisition/core/frame_source.h"
 #include "bench/judgement/verdict.h"
-#include "bench/report/svg_plot.h"
+#include "bench/report/document.h"
+#include "bench/report/plot.h"
 #include "sim_devices/prediction/cost_frontier.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"
@@ -77,18 +78,16 @@ struct ReportData {
 /// The verdict's decision; of an interrupted run only a failure; not_judged in place of a pass without limits.
 [[nodiscard]] ReportVerdict report_verdict(const ReportData& data);
 
-/// The TOD curve of the report, then one psychometric function per contrast: what stands in the page as figures, in its
-/// order.
+/// The TOD curve of the report, and one psychometric function per contrast.
 [[nodiscard]] Plot tod_plot(const ReportData& data);
 [[nodiscard]] std::vector<Plot> psychometric_plots(const ReportData& data);
-/// Those of the person beside the model, which follow; none without a person.
+/// Those of the person beside the model; none without a person.
 [[nodiscard]] std::vector<Plot> human_plots(const ReportData& data);
 
-/// Every figure of the page, in its order.
-[[nodiscard]] std::vector<Plot> report_plots(const ReportData& data);
+/// The report as a value, which page and PDF show. A pure function.
+[[nodiscard]] Document report_document(const ReportData& data);
 
-/// The page: HTML 5 that is also well-formed XML, style and figures inside, no script, nothing from outside. A pure
-/// function.
+/// render_html() of the report.
 [[nodiscard]] std::string render_report(const ReportData& data);
 
 }  // namespace todbench

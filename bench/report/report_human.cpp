@@ -6,7 +6,7 @@
 namespace todbench {
 namespace {
 
-Markup threshold_cell(const PsychometricFit& fit) {
+RichText threshold_cell(const PsychometricFit& fit) {
   return interval_or_missing(fit.threshold, fit.ci95, "not identified");
 }
 
@@ -29,26 +29,28 @@ std::vector<Plot> human_plots(const ReportData& data) {
   return plots;
 }
 
-Markup human_section(const ReportData& data) {
+std::optional<Section> human_section(const ReportData& data) {
   if (!data.human) return {};
   const auto& model = model_curve(data);
-  MarkupTable rows;
+  Table rows;
   rows.caption = "A person and the model observer on the same frames; in brackets the 95 % interval";
   rows.header = {"Set ΔT (K)", "Human S₇₅ (mrad)", "Human slope", "Human trials", "Human fit", "Model S₇₅ (mrad)"};
   for (const TodPoint& point : data.human->points) {
     const TodPoint* judged = model ? point_at(*model, point.set_delta_t_k) : nullptr;
-    rows.rows.push_back({escaped(stated(point.set_delta_t_k)), threshold_cell(point.fit),
-                         point.fit.slope ? escaped(significant(*point.fit.slope, 3)) : missing("not identified"),
-                         escaped(shown(point.fit.trials, 0)), escaped(in_words(point.fit.verdict)),
+    rows.rows.push_back({plain(stated(point.set_delta_t_k)), threshold_cell(point.fit),
+                         point.fit.slope ? plain(significant(*point.fit.slope, 3)) : missing("not identified"),
+                         plain(shown(point.fit.trials, 0)), plain(in_words(point.fit.verdict)),
                          judged == nullptr ? missing("not measured") : threshold_cell(judged->fit)});
   }
-  Markup figures;
+  FigurePairs figures;
   const std::vector<Plot> plots = human_plots(data);
   for (std::size_t i = 0; i < plots.size(); ++i)
-    figures += figure(svg_plot(plots[i]), "Set contrast ΔT = " + stated(data.human->points[i].set_delta_t_k) + " K");
-  const Markup explanation = paragraph(
-      escaped("Four alternatives, no feedback, patches in random order, the answers of the model not shown."), "note");
-  return section("Human observer", table(rows) + element("div", figures, "class=\"pairs\"") + explanation);
+    figures.figures.push_back(
+        {drawn(plots[i]), "Set contrast ΔT = " + stated(data.human->points[i].set_delta_t_k) + " K"});
+  return Section{
+      "Human observer",
+      {std::move(rows), std::move(figures),
+       note(plain("Four alternatives, no feedback, patches in random order, the answers of the model not shown."))}};
 }
 
 }  // namespace todbench

@@ -5,27 +5,14 @@
 
 namespace todbench {
 
-Markup section(std::string_view title, const Markup& content) {
-  return element("section", element("h2", escaped(title)) + literal("\n") + content) + literal("\n");
-}
-
-Markup interval_or_missing(std::optional<double> value, const Interval& interval, std::string_view reason) {
+RichText interval_or_missing(std::optional<double> value, const Interval& interval, std::string_view reason) {
   return anything_known(value, interval) ? unbroken(with_interval(value, interval)) : missing(reason);
 }
 
-Markup paragraph(const Markup& content, std::string_view css_class) {
-  return element("p", content, css_class.empty() ? "" : "class=\"" + std::string(css_class) + "\"") + literal("\n");
-}
-
-Markup figure(const Result<Markup>& picture, std::string_view caption) {
-  const Markup content = picture ? *picture : paragraph(missing("no figure: " + picture.error().message));
-  return element("figure", content + element("figcaption", escaped(caption))) + literal("\n");
-}
-
-Markup badge(std::string_view word, Mood mood) {
-  const std::string_view css = mood == Mood::good ? "good" : mood == Mood::bad ? "bad" : "open";
-  const std::string_view sign = mood == Mood::good ? "✓ " : mood == Mood::bad ? "✗ " : "? ";
-  return element("strong", literal(sign) + escaped(word), "class=\"badge " + std::string(css) + "\"");
+List list_of(const std::vector<std::string>& sentences) {
+  List list;
+  for (const std::string& sentence : sentences) list.items.push_back(plain(sentence));
+  return list;
 }
 
 std::string_view in_words(FitVerdict verdict) {

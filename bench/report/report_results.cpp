@@ -1,4 +1,6 @@
 // What was found: verdict, curves, functions, comparison.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -6,6 +8,7 @@
 #include "bench/report/number_format.h"
 #include "bench/report/report_pieces.h"
 #include "bench/report/tod_figures.h"
+#include "tod/psychometric/acuity.h"
 
 namespace todbench {
 namespace {
@@ -17,12 +20,8 @@ constexpr std::string_view groups_note =
     "Groups: trials that share a frame, or a place on the plate, are one group; the intervals allow for what they have "
     "in common.";
 
-Markup cell(std::string_view text) {
-  return escaped(text);
-}
-
-Markup optional_number(std::optional<double> value, int digits, std::string_view reason) {
-  return value && std::isfinite(*value) ? cell(significant(*value, digits)) : missing(reason);
+RichText optional_number(std::optional<double> value, int digits, std::string_view reason) {
+  return value && std::isfinite(*value) ? plain(significant(*value, digits)) : missing(reason);
 }
 
 const TodCurve* pointer(const std::optional<TodCurve>& curve) {
@@ -51,35 +50,35 @@ std::vector<DrawnLimit> acuity_limits(const ReportData& data) {
   return limits;
 }
 
-Markup contrast_cell(const TodPoint& point) {
+RichText contrast_cell(const TodPoint& point) {
   if (point.delta_t_k == 0 || !std::isfinite(point.delta_t_k)) return missing("not measured");
-  if (!(point.delta_t_se_k > 0)) return cell(significant(point.delta_t_k, 3));
+  if (!(point.delta_t_se_k > 0)) return plain(significant(point.delta_t_k, 3));
   const int decimals = decimals_for(point.delta_t_k, {-point.delta_t_se_k, point.delta_t_se_k});
   return unbroken(shown(point.delta_t_k, decimals) + " ± " + fixed(point.delta_t_se_k, decimals));
 }
 
-Markup lapse_cell(const TodPoint& point) {
+RichText lapse_cell(const TodPoint& point) {
   const std::string lapse = significant(point.fit.lapse, 2);
-  if (!point.lapse_warning || !point.free_lapse_fit) return cell(lapse);
-  return cell(lapse + " (free: " + significant(point.free_lapse_fit->lapse, 2) + ", fits better)");
+  if (!point.lapse_warning || !point.free_lapse_fit) return plain(lapse);
+  return plain(lapse + " (free: " + significant(point.free_lapse_fit->lapse, 2) + ", fits better)");
 }
 
-Markup trials_cell(const PsychometricFit& fit) {
+RichText trials_cell(const PsychometricFit& fit) {
   const std::string trials = shown(fit.trials, 0);
   return unbroken(fit.clusters > 0 ? trials + " / " + shown(fit.clusters, 0) : trials);
 }
 
-std::vector<Markup> curve_row(const TodPoint& point, bool with_direct) {
+std::vector<RichText> curve_row(const TodPoint& point, bool with_direct) {
   const PsychometricFit& fit = point.fit;
   const std::string_view reason = fit.verdict == FitVerdict::no_data ? "no trials" : "not identified";
-  std::vector<Markup> row{cell(stated(point.set_delta_t_k)),
-                          contrast_cell(point),
-                          interval_or_missing(fit.threshold, fit.ci95, reason),
-                          interval_or_missing(reciprocal(fit.threshold), reciprocal(fit.ci95), reason),
-                          optional_number(fit.slope, 3, reason),
-                          lapse_cell(point),
-                          trials_cell(fit),
-                          cell(in_words(fit.verdict))};
+  std::vector<RichText> row{plain(stated(point.set_delta_t_k)),
+                            contrast_cell(point),
+                            interval_or_missing(fit.threshold, fit.ci95, reason),
+                            interval_or_missing(acuity_per_mrad(fit), acuity_interval(fit.ci95), reason),
+                            optional_number(fit.slope, 3, reason),
+                            lapse_cell(point),
+                            trials_cell(fit),
+                            plain(in_words(fit.verdict))};
   if (with_direct) {
     const double error = point.direct_s75_se_mrad.value_or(0);
     const int decimals = decimals_for(point.direct_s75_mrad, {-error, error});
@@ -90,14 +89,14 @@ std::vector<Markup> curve_row(const TodPoint& point, bool with_direct) {
   return row;
 }
 
-Markup curve_table(const TodCurve& curve, const std::string& caption, bool with_direct) {
-  MarkupTable rows;
+Table curve_table(const TodCurve& curve, const std::string& caption, bool with_direct) {
+  Table rows;
   rows.caption = caption;
   rows.header = {"Set ΔT (K)", "Effective ΔT (K)", "S₇₅ (mrad)", "Acuity 1/S₇₅ (1/mrad)", "Slope",
                  "Lapse",      "Trials / groups",  "Fit"};
   if (with_direct) rows.header.emplace_back("Direct S₇₅ (mrad)");
   for (const TodPoint& point : curve.points) rows.rows.push_back(curve_row(point, with_direct));
-  return table(rows);
+  return rows;
 }
 
 /// Set contrasts of both curves, each once, in the order of the curves.
@@ -127,103 +126,101 @@ std::string form_in_words(const ReportData& data) {
   return form + ", " + lapse + ", fitted by maximum likelihood; S₇₅ is the size at which ψ = 0.75 exactly.";
 }
 
-Markup limit_cell(const Demand& demand) {
+RichText limit_cell(const Demand& demand) {
   const LimitSide side = row_of(demand.kind).side;
   if (side == LimitSide::none || !demand.limit || !std::isfinite(*demand.limit)) return missing("no number");
   return unbroken((side == LimitSide::at_least ? "≥ " : "≤ ") + stated(*demand.limit));
 }
 
 /// The column says 95 %; another confidence stands with the number.
-Markup result_cell(const Demand& demand) {
+RichText result_cell(const Demand& demand) {
   if (demand.interval_percent == 95 || (!demand.interval.low && !demand.interval.high))
     return interval_or_missing(demand.result, demand.interval, "no value");
   return unbroken(with_interval(demand.result, demand.interval) + " (" + std::to_string(demand.interval_percent) +
                   " %)");
 }
 
-Markup answers_table(const std::string& caption, const TodCurve& curve) {
-  MarkupTable rows;
+Table answers_table(const std::string& caption, const TodCurve& curve) {
+  Table rows;
   rows.caption = caption;
   rows.header = {"Set ΔT (K)", "Size (mrad)", "Correct / trials", "Proportion [Wilson 95 %]"};
   for (const TodPoint& point : curve.points) {
     for (const AnswersAtSize& answers : answers_by_size(point.levels)) {
-      rows.rows.push_back({cell(stated(point.set_delta_t_k)),
-                           cell(answers.size_mrad > 0 ? significant(answers.size_mrad, 4) : "0 (catch trials)"),
+      rows.rows.push_back({plain(stated(point.set_delta_t_k)),
+                           plain(answers.size_mrad > 0 ? significant(answers.size_mrad, 4) : "0 (catch trials)"),
                            unbroken(shown(answers.correct, 0) + " / " + shown(answers.total, 0)),
                            interval_or_missing(answers.correct / answers.total,
                                                wilson_interval(answers.correct, answers.total), "no trials")});
     }
   }
-  return table(rows);
+  return rows;
 }
 
 struct Headline {
   std::string word, sentence;
-  std::string_view css;
+  Mood mood = Mood::open;
 };
 
 Headline headline(ReportVerdict verdict) {
   switch (verdict) {
     case ReportVerdict::pass:
-      return {"✓ PASS", "Every limit is met.", "good"};
+      return {"✓ PASS", "Every limit is met.", Mood::good};
     case ReportVerdict::fail:
-      return {"✗ FAIL", "At least one limit is not met.", "bad"};
+      return {"✗ FAIL", "At least one limit is not met.", Mood::bad};
     case ReportVerdict::inconclusive:
-      return {"? INCONCLUSIVE", "No limit is violated, but at least one is not decided by these data.", "open"};
+      return {"? INCONCLUSIVE", "No limit is violated, but at least one is not decided by these data.", Mood::open};
     case ReportVerdict::interrupted:
       return {"? INTERRUPTED", "The run ended early. The results below are partial and no verdict can be given.",
-              "open"};
+              Mood::open};
     case ReportVerdict::not_judged:
       break;
   }
-  return {"NO VERDICT", "The plan asks for no limits; this report states results only.", "open"};
+  return {"NO VERDICT", "The plan asks for no limits; this report states results only.", Mood::open};
 }
 
 /// A run in several pieces says so beside its verdict.
-Markup resumptions(const ReportData& data) {
-  Markup content;
-  for (std::size_t i = 0; i < data.interruptions.size(); ++i) {
-    const Interruption& loss = data.interruptions[i];
-    content += paragraph(literal("<b>Interrupted and resumed:</b> ") +
-                         escaped("segment " + std::to_string(i + 2) + " begins with presentation " +
-                                 std::to_string(loss.presentation) + ". The camera was away for " +
-                                 fixed(loss.away_s, 1) + " s (" + loss.reason + "); it came back with the same " +
-                                 "serial number and settings, the plate " + fixed(loss.moved_px, 2) +
-                                 " pixels from where it was."));
-  }
-  return content;
+RichText resumption(const Interruption& loss, std::size_t segment) {
+  return strong("Interrupted and resumed:") +
+         plain(
+             fmt::format(" segment {} begins with presentation {}. The camera was away for {:.1f} s ({}); it came back "
+                         "with the same serial number and settings, the plate {:.2f} pixels from where it was.",
+                         segment, loss.presentation, loss.away_s, loss.reason, loss.moved_px));
 }
 
 }  // namespace
 
-Markup verdict_box(const ReportData& data) {
+VerdictBox verdict_box(const ReportData& data) {
   const ReportVerdict verdict = report_verdict(data);
-  const Headline words_of_verdict = headline(verdict);
-  Markup content = paragraph(escaped(words_of_verdict.word), "word") + paragraph(escaped(words_of_verdict.sentence));
+  const Headline found = headline(verdict);
+  VerdictBox box{found.word, found.mood, {plain(found.sentence)}};
   if (verdict != ReportVerdict::not_judged)
-    content += paragraph(literal("<b>Decision rule:</b> ") +
-                         text_or_missing(data.verdict ? data.verdict->rule_in_words : "", "not stated"));
+    box.paragraphs.push_back(strong("Decision rule:") + plain(" ") +
+                             text_or_missing(data.verdict ? data.verdict->rule_in_words : "", "not stated"));
   if (data.verdict && data.verdict->judged == JudgedWhen::afterwards)
-    content += paragraph(escaped(remark_on(data.verdict->judged)));
+    box.paragraphs.push_back(plain(remark_on(data.verdict->judged)));
   if (data.interrupted)
-    content += paragraph(literal("<b>Interrupted:</b> ") + text_or_missing(*data.interrupted, "no reason recorded"));
-  content += resumptions(data);
-  return element("div", content, "class=\"verdict " + std::string(words_of_verdict.css) + "\" role=\"status\"") +
-         literal("\n");
+    box.paragraphs.push_back(strong("Interrupted:") + plain(" ") +
+                             text_or_missing(*data.interrupted, "no reason recorded"));
+  for (std::size_t i = 0; i < data.interruptions.size(); ++i)
+    box.paragraphs.push_back(resumption(data.interruptions[i], i + 2));
+  return box;
 }
 
-Markup limits_section(const ReportData& data) {
-  Markup content;
-  if (!data.verdict || !limits_asked(*data.verdict)) content += paragraph(missing("the plan asks for no limits"));
-  if (!data.verdict || data.verdict->demands.empty()) return section("Limits", content);
-  MarkupTable rows;
+Section limits_section(const ReportData& data) {
+  Section section{"Limits", {}};
+  if (!data.verdict || !limits_asked(*data.verdict))
+    section.blocks.emplace_back(Paragraph{missing("the plan asks for no limits")});
+  if (!data.verdict || data.verdict->demands.empty()) return section;
+  Table rows;
   rows.header = {"Quantity", "Unit", "Limit", "Result [95 %]", "Verdict", "Reason"};
   for (const Demand& demand : data.verdict->demands) {
-    rows.rows.push_back({cell(title(demand)), cell(row_of(demand.kind).unit), limit_cell(demand), result_cell(demand),
+    rows.rows.push_back({plain(title(demand)), plain(row_of(demand.kind).unit), limit_cell(demand), result_cell(demand),
                          badge(to_string(demand.decision), mood_of(demand.decision)),
                          text_or_missing(demand.reason, "none given")});
   }
-  return section("Limits", content + table(rows) + paragraph(cell(one_sided_note), "note"));
+  section.blocks.emplace_back(std::move(rows));
+  section.blocks.emplace_back(note(plain(one_sided_note)));
+  return section;
 }
 
 Plot tod_plot(const ReportData& data) {
@@ -255,52 +252,51 @@ std::vector<Plot> psychometric_plots(const ReportData& data) {
   return plots;
 }
 
-Markup curve_section(const ReportData& data) {
-  if (!data.measured && !data.simulated) return section("TOD curve", paragraph(missing("no results")));
-  const Plot plot = tod_plot(data);
-  Markup content = figure(
-      svg_plot(plot),
+Section curve_section(const ReportData& data) {
+  if (!data.measured && !data.simulated) return {"TOD curve", {Paragraph{missing("no results")}}};
+  Section section{"TOD curve", {}};
+  section.blocks.emplace_back(Figure{
+      drawn(tod_plot(data)),
       "TOD curve: acuity (linear) against contrast (logarithmic), at the effective contrast, which the camera saw. "
-      "Horizontal "
-      "bars are 95 % intervals; an arrow is a side that the data leave open. The two curves are drawn a few pixels "
-      "apart so that their bars do not hide each other.");
+      "Horizontal bars are 95 % intervals; an arrow is a side that the data leave open. The two curves are drawn a few "
+      "pixels apart so that their bars do not hide each other."});
   if (data.measured)
-    content +=
-        curve_table(*data.measured, "Measured; in brackets the 95 % interval, behind ± the standard error", false);
+    section.blocks.emplace_back(
+        curve_table(*data.measured, "Measured; in brackets the 95 % interval, behind ± the standard error", false));
   if (data.simulated)
-    content +=
-        curve_table(*data.simulated, "Simulated; in brackets the 95 % interval, behind ± the standard error", true);
-  content += paragraph(
-      cell(form_in_words(data)) + literal(" ") + cell(one_sided_note) + literal(" ") + cell(groups_note), "note");
+    section.blocks.emplace_back(
+        curve_table(*data.simulated, "Simulated; in brackets the 95 % interval, behind ± the standard error", true));
+  section.blocks.emplace_back(
+      note(plain(form_in_words(data) + " " + std::string(one_sided_note) + " " + std::string(groups_note))));
   if (data.simulated)
-    content += paragraph(
-        cell("Direct S₇₅: where the phase-averaged proportion correct of the observer crosses 75 %, without a "
-             "psychometric form. It checks the fit; the comparison uses S₇₅."),
-        "note");
-  return section("TOD curve", content);
+    section.blocks.emplace_back(
+        note(plain("Direct S₇₅: where the phase-averaged proportion correct of the observer crosses 75 %, without a "
+                   "psychometric form. It checks the fit; the comparison uses S₇₅.")));
+  return section;
 }
 
-Markup psychometric_section(const ReportData& data) {
-  Markup figures;
+std::optional<Section> psychometric_section(const ReportData& data) {
+  FigurePairs figures;
   const std::vector<Plot> plots = psychometric_plots(data);
   const std::vector<double> contrasts = all_contrasts(data);
   for (std::size_t i = 0; i < plots.size(); ++i)
-    figures += figure(svg_plot(plots[i]), "Set contrast ΔT = " + stated(contrasts[i]) + " K");
-  if (figures.empty()) return {};
-  const Markup explanation = cell(
-      "Points: proportion correct with Wilson 95 % intervals, every trial taken as independent. Lines: fitted "
-      "functions. Shaded: 95 % "
-      "interval of S₇₅, widened for groups of trials. Dashed: threshold (75 %) and chance (25 %).");
-  return section("Psychometric functions", element("div", figures, "class=\"pairs\"") + paragraph(explanation, "note"));
+    figures.figures.push_back({drawn(plots[i]), "Set contrast ΔT = " + stated(contrasts[i]) + " K"});
+  if (figures.figures.empty()) return {};
+  return Section{"Psychometric functions",
+                 {std::move(figures),
+                  note(plain("Points: proportion correct with Wilson 95 % intervals, every trial taken as independent. "
+                             "Lines: fitted functions. Shaded: 95 % interval of S₇₅, widened for groups of trials. "
+                             "Dashed: threshold (75 %) and chance (25 %)."))}};
 }
 
-Markup comparison_section(const ReportData& data) {
+Section comparison_section(const ReportData& data) {
+  constexpr const char* title = "Measured against simulated";
   if (!data.comparison) {
     const std::string_view reason =
         data.measured && data.simulated ? "not asked for" : "needs a measured and a simulated curve";
-    return section("Measured against simulated", paragraph(missing(reason)));
+    return {title, {Paragraph{missing(reason)}}};
   }
-  MarkupTable rows;
+  Table rows;
   rows.header = {"Set ΔT (K)",
                  "Effective ΔT, measured / simulated (K)",
                  "Acuity, measured : simulated [95 %]",
@@ -310,32 +306,30 @@ Markup comparison_section(const ReportData& data) {
                  "Margin (%)",
                  "Verdict"};
   for (const ComparisonPoint& point : data.comparison->points) {
-    rows.rows.push_back({cell(stated(point.set_delta_t_k)),
+    rows.rows.push_back({plain(stated(point.set_delta_t_k)),
                          unbroken(significant(point.delta_t_a_k, 3) + " / " + significant(point.delta_t_b_k, 3)),
                          interval_or_missing(point.ratio, point.ratio_ci95, "a threshold is not identified"),
                          interval_or_missing(point.ratio, point.ratio_ci90, "a threshold is not identified"),
-                         point.p_difference ? cell(probability(*point.p_difference)) : missing("no test possible"),
-                         point.p_equivalence ? cell(probability(*point.p_equivalence)) : missing("no test possible"),
-                         cell(stated(point.margin_percent)), badge(in_words(point.verdict), mood_of(point.verdict))});
+                         point.p_difference ? plain(probability(*point.p_difference)) : missing("no test possible"),
+                         point.p_equivalence ? plain(probability(*point.p_equivalence)) : missing("no test possible"),
+                         plain(stated(point.margin_percent)), badge(in_words(point.verdict), mood_of(point.verdict))});
   }
-  const Markup overall = paragraph(cell("Over all contrasts: ") +
-                                   badge(in_words(data.comparison->verdict), mood_of(data.comparison->verdict)));
-  const Markup explanation = paragraph(
-      cell(
-          "p different: likelihood-ratio test of a common threshold, corrected for groups of trials. p equivalent: two "
-          "one-sided tests that the ratio lies within the margin, chosen before the measurement; below 0.05 the 90 % "
-          "interval lies within it. Neither test significant is inconclusive: more trials are needed, nothing is "
-          "shown."),
-      "note");
-  return section("Measured against simulated", table(rows) + overall + explanation);
+  const RichText overall =
+      plain("Over all contrasts: ") + badge(in_words(data.comparison->verdict), mood_of(data.comparison->verdict));
+  return {title,
+          {std::move(rows), Paragraph{overall},
+           note(plain("p different: likelihood-ratio test of a common threshold, corrected for groups of trials. p "
+                      "equivalent: two one-sided tests that the ratio lies within the margin, chosen before the "
+                      "measurement; below 0.05 the 90 % interval lies within it. Neither test significant is "
+                      "inconclusive: more trials are needed, nothing is shown."))}};
 }
 
-Markup answers_section(const ReportData& data) {
-  Markup tables;
-  if (data.measured) tables += answers_table("Measured", *data.measured);
-  if (data.simulated) tables += answers_table("Simulated", *data.simulated);
-  if (tables.empty()) return {};
-  return section("Appendix: answers by size", element("div", tables, "class=\"pairs\""));
+std::optional<Section> answers_section(const ReportData& data) {
+  TablePairs pairs;
+  if (data.measured) pairs.tables.emplace_back(answers_table("Measured", *data.measured));
+  if (data.simulated) pairs.tables.emplace_back(answers_table("Simulated", *data.simulated));
+  if (pairs.tables.empty()) return {};
+  return Section{"Appendix: answers by size", {std::move(pairs)}};
 }
 
 }  // namespace todbench

@@ -48,8 +48,8 @@ std::map<double, ContrastRow, std::greater<>> rows_by_contrast(const std::vector
 }
 
 /// Kelvin to a tenth of a millikelvin, a tenth of what black bodies of this class resolve.
-Markup kelvin(const std::optional<double>& value, std::string_view reason) {
-  return value ? escaped(shown(*value, 4)) : missing(reason);
+RichText kelvin(const std::optional<double>& value, std::string_view reason) {
+  return value ? plain(shown(*value, 4)) : missing(reason);
 }
 
 std::optional<double> difference(const std::optional<double>& a, const std::optional<double>& b) {
@@ -58,10 +58,10 @@ std::optional<double> difference(const std::optional<double>& a, const std::opti
 
 }  // namespace
 
-Markup target_table(const ReportData& data) {
+std::optional<Table> target_table(const ReportData& data) {
   if (data.presentations.empty()) return {};
   constexpr std::string_view silent = "the target does not say", unseen = "not seen";
-  MarkupTable rows;
+  Table rows;
   rows.caption =
       "Contrast as it was set, as the target read it back and as the camera saw it, means over the presentations; "
       "largest deviation of a read-back in brackets";
@@ -76,15 +76,15 @@ Markup target_table(const ReportData& data) {
                  "Presentations"};
   for (const auto& [set_k, row] : rows_by_contrast(data.presentations)) {
     const auto read_back = row.read_back.mean(), seen = row.seen.mean();
-    const Markup deviation =
+    const RichText deviation =
         read_back ? unbroken(shown(*read_back - set_k, 4) + " (" + shown(*row.read_back.farthest(), 4) + ")")
                   : missing(silent);
-    rows.rows.push_back({escaped(stated(set_k)), kelvin(read_back, silent), kelvin(seen, unseen), deviation,
+    rows.rows.push_back({plain(stated(set_k)), kelvin(read_back, silent), kelvin(seen, unseen), deviation,
                          kelvin(difference(seen, set_k), unseen), kelvin(difference(seen, read_back), unseen),
-                         kelvin(row.sensors.mean(), "no sensor says so"), escaped(shown(row.longest_s, 1)),
-                         escaped(std::to_string(row.presentations))});
+                         kelvin(row.sensors.mean(), "no sensor says so"), plain(shown(row.longest_s, 1)),
+                         plain(std::to_string(row.presentations))});
   }
-  return table(rows);
+  return rows;
 }
 
 }  // namespace todbench

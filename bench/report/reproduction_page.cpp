@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "bench/report/number_format.h"
+#include "bench/report/plot.h"
 #include "bench/report/report_pieces.h"
-#include "bench/report/svg_plot.h"
 
 namespace todbench {
 namespace {
@@ -18,7 +18,7 @@ bool among(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-Markup ours(const ReproducedFigure& figure) {
+RichText ours(const ReproducedFigure& figure) {
   if (!figure.value) return missing("not found");
   const int decimals = percentage(figure) ? 0 : std::min(1, decimals_for(figure.value, figure.ci95));
   std::string text = shown(*figure.value, decimals);
@@ -28,14 +28,14 @@ Markup ours(const ReproducedFigure& figure) {
   return unbroken(text + " " + figure.unit);
 }
 
-Markup figures_section(const Reproduction& reproduction) {
-  MarkupTable rows;
+Section figures_section(const Reproduction& reproduction) {
+  Table rows;
   rows.header = {"Quantity", "Published", "Here, 95 %", "Difference", "Why"};
   for (const auto& figure : reproduction.figures) {
-    rows.rows.push_back({escaped(figure.quantity), text_or_missing(figure.published, "left open in the paper"),
-                         ours(figure), escaped(difference_in_words(figure)), escaped(figure.remark)});
+    rows.rows.push_back({plain(figure.quantity), text_or_missing(figure.published, "left open in the paper"),
+                         ours(figure), plain(difference_in_words(figure)), plain(figure.remark)});
   }
-  return section("Published beside ours", table(rows));
+  return {"Published beside ours", {std::move(rows)}};
 }
 
 Plot curve_plot(const Reproduction& reproduction, const std::string& id, const std::string& title,
@@ -113,40 +113,51 @@ Plot range_plot(const Reproduction& reproduction) {
   return plot;
 }
 
-Markup thresholds_section(const Reproduction& reproduction) {
-  MarkupTable rows;
+Section thresholds_section(const Reproduction& reproduction) {
+  Table rows;
   rows.header = {"Sensor", "Observer", "Contrast [K]", "Acuity [1/mrad], 95 %", "Found by"};
   for (const auto& t : reproduction.thresholds) {
-    rows.rows.push_back({escaped(t.sensor), escaped(t.observer), escaped(stated(t.delta_t_k)),
-                         unbroken(with_interval(t.acuity_per_mrad, t.ci95)), escaped(t.method)});
+    rows.rows.push_back({plain(t.sensor), plain(t.observer), plain(stated(t.delta_t_k)),
+                         unbroken(with_interval(t.acuity_per_mrad, t.ci95)), plain(t.method)});
   }
-  return section("All thresholds", table(rows));
+  return {"All thresholds", {std::move(rows)}};
 }
 
-Markup ranges_section(const Reproduction& reproduction) {
-  MarkupTable rows;
+Section ranges_section(const Reproduction& reproduction) {
+  Table rows;
   rows.header = {"Sensor", "Observer", "75 % range [m], 95 %", "Remark"};
   for (const auto& r : reproduction.ranges) {
-    rows.rows.push_back({escaped(r.sensor), escaped(r.observer),
+    rows.rows.push_back({plain(r.sensor), plain(r.observer),
                          unbroken(with_interval(r.prediction.r75_m, r.prediction.r75_ci95_m)),
-                         escaped(r.prediction.reason)});
+                         plain(r.prediction.reason)});
   }
-  return section("Ranges", figure(svg_plot(range_plot(reproduction)),
-                                  "Fraction of correct identifications of a small craft against range, from the TOD "
-                                  "curves, and the four points that the paper states.") +
-                               table(rows));
+  return {"Ranges",
+          {Figure{drawn(range_plot(reproduction)),
+                  "Fraction of correct identifications of a small craft against range, from the TOD curves, and the "
+                  "four points that the paper states."},
+           std::move(rows)}};
 }
 
-Markup list_of(const std::vector<std::string>& sentences) {
-  Markup items;
-  for (const auto& sentence : sentences) items += element("li", escaped(sentence));
-  return element("ul", items);
+Section curves_section(const Reproduction& reproduction) {
+  const auto observers =
+      curve_plot(reproduction, "observers", "Observers on the simulated sensors", reproduction.simulated_sensors);
+  std::vector<std::string> beside = reproduction.simulated_sensors;
+  if (!beside.empty()) beside.resize(1);
+  beside.insert(beside.end(), reproduction.cameras.begin(), reproduction.cameras.end());
+  const auto sensors = curve_plot(reproduction, "cameras", "Emulated camera beside the simulation", beside);
+  return {
+      "TOD curves",
+      {Figure{drawn(observers),
+              "Both observers on the simulated sensor, without and with 2 x 2 microscan (Figure 10 of the paper)."},
+       Figure{drawn(sensors),
+              "The emulated camera, single pictures and super-resolved, beside the simulated sensor (Figure 9 of the "
+              "paper)."}}};
 }
 
-Markup settings_section(const Reproduction& reproduction) {
-  std::vector<NamedValue> values;
-  for (const auto& [name, value] : reproduction.settings) values.push_back({name, escaped(value)});
-  return section("Settings", table_of_values("", values));
+Section settings_section(const Reproduction& reproduction) {
+  ValueTable table;
+  for (const auto& [name, value] : reproduction.settings) table.values.push_back({name, plain(value)});
+  return {"Settings", {std::move(table)}};
 }
 
 }  // namespace
@@ -158,34 +169,18 @@ std::string difference_in_words(const ReproducedFigure& figure) {
   return shown(100 * difference / *figure.published_value, 0) + " %";
 }
 
-std::string render_reproduction(const Reproduction& reproduction) {
-  const Markup head =
-      literal(
-          "<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n") +
-      element("title", escaped(reproduction.title)) +
-      element("style", literal(report_style(reproduction.title) + plot_style()));
-  Markup body = element(
-      "header", element("h1", escaped(reproduction.title)) + paragraph(escaped(reproduction.source), "subtitle"));
-  body += figures_section(reproduction);
-  const auto observers =
-      curve_plot(reproduction, "observers", "Observers on the simulated sensors", reproduction.simulated_sensors);
-  std::vector<std::string> beside = reproduction.simulated_sensors;
-  if (!beside.empty()) beside.resize(1);
-  beside.insert(beside.end(), reproduction.cameras.begin(), reproduction.cameras.end());
-  const auto sensors = curve_plot(reproduction, "cameras", "Emulated camera beside the simulation", beside);
-  body += section("TOD curves", figure(svg_plot(observers),
-                                       "Both observers on the simulated sensor, without and with 2 x 2 microscan "
-                                       "(Figure 10 of the paper).") +
-                                    figure(svg_plot(sensors),
-                                           "The emulated camera, single pictures and super-resolved, beside the "
-                                           "simulated sensor (Figure 9 of the paper)."));
-  body += ranges_section(reproduction) + thresholds_section(reproduction);
-  body += section("What the paper does not state", list_of(reproduction.assumptions)) + settings_section(reproduction);
-  return "<!DOCTYPE html>\n" +
-         element("html", element("head", head) + element("body", element("main", body)),
-                 "lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\"")
-             .text +
-         "\n";
+Document reproduction_document(const Reproduction& reproduction) {
+  return {.title = reproduction.title,
+          .heading = reproduction.title,
+          .subtitle = reproduction.source,
+          .page_label = reproduction.title,
+          .opening = {},
+          .sections = {figures_section(reproduction),
+                       curves_section(reproduction),
+                       ranges_section(reproduction),
+                       thresholds_section(reproduction),
+                       {"What the paper does not state", {list_of(reproduction.assumptions)}},
+                       settings_section(reproduction)}};
 }
 
 }  // namespace todbench

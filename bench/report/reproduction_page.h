@@ -1,4 +1,4 @@
-// A published experiment beside our own figures: one self-contained page made from values.
+// A published experiment beside our own figures: a document made from values.
 #pragma once
 
 #include <optional>
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "acquisition/core/result.h"
-#include "bench/report/markup.h"
+#include "bench/report/document.h"
 #include "tod/range/range_prediction.h"
 
 namespace todbench {
@@ -59,7 +59,7 @@ struct Reproduction {
 /// Ours against the published number: a difference in units of `unit` for percentages, else in per cent of it.
 [[nodiscard]] std::string difference_in_words(const ReproducedFigure& figure);
 
-/// HTML 5 that is also well-formed XML, style and figures inside, nothing from outside. A pure function.
-[[nodiscard]] std::string render_reproduction(const Reproduction& reproduction);
+/// The page as a value, for render_html(). A pure function.
+[[nodiscard]] Document reproduction_document(const Reproduction& reproduction);
 
 }  // namespace todbench

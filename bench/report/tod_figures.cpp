@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "bench/report/number_format.h"
+#include "tod/psychometric/acuity.h"
 
 namespace todbench {
 namespace {
@@ -28,7 +29,7 @@ double contrast_of(const TodPoint& point) {
 }
 
 PlotPoint tod_point(const TodPoint& point) {
-  return {reciprocal(point.fit.threshold), std::abs(contrast_of(point)), reciprocal(point.fit.ci95), {}};
+  return {acuity_per_mrad(point.fit), std::abs(contrast_of(point)), acuity_interval(point.fit.ci95), {}};
 }
 
 /// The points of one sign. A line joins neighbouring contrasts.

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/report/svg_plot.h"
+#include "bench/report/plot.h"
 #include "tod/psychometric/tod_curve.h"
 
 namespace todbench {

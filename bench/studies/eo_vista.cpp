@@ -1,5 +1,6 @@
 #include "bench/studies/eo_vista.h"
 
+#include <fmt/format.h>
 #include <atomic>
 #include <cmath>
 #include <functional>
@@ -180,9 +181,7 @@ std::vector<std::string> assumptions(const EoVistaOptions& options, double size_
 std::string joined(const std::vector<CameraPart>& parts, double (*value)(const CameraTrialRecord&), int decimals) {
   std::string text;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    char number[32];
-    std::snprintf(number, sizeof number, "%.*f", decimals, value(parts[i].record));
-    text += (i > 0 ? ", " : "") + std::string(number);
+    text += fmt::format("{}{:.{}f}", i > 0 ? ", " : "", value(parts[i].record), decimals);
   }
   return text;
 }

@@ -1,10 +1,10 @@
 #include "sim_devices/prediction/cost_frontier.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
-#include <cstdio>
 #include <mutex>
 #include <thread>
 
@@ -21,12 +21,6 @@ constexpr int fewest_reference_draws = 200;  // a standard error near 1 %
 constexpr int paired_draws = 200;            // differences of paired estimates are finer than their standard error
 constexpr double trials_share = 2;           // a run of trials fits where as much time is left for the knobs
 constexpr double worth_repeating_s = 1;      // shorter runs are measured twice
-
-std::string text_of(const char* format, auto... values) {
-  char text[200];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 /// Requests a stop when the time is over or the caller requests one.
 class Deadline {
@@ -184,9 +178,9 @@ Result<void> Frontier::scout() {
       return tl::unexpected(found.error());
     } else if (found.error().code == ErrorCode::interrupted) {
       return fail(ErrorCode::invalid_input,
-                  text_of("a budget of %g s is too short even to look for the thresholds", task_.budget_s));
+                  fmt::format("a budget of {:g} s is too short even to look for the thresholds", task_.budget_s));
     } else {
-      out_.notes.push_back(text_of("%g K is left out: ", contrast) + found.error().message);
+      out_.notes.push_back(fmt::format("{:g} K is left out: ", contrast) + found.error().message);
     }
   }
   delta_t_k_.clear();
@@ -207,23 +201,25 @@ Result<void> Frontier::measure_references() {
   if (fewest_s > allowed_s) {
     return fail(
         ErrorCode::invalid_input,
-        text_of("a budget of %g s is too short: the reference level with %d draws takes about %.0f s and may use "
-                "a third of it",
-                task_.budget_s, fewest_reference_draws, std::ceil(fewest_s)));
+        fmt::format(
+            "a budget of {:g} s is too short: the reference level with {} draws takes about {:.0f} s and may use "
+            "a third of it",
+            task_.budget_s, fewest_reference_draws, std::ceil(fewest_s)));
   }
   if (whole_s > allowed_s) {
     const double share = (allowed_s - fewest_s) / (whole_s - fewest_s);
     reference.noise_draws =
         fewest_reference_draws + static_cast<int>(share * (reference.noise_draws - fewest_reference_draws));
-    out_.notes.push_back(text_of("the reference has %d draws per size, not %d: with all it would take about %.0f s",
-                                 reference.noise_draws, Accuracy::reference().noise_draws, std::ceil(whole_s)));
+    out_.notes.push_back(
+        fmt::format("the reference has {} draws per size, not {}: with all it would take about {:.0f} s",
+                    reference.noise_draws, Accuracy::reference().noise_draws, std::ceil(whole_s)));
   }
   auto whole = timed(direct(task_.full, reference));
   if (!whole) {
     if (stop_.stop_requested()) return tl::unexpected(whole.error());
-    return fail(
-        ErrorCode::invalid_input,
-        text_of("a budget of %g s is too short for the reference level: ", task_.budget_s) + whole.error().message);
+    return fail(ErrorCode::invalid_input,
+                fmt::format("a budget of {:g} s is too short for the reference level: ", task_.budget_s) +
+                    whole.error().message);
   }
   speed_ = whole->wall_s / formula_s(reference.noise_draws, reference.phases_per_axis);
   out_.reference_draws = reference.noise_draws;
@@ -235,7 +231,7 @@ Result<void> Frontier::measure_references() {
   auto paired = timed(direct(task_.full, reference));
   if (!paired) {
     if (stop_.stop_requested()) return tl::unexpected(paired.error());
-    return fail(ErrorCode::invalid_input, text_of("a budget of %g s is too short", task_.budget_s));
+    return fail(ErrorCode::invalid_input, fmt::format("a budget of {:g} s is too short", task_.budget_s));
   }
   paired_reference_ = std::move(paired->found);
   return {};
@@ -249,14 +245,15 @@ void Frontier::measure(Way way) {
     out_.points.push_back(point);
   };
   const double left = left_s();
-  if (left <= 0) return refuse(text_of("the budget of %g s was used up", task_.budget_s));
+  if (left <= 0) return refuse(fmt::format("the budget of {:g} s was used up", task_.budget_s));
   if (way.expected_s > left) {
-    return refuse(text_of("about %.1f s are more than was left of the budget of %g s", way.expected_s, task_.budget_s));
+    return refuse(
+        fmt::format("about {:.1f} s are more than was left of the budget of {:g} s", way.expected_s, task_.budget_s));
   }
   auto found = timed(way.estimate);
   if (!found) {
     return refuse(found.error().code == ErrorCode::interrupted
-                      ? text_of("stopped at the end of the budget of %g s", task_.budget_s)
+                      ? fmt::format("stopped at the end of the budget of {:g} s", task_.budget_s)
                       : found.error().message);
   }
   if (found->wall_s < worth_repeating_s && left_s() > task_.budget_s / 2) {
@@ -302,11 +299,11 @@ std::vector<Way> Frontier::knobs() const {
     for (const auto value : values) {
       Accuracy accuracy = paired;
       accuracy.*field = value;
-      add(knob, text_of("%g", static_cast<double>(value)), accuracy, true);
+      add(knob, fmt::format("{:g}", static_cast<double>(value)), accuracy, true);
     }
   };
   for (const double tolerance : {10.0, 5.0, 2.0, 1.0, 0.5})
-    add("tolerance", text_of("%g %%", tolerance), Accuracy::for_tolerance(tolerance), false);
+    add("tolerance", fmt::format("{:g} %", tolerance), Accuracy::for_tolerance(tolerance), false);
   for (const int draws : {50, 100, 200, 600, 1500}) {
     if (draws >= out_.reference_draws) break;
     Accuracy accuracy = Accuracy::reference();
@@ -335,7 +332,7 @@ void Frontier::measure_trials() {
       for (const double contrast : delta_t_k_) {
         const auto at = std::ranges::find(*found, contrast, &ThresholdEstimate::delta_t_k);
         if (at == found->end()) {
-          return fail(ErrorCode::invalid_input, text_of("so few trials identify no threshold at %g K", contrast));
+          return fail(ErrorCode::invalid_input, fmt::format("so few trials identify no threshold at {:g} K", contrast));
         }
         ordered.push_back(*at);
       }

@@ -1,9 +1,9 @@
 #include "sim_devices/prediction/direct_estimate.h"
 
+#include <fmt/format.h>
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <map>
 #include <memory>
@@ -109,10 +109,9 @@ Result<int> bracket(SizeLadder& ladder, const WhiteNoise& white, double contrast
   int index = 9;  // 2 pitches
   for (;; index += 4) {
     if (index > largest_index) {
-      char text[128];
-      std::snprintf(text, sizeof text, "at a contrast of %g K no size up to %.0f pitches is judged 75 %% correct",
-                    contrast, size_of(largest_index));
-      return fail(ErrorCode::invalid_input, text);
+      return fail(ErrorCode::invalid_input,
+                  fmt::format("at a contrast of {:g} K no size up to {:.0f} pitches is judged 75 % correct", contrast,
+                              size_of(largest_index)));
     }
     const auto p = ladder.proportion(index, white, std::abs(contrast), scout_draws);
     if (!p) return tl::unexpected(p.error());
@@ -169,12 +168,10 @@ Result<Pass> one_pass(SizeLadder& ladder, double contrast, const WhiteNoise& whi
 /// Why the asked tolerance cannot be met, what can, and for what.
 std::string out_of_reach(double contrast, double asked_percent, double needed_draws, double reachable_percent,
                          double seconds) {
-  char text[320];
-  std::snprintf(text, sizeof text,
-                "a tolerance of %.3g %% cannot be met at a contrast of %g K: a standard error of half of it needs %.0f "
-                "noise draws per size, the most is %d; the best that is reachable is %.2g %%, for about %.1f s",
-                2 * asked_percent, contrast, needed_draws, Accuracy::max_noise_draws, 2 * reachable_percent, seconds);
-  return text;
+  return fmt::format(
+      "a tolerance of {:.3g} % cannot be met at a contrast of {:g} K: a standard error of half of it needs {:.0f} "
+      "noise draws per size, the most is {}; the best that is reachable is {:.2g} %, for about {:.1f} s",
+      2 * asked_percent, contrast, needed_draws, Accuracy::max_noise_draws, 2 * reachable_percent, seconds);
 }
 
 Result<DirectPoint> estimate_contrast(SizeLadder& ladder, double contrast, const WhiteNoise& white,

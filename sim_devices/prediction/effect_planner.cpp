@@ -1,9 +1,9 @@
 #include "sim_devices/prediction/effect_planner.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <optional>
 
@@ -16,12 +16,6 @@ namespace {
 
 constexpr int planning_wavelengths = 4;
 constexpr double budget_share = 0.8;  // of the tolerance; the rest is for numerical errors
-
-std::string formatted(const char* format, auto... values) {
-  char text[256];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 /// Variances per sample in units of the contrast squared.
 struct NoiseBudget {
@@ -151,11 +145,12 @@ double share_budget(std::vector<Candidate> candidates, double tolerance_percent,
     if (used + candidate.percent <= budget) {
       used += candidate.percent;
       decision.decision = Decision::skip;
-      decision.reason = formatted("changes the acuity by at most %.2g %%; %.2g %% of the %.3g %% tolerance are used up",
-                                  candidate.percent, used, tolerance_percent);
+      decision.reason =
+          fmt::format("changes the acuity by at most {:.2g} %; {:.2g} % of the {:.3g} % tolerance are used up",
+                      candidate.percent, used, tolerance_percent);
     } else {
-      decision.reason = formatted("may change the acuity by %.3g %%, more than is left of the %.3g %% tolerance",
-                                  candidate.percent, tolerance_percent);
+      decision.reason = fmt::format("may change the acuity by {:.3g} %, more than is left of the {:.3g} % tolerance",
+                                    candidate.percent, tolerance_percent);
     }
   }
   return used;
@@ -166,7 +161,7 @@ void obey(const EffectPlannerOptions& options, EffectPlan& out) {
     if (contains(options.skip, d.effect)) {
       d.decision = Decision::skip;
       d.reason = "skipped on request; " + (d.predicted_change_percent
-                                               ? formatted("predicted change %.3g %%", *d.predicted_change_percent)
+                                               ? fmt::format("predicted change {:.3g} %", *d.predicted_change_percent)
                                                : std::string("no criterion bounds the change"));
       out.requested_change_percent += d.predicted_change_percent.value_or(0);
       if (!d.predicted_change_percent)
@@ -180,9 +175,9 @@ void obey(const EffectPlannerOptions& options, EffectPlan& out) {
   }
   const double together = out.requested_change_percent + out.skipped_change_percent;
   if (out.requested_change_percent > 0 && together > options.tolerance_percent) {
-    out.warnings.push_back(
-        formatted("effects skipped on request may change the acuity by %.3g %%: the tolerance of %.3g %% is not kept",
-                  out.requested_change_percent, options.tolerance_percent));
+    out.warnings.push_back(fmt::format(
+        "effects skipped on request may change the acuity by {:.3g} %: the tolerance of {:.3g} % is not kept",
+        out.requested_change_percent, options.tolerance_percent));
   }
 }
 
@@ -199,7 +194,7 @@ SceneSurvey survey_scene(const SensorSpec& sensor, TemplateObserver& observer, c
       out.outlooks.push_back(contrast->outlook);
       contrasts.push_back(*contrast);
     } else {
-      out.warnings.push_back(formatted("at %g K: ", delta_t_k) + contrast.error().message);
+      out.warnings.push_back(fmt::format("at {:g} K: ", delta_t_k) + contrast.error().message);
     }
   }
   for (const auto& decision : out.everything.decisions) {

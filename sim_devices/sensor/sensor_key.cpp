@@ -1,5 +1,7 @@
 #include "sim_devices/sensor/sensor_key.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "sim_devices/sensor/effect_row.h"
@@ -8,9 +10,7 @@ namespace todbench {
 namespace {
 
 std::string text_of(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
+  return fmt::format("{:g}", value);
 }
 
 }  // namespace

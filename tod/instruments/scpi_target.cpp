@@ -1,5 +1,6 @@
 #include "tod/instruments/scpi_target.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -42,9 +43,7 @@ std::optional<Mounting> mounting_answered(const std::string& text) {
 }
 
 std::string decimal(double value, int decimals) {
-  std::array<char, 64> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, decimals);
-  return end.ec == std::errc{} ? std::string(text.data(), end.ptr) : std::string("out of range");
+  return fmt::format("{:.{}f}", value, decimals);
 }
 
 std::string position_text(cv::Point2d position) {

@@ -1,7 +1,8 @@
 #include "tod/measurement/geometry.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
 
 #include "tod/measurement/prepared_plate.h"
 
@@ -9,11 +10,9 @@ namespace todbench {
 namespace {
 
 std::string words(const PlateBeyondPicture& misfit) {
-  char text[200];
-  std::snprintf(text, sizeof text, ": its %.0f x %.0f mm are %.0f x %.0f pixels at %.2f m, the picture has %d x %d",
-                misfit.size_mm.width, misfit.size_mm.height, misfit.size_px.width, misfit.size_px.height,
-                misfit.distance_m, misfit.picture.width, misfit.picture.height);
-  return "plate " + misfit.plate + text;
+  return fmt::format("plate {}: its {:.0f} x {:.0f} mm are {:.0f} x {:.0f} pixels at {:.2f} m, the picture has {} x {}",
+                     misfit.plate, misfit.size_mm.width, misfit.size_mm.height, misfit.size_px.width,
+                     misfit.size_px.height, misfit.distance_m, misfit.picture.width, misfit.picture.height);
 }
 
 std::string words(const TrianglesTooNear& misfit) {

@@ -1,8 +1,8 @@
 #include "tod/measurement/measurement.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -144,10 +144,8 @@ class Run {
                               .away_s = static_cast<double>(*back_ns - lost_ns) * 1e-9,
                               .moved_px = before ? cv::norm(base_.pixel({0, 0}) - *before) : 0,
                               .reason = why.message};
-    char text[120];
-    std::snprintf(text, sizeof text, "the camera is back after %.1f s; the plate is %.2f pixels from where it was",
-                  interruption.away_s, interruption.moved_px);
-    note(text);
+    note(fmt::format("the camera is back after {:.1f} s; the plate is {:.2f} pixels from where it was",
+                     interruption.away_s, interruption.moved_px));
     result_.interruptions.push_back(std::move(interruption));
     host_.resumed();
     return {};
@@ -237,13 +235,11 @@ class Run {
     const double deviation_k = presented_.state.delta_t_k - state.delta_t_k;
     if (options_.max_readback_deviation_k <= 0 || std::abs(deviation_k) <= options_.max_readback_deviation_k) return;
     read_back_noted_ = true;
-    char text[200];
-    std::snprintf(text, sizeof text,
-                  "plate %s, mounting %s: the target says it shows %.4f K where %.4f K were set (%+.4f K, tolerance "
-                  "%.4f K)",
-                  state.plate.c_str(), std::string(to_string(state.mounting)).c_str(), presented_.state.delta_t_k,
-                  state.delta_t_k, deviation_k, options_.max_readback_deviation_k);
-    note(text);
+    note(fmt::format(
+        "plate {}, mounting {}: the target says it shows {:.4f} K where {:.4f} K were set ({:+.4f} K, tolerance {:.4f} "
+        "K)",
+        state.plate, to_string(state.mounting), presented_.state.delta_t_k, state.delta_t_k, deviation_k,
+        options_.max_readback_deviation_k));
   }
 
   void keep_presentation(const TargetState& state, std::int64_t there_ns, bool seen) {
@@ -305,20 +301,16 @@ class Run {
     auto contrast = effective_contrast(picture->kelvin, mounted_plate, registration, options_.min_reference_px);
     if (!contrast) return fail("measuring the effective contrast", contrast.error());
     if (!(contrast->value * state.delta_t_k > 0)) {
-      char text[160];
-      std::snprintf(text, sizeof text, "the target was set to %+.3f K but the camera sees %+.3f K +- %.3f K",
-                    state.delta_t_k, contrast->value, contrast->standard_error);
-      return fail(ErrorCode::calibration, text);
+      return fail(ErrorCode::calibration,
+                  fmt::format("the target was set to {:+.3f} K but the camera sees {:+.3f} K +- {:.3f} K",
+                              state.delta_t_k, contrast->value, contrast->standard_error));
     }
     const auto response = options_.contrast_response.find(state.plate);
     contrast_k_ = contrast->value / (response == options_.contrast_response.end() ? 1.0 : response->second);
     const double deviation = contrast_k_ / state.delta_t_k - 1;
     if (std::abs(deviation) > 0.2 && std::abs(contrast_k_ - state.delta_t_k) > 3 * contrast->standard_error) {
-      char text[200];
-      std::snprintf(text, sizeof text, "plate %s, mounting %s: the camera sees %.3f K where %.3f K were set (%+.0f %%)",
-                    state.plate.c_str(), std::string(to_string(state.mounting)).c_str(), contrast_k_, state.delta_t_k,
-                    100 * deviation);
-      note(text);
+      note(fmt::format("plate {}, mounting {}: the camera sees {:.3f} K where {:.3f} K were set ({:+.0f} %)",
+                       state.plate, to_string(state.mounting), contrast_k_, state.delta_t_k, 100 * deviation));
     }
     return {};
   }

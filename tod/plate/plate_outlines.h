@@ -1,7 +1,7 @@
 // Outlines of a plate's triangles in the picture, and numbers in sentences: shared by registration, shift and contrast.
 #pragma once
 
-#include <cstdio>
+#include <fmt/format.h>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -44,9 +44,7 @@ namespace todbench {
 
 /// `value` with `digits` after the point.
 [[nodiscard]] inline std::string fixed(double value, int digits) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
+  return fmt::format("{:.{}f}", value, digits);
 }
 
 }  // namespace todbench

@@ -1,8 +1,8 @@
 #include "tod/presentation/operator_request.h"
 
-#include <array>
+#include <fmt/format.h>
+
 #include <cmath>
-#include <cstdio>
 
 namespace todbench {
 namespace {
@@ -30,17 +30,15 @@ std::string words(const Remount& step) {
 }
 
 std::string words(const SetContrast& step) {
-  std::array<char, 64> kelvin{};
-  std::snprintf(kelvin.data(), kelvin.size(), "%+.3f K", step.delta_t_k);
-  return std::string("set the black body to ") + kelvin.data() + " against the plate and wait until it is stable";
+  return fmt::format("set the black body to {:+.3f} K against the plate and wait until it is stable", step.delta_t_k);
 }
 
 std::string words(const MoveSlightly& step) {
-  std::array<char, 96> millimetres{};
-  std::snprintf(millimetres.data(), millimetres.size(), "%.1f mm %s and %.1f mm %s", std::abs(step.by_mm.x),
-                step.by_mm.x < 0 ? "left" : "right", std::abs(step.by_mm.y), step.by_mm.y < 0 ? "up" : "down");
-  return std::string("move the plate or the camera slightly, about ") + millimetres.data() +
-         " as the camera sees the plate; the amount is measured, it need not be exact";
+  return fmt::format(
+      "move the plate or the camera slightly, about {:.1f} mm {} and {:.1f} mm {} as the camera sees the plate; the "
+      "amount is measured, it need not be exact",
+      std::abs(step.by_mm.x), step.by_mm.x < 0 ? "left" : "right", std::abs(step.by_mm.y),
+      step.by_mm.y < 0 ? "up" : "down");
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 #include "tod/range/range_prediction.h"
 #include "tod/psychometric/acuity.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <limits>
 
@@ -14,12 +14,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Ratio V75 / V50 of the target transfer probability function: the x at which x^E = 3, E = 1.51 + 0.24 x.
 constexpr double v75_over_v50 = 1.7650293160712442;
 constexpr int pieces = 256;  ///< in which a crossing is looked for before it is bisected
-
-std::string text(const char* format, double a, double b = 0, double c = 0) {
-  char line[320];
-  std::snprintf(line, sizeof line, format, a, b, c);
-  return line;
-}
 
 /// ln acuity at a contrast with the reach of its 95 % interval on both sides; infinite where a side is open.
 struct LogAcuity {
@@ -155,7 +149,7 @@ Result<void> check(std::span<const TodThreshold> thresholds, const RangeTask& ta
     if (!positive(t.delta_t_k) || !positive(t.s75_mrad))
       return fail(ErrorCode::invalid_input, "a point of the TOD curve is not positive");
     if (i > 0 && !(t.delta_t_k > thresholds[i - 1].delta_t_k))
-      return fail(ErrorCode::invalid_input, text("the TOD curve has two points at %g K", t.delta_t_k));
+      return fail(ErrorCode::invalid_input, fmt::format("the TOD curve has two points at {:g} K", t.delta_t_k));
   }
   return {};
 }
@@ -191,12 +185,12 @@ std::vector<RangePoint> probabilities(const TargetLine& line, double up_to_m) {
 
 std::string why_not(const TargetLine& line, const RangeTask& task, double lowest_k) {
   if (line.end_m() < 0 || line.ln_contrast(0) < std::log(lowest_k)) {
-    return text("the target's contrast of %g K lies below the lowest contrast of the TOD curve, %g K",
-                std::abs(task.delta_t_k), lowest_k);
+    return fmt::format("the target's contrast of {:g} K lies below the lowest contrast of the TOD curve, {:g} K",
+                       std::abs(task.delta_t_k), lowest_k);
   }
-  return text(
+  return fmt::format(
       "the target line does not meet the TOD curve: the apparent contrast falls below the lowest contrast of "
-      "the curve, %g K, at %.4g m, where M is still above M75 = %g; the range is at least that",
+      "the curve, {:g} K, at {:.4g} m, where M is still above M75 = {:g}; the range is at least that",
       lowest_k, line.end_m(), task.m75);
 }
 
@@ -222,7 +216,7 @@ ThresholdSelection thresholds_of(const TodCurve& curve, double target_delta_t_k)
   for (const auto& point : curve.points) {
     if (any && !same_sign(point)) continue;
     if (!point.fit.threshold || point.fit.verdict == FitVerdict::flat_or_decreasing) {
-      selection.notes.push_back(text("the point at %g K was left out: it has no threshold", point.delta_t_k));
+      selection.notes.push_back(fmt::format("the point at {:g} K was left out: it has no threshold", point.delta_t_k));
       continue;
     }
     selection.thresholds.push_back({std::abs(point.delta_t_k), *point.fit.threshold, point.fit.ci95});
@@ -258,9 +252,9 @@ Result<RangePrediction> predict_range(std::span<const TodThreshold> thresholds, 
   }
   if (std::abs(task.delta_t_k) > sorted.back().delta_t_k) {
     prediction.notes.push_back(
-        text("the target's contrast lies above the highest of the TOD curve, %g K: the acuity is "
-             "taken to be constant there",
-             sorted.back().delta_t_k));
+        fmt::format("the target's contrast lies above the highest of the TOD curve, {:g} K: the acuity is "
+                    "taken to be constant there",
+                    sorted.back().delta_t_k));
   }
   double farthest = 0;
   for (const auto& node : nodes) farthest = std::max(farthest, line.range_of(node.acuity.value));

@@ -1,8 +1,8 @@
 #include "tod/registration/patch_windows.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace todbench {
 namespace {
@@ -47,19 +47,15 @@ PatchWindow patch_window(cv::Point2d centroid_px, int side) {
 }
 
 std::string sentence(const TouchingWindow& window) {
-  char text[120];
-  std::snprintf(text, sizeof text, ": its window of %d px comes within %.1f px of ", window.side_px, window.gap_px);
-  char needed[40];
-  std::snprintf(needed, sizeof needed, "; %.1f px are needed", window.least_gap_px);
-  return window.triangle + text + window.neighbour + needed;
+  return fmt::format("{}: its window of {} px comes within {:.1f} px of {}; {:.1f} px are needed", window.triangle,
+                     window.side_px, window.gap_px, window.neighbour, window.least_gap_px);
 }
 
 std::string sentence(const WindowOutOfPicture& window) {
   const cv::Rect& at = window.window;
-  char text[160];
-  std::snprintf(text, sizeof text, ": its window, columns %d to %d and rows %d to %d, leaves the picture of %d x %d",
-                at.x, at.x + at.width - 1, at.y, at.y + at.height - 1, window.picture.width, window.picture.height);
-  return window.triangle + text;
+  return fmt::format("{}: its window, columns {} to {} and rows {} to {}, leaves the picture of {} x {}",
+                     window.triangle, at.x, at.x + at.width - 1, at.y, at.y + at.height - 1, window.picture.width,
+                     window.picture.height);
 }
 
 std::vector<TouchingWindow> touching_windows(const TargetPlate& plate, double scale_px_per_mm,

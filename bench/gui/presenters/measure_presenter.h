@@ -16,7 +16,7 @@
 
 #include "bench/gui/presenters/operator_desk.h"
 #include "bench/gui/presenters/workbench.h"
-#include "bench/report/svg_plot.h"
+#include "bench/report/plot.h"
 #include "bench/run/experiment.h"
 
 namespace todbench {

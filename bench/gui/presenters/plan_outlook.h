@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/plan/loaded_plan.h"
-#include "bench/report/svg_plot.h"
+#include "bench/report/plot.h"
 #include "bench/run/prediction.h"
 #include "tod/psychometric/tod_curve.h"
 

@@ -13,6 +13,20 @@ namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
+Qt::PenStyle pen_style(PlotLine line) {
+  switch (line) {
+    case PlotLine::none:
+      return Qt::NoPen;
+    case PlotLine::solid:
+      return Qt::SolidLine;
+    case PlotLine::dashed:
+      return Qt::DashLine;
+    case PlotLine::dotted:
+      return Qt::DotLine;
+  }
+  return Qt::SolidLine;
+}
+
 /// Ticks where the report has them.
 class ReportTicker final : public QCPAxisTicker {
  public:
@@ -208,9 +222,8 @@ void PlotView::add_series(const PlotSeries& series) {
     y << (point.x && point.y ? *point.y : nothing);
   }
   curve->setData(x, y);
-  const PlotLine line = series.line != PlotLine::none ? series.line : PlotLine::none;
-  curve->setLineStyle(line == PlotLine::none ? QCPCurve::lsNone : QCPCurve::lsLine);
-  curve->setPen(QPen(colour, 1.8, pen_style(line)));
+  curve->setLineStyle(series.line == PlotLine::none ? QCPCurve::lsNone : QCPCurve::lsLine);
+  curve->setPen(QPen(colour, 1.8, pen_style(series.line)));
   curve->setScatterStyle(scatter_of(series.marker, colour));
   curve->setName(QString::fromStdString(series.label));
   if (series.label.empty()) curve->removeFromLegend();

@@ -3,8 +3,7 @@
 
 #include <qcustomplot.h>
 
-#include "bench/gui/presenters/plot_painter.h"
-#include "bench/report/svg_plot.h"
+#include "bench/report/plot.h"
 
 namespace todbench {
 

@@ -31,8 +31,34 @@ QPalette box_palette_of(Theme theme) {
   return palette;
 }
 
+QColor PlotColours::of(PlotTone tone) const {
+  switch (tone) {
+    case PlotTone::first:
+      return first;
+    case PlotTone::second:
+      return second;
+    case PlotTone::third:
+      return third;
+    case PlotTone::muted:
+      return muted;
+  }
+  return ink;
+}
+
 PlotColours plot_colours_of(Theme theme) {
-  return theme == Theme::dark ? dark_plot_colours() : light_plot_colours();
+  const bool dark = theme == Theme::dark;
+  const DrawingPalette palette = dark ? dark_palette() : light_palette();
+  const auto tone = [&](PlotTone which) {
+    const auto name = palette.of(Ink::tone, which);
+    return QColor(QString::fromUtf8(name.data(), static_cast<qsizetype>(name.size())));
+  };
+  return {.ground = dark ? QColor(30, 31, 34) : QColor(255, 255, 255),
+          .ink = dark ? QColor(226, 226, 226) : QColor(32, 32, 32),
+          .grid = dark ? QColor(66, 68, 74) : QColor(222, 222, 222),
+          .first = tone(PlotTone::first),
+          .second = tone(PlotTone::second),
+          .third = tone(PlotTone::third),
+          .muted = tone(PlotTone::muted)};
 }
 
 Theme theme_of(const QPalette& palette) {

@@ -1,8 +1,8 @@
 #include "sim_devices/lab/genicam/genicam_description.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <charconv>
-#include <cstdio>
 
 namespace todbench {
 namespace {
@@ -31,9 +31,7 @@ std::string escaped(const std::string& text) {
 }
 
 std::string hex(std::uint32_t value) {
-  char text[16];
-  std::snprintf(text, sizeof text, "0x%X", value);
-  return text;
+  return fmt::format("0x{:X}", value);
 }
 
 std::string shortest(double value) {
@@ -148,9 +146,8 @@ std::string feature_node(const CameraFeature& f) {
 }
 
 std::string chunk_port(const CameraFeature& f) {
-  char id[16];
-  std::snprintf(id, sizeof id, "%08X", f.chunk_id);
-  return "  <Port Name=\"" + f.name + "Port\" NameSpace=\"Custom\">\n" + tag("ChunkID", id) + "  </Port>\n";
+  return "  <Port Name=\"" + f.name + "Port\" NameSpace=\"Custom\">\n" +
+         tag("ChunkID", fmt::format("{:08X}", f.chunk_id)) + "  </Port>\n";
 }
 
 std::string nodes(const CameraFeature& f, std::endian order) {

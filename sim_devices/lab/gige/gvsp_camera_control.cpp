@@ -1,6 +1,6 @@
 // What an emulated GVSP camera does when it is spoken to: registers and their side effects.
+#include <fmt/format.h>
 #include <cmath>
-#include <cstdio>
 
 #include "sim_devices/lab/gige/gvsp_camera_state.h"
 
@@ -40,9 +40,8 @@ void GvspCamera::State::power_up() {
   registers.set_text(gev::device_version, config.firmware, 32);
   registers.set_text(gev::manufacturer_info, "emulation", 48);
   registers.set_text(gev::serial_number, config.serial, 16);
-  char url[128];
-  std::snprintf(url, sizeof url, "Local:%s;%X;%zX", description.genicam.file_name.c_str(), RegisterMap::xml_address,
-                genicam_xml(description.genicam).size());
+  const std::string url = fmt::format("Local:{};{:X};{:X}", description.genicam.file_name, RegisterMap::xml_address,
+                                      genicam_xml(description.genicam).size());
   registers.set_text(gev::first_url, url, 512);
   set(gev::network_interfaces, 1);
   set(gev::stream_channels, 1);

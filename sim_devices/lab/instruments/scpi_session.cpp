@@ -1,5 +1,6 @@
 #include "sim_devices/lab/instruments/scpi_session.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -140,10 +141,8 @@ tl::expected<void, ScpiError> scpi_count(std::span<const std::string> parameters
 }
 
 std::string scpi_decimal(double value, int decimals) {
-  std::array<char, 64> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, decimals);
   // SCPI's number for "not a number" (SCPI-99 volume 1, 7.2.1.5).
-  return end.ec == std::errc{} && std::isfinite(value) ? std::string(text.data(), end.ptr) : "9.91E37";
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "9.91E37";
 }
 
 std::string scpi_string(std::string_view text) {

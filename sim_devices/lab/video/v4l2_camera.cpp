@@ -2,6 +2,7 @@
 #include "sim_devices/lab/video/v4l2_camera.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <umockdev.h>
 #include <unistd.h>
 
@@ -30,9 +31,7 @@ std::string video_path(int number) {
 }
 
 std::string hexadecimal(unsigned value) {
-  char text[8];
-  std::snprintf(text, sizeof text, "%04x", value);
-  return text;
+  return fmt::format("{:04x}", value);
 }
 
 /// The USB device and its video node, as sysfs shows them. "=00" makes the node a regular file.

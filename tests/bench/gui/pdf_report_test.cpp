@@ -4,9 +4,11 @@
 #include <QImage>
 #include <QProcess>
 #include <QRegularExpression>
+#include <QTemporaryDir>
 #include <QTextDocument>
 
 #include "tests/bench/gui/gui_test_support.h"
+#include "tests/bench/report/document_sample.h"
 #include "tests/support/patience.h"
 
 namespace todbench::testing {
@@ -111,6 +113,19 @@ TEST_F(PdfReport, ReadsBackWithoutLigatures) {
   const auto found = garbled.match(text);
   EXPECT_FALSE(found.hasMatch()) << text.mid(found.capturedStart() - 20, 40).toStdString();
   EXPECT_TRUE(text.contains("Effective"));
+}
+
+TEST(PdfDocument, ShowsEveryTextOfEveryKindOfBlock) {
+  const QTemporaryDir folder;
+  const std::filesystem::path file = folder.filePath("document.pdf").toStdString();
+
+  const auto written = write_pdf(document_of_every_block(), file);
+
+  ASSERT_TRUE(written) << written.error().message;
+  const QString text = output_of("pdftotext", {"-raw", QString::fromStdString(file.string()), "-"});
+  for (const std::string& expected : texts_of_every_block())
+    EXPECT_TRUE(text.contains(QString::fromStdString(expected))) << expected;
+  EXPECT_TRUE(text.contains("PageLabel"));
 }
 
 TEST_F(PdfReport, HasItsFiguresAsLinesAndNoPictures) {

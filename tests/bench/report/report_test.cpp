@@ -114,6 +114,20 @@ bool has_word(const std::string& text, const std::string& word) {
   return false;
 }
 
+/// Of all figures of a document, in its order.
+std::vector<std::string> ids_of_figures(const Document& document) {
+  std::vector<std::string> ids;
+  const auto add = [&](const Figure& figure) { ids.push_back(figure.drawing ? figure.drawing->id : "none"); };
+  for (const Section& section : document.sections) {
+    for (const Block& block : section.blocks) {
+      if (const auto* figure = std::get_if<Figure>(&block)) add(*figure);
+      if (const auto* pairs = std::get_if<FigurePairs>(&block))
+        for (const Figure& figure : pairs->figures) add(figure);
+    }
+  }
+  return ids;
+}
+
 TEST(WellFormednessCheck, FindsWhatIsWrong) {
   EXPECT_EQ(complaint("<p>a &amp; b<br/></p>"), "");
   EXPECT_NE(complaint("<p><b></p></b>"), "");
@@ -195,7 +209,7 @@ TEST(Report, DrawsTheTodCurveAndOneFunctionPerContrast) {
   EXPECT_FALSE(contains(page, "psychometric-4"));
 }
 
-TEST(Report, TellsEveryFigureOfThePageInItsOrder) {
+TEST(Report, HasEveryFigureOfItsDocumentInOrder) {
   ReportData full = sample_report();
   full.human = full.measured;
   full.cost.emplace();
@@ -205,14 +219,15 @@ TEST(Report, TellsEveryFigureOfThePageInItsOrder) {
   for (const ReportData& data : {full, sample_report(), without_curves, ReportData{}}) {
     const std::string page = render_report(data);
     std::size_t at = 0;
-    for (const Plot& plot : report_plots(data)) {
-      at = page.find("aria-labelledby=\"" + plot.id + "-title ", at);
-      ASSERT_NE(at, std::string::npos) << plot.id;
+    const std::vector<std::string> expected = ids_of_figures(report_document(data));
+    for (const std::string& id : expected) {
+      at = page.find("aria-labelledby=\"" + id + "-title ", at);
+      ASSERT_NE(at, std::string::npos) << id;
       ++at;
     }
     std::size_t drawn = 0;
     for (at = page.find("<svg"); at != std::string::npos; at = page.find("<svg", at + 1)) ++drawn;
-    EXPECT_EQ(report_plots(data).size(), drawn);
+    EXPECT_EQ(expected.size(), drawn);
   }
 }
 
@@ -396,6 +411,24 @@ TEST(Report, AVerdictThatWasMadeAfterTheRunSaysSo) {
 
   EXPECT_FALSE(contains(at_once, "stored no verdict"));
   EXPECT_TRUE(contains(afterwards, "The run of this session stored no verdict; it was judged afterwards"));
+}
+
+TEST(Report, ShowsSetReadBackAndSeenContrastWherePresentationsAreKnown) {
+  const std::string caption = "Contrast as it was set";
+  ReportData data = sample_report();
+  const std::string without = render_report(data);
+  Presentation told;
+  told.set.delta_t_k = 2;
+  told.said.state.delta_t_k = 2.125;
+  told.delta_t_k = 1.875;
+  data.presentations = {told};
+
+  const std::string page = render_report(data);
+
+  EXPECT_FALSE(contains(without, caption));
+  EXPECT_TRUE(contains(page, caption));
+  EXPECT_TRUE(contains(page, "0.1250 (0.1250)"));
+  EXPECT_TRUE(contains(page, "−0.2500"));
 }
 
 TEST(ReportVerdict, IsTheDecisionThatWasMadeAndNotAnotherOne) {

@@ -1,4 +1,4 @@
-#include "bench/report/svg_plot.h"
+#include "bench/report/svg.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,9 +8,11 @@
 #include <locale>
 
 #include "bench/report/number_format.h"
+#include "bench/report/plot.h"
 #include "bench/report/plot_ticks.h"
 #include "bench/report/tod_figures.h"
 #include "tests/bench/report/report_sample.h"
+#include "tod/psychometric/acuity.h"
 
 namespace todbench {
 namespace {
@@ -50,6 +52,10 @@ Plot unit_plot() {
   plot.x.label = "x (1)";
   plot.y.label = "y (1)";
   return plot;
+}
+
+std::string svg(const Plot& plot) {
+  return svg_element(*drawn(plot)).text;
 }
 
 PlotSeries one_point(const PlotPoint& point) {
@@ -93,9 +99,9 @@ TEST(NumberFormat, SignificantDigitsNeedNoExponent) {
   EXPECT_EQ(stated(0.25), "0.25");
 }
 
-TEST(NumberFormat, TheReciprocalOfAnIntervalExchangesItsBounds) {
-  const Interval acuity = reciprocal(Interval{2.0, 4.0});
-  const Interval open = reciprocal(Interval{0.0, 4.0});
+TEST(Acuity, TheIntervalHasItsBoundsExchanged) {
+  const Interval acuity = acuity_interval(Interval{2.0, 4.0});
+  const Interval open = acuity_interval(Interval{0.0, 4.0});
 
   EXPECT_EQ(acuity.low, 0.25);
   EXPECT_EQ(acuity.high, 0.5);
@@ -155,7 +161,7 @@ TEST(SvgPlot, AnAxisThatCannotBeDrawnIsAnError) {
   endless.x.high = std::numeric_limits<double>::infinity();
 
   for (const Plot& plot : {empty, logarithmic, endless}) {
-    const Result<Markup> picture = svg_plot(plot);
+    const Result<Drawing> picture = drawn(plot);
     ASSERT_FALSE(picture);
     EXPECT_EQ(picture.error().code, ErrorCode::invalid_input);
   }
@@ -165,7 +171,7 @@ TEST(SvgPlot, APointIsWhereItsAxesSay) {
   Plot plot = unit_plot();
   plot.series = {one_point({0.25, 0.75, {}, {}})};
 
-  const std::string text = svg_plot(plot)->text;
+  const std::string text = svg(plot);
 
   // 66 + 316 / 4 and 14 + 336 / 4, written to 0.01.
   EXPECT_THAT(attribute(text, "<circle", "cx"), DoubleNear(145, 0.006));
@@ -177,7 +183,7 @@ TEST(SvgPlot, ALogarithmicAxisPutsTheGeometricMeanInTheMiddle) {
   plot.x = {"x (1)", AxisScale::logarithmic, 0.1, 10, {}};
   plot.series = {one_point({1.0, 0.5, {}, {}})};
 
-  const std::string text = svg_plot(plot)->text;
+  const std::string text = svg(plot);
 
   EXPECT_THAT(attribute(text, "<circle", "cx"), DoubleNear(66 + 316 / 2.0, 0.006));
 }
@@ -188,8 +194,8 @@ TEST(SvgPlot, ABoundedIntervalHasTwoCapsAndAnOpenOneAnArrowAtTheEdge) {
   Plot open = unit_plot();
   open.series = {one_point({0.5, 0.5, {0.25, {}}, {}})};
 
-  const std::string with_caps = svg_plot(bounded)->text;
-  const std::string with_arrow = svg_plot(open)->text;
+  const std::string with_caps = svg(bounded);
+  const std::string with_arrow = svg(open);
 
   // Caps at x = 145 and 303, 5 units up and down; the arrow's point at the right edge, 382.
   EXPECT_THAT(with_caps, HasSubstr("M145.00 177.00L145.00 187.00"));
@@ -202,7 +208,7 @@ TEST(SvgPlot, ALimitWithoutAValueIsAnArrowWithoutAMarker) {
   Plot plot = unit_plot();
   plot.series = {one_point({{}, 0.5, {{}, 0.75}, {}})};
 
-  const std::string text = svg_plot(plot)->text;
+  const std::string text = svg(plot);
 
   EXPECT_THAT(text, Not(HasSubstr("<circle")));
   EXPECT_THAT(text, HasSubstr("L66.00 182.00L73.00 187.00"));
@@ -215,7 +221,7 @@ TEST(SvgPlot, ALineIsInterruptedWhereAValueIsMissing) {
   series.points = {{0.0, 0.0, {}, {}}, {0.5, 0.5, {}, {}}, {0.6, {}, {}, {}}, {0.7, 0.7, {}, {}}, {1.0, 1.0, {}, {}}};
   plot.series = {series};
 
-  const std::string text = svg_plot(plot)->text;
+  const std::string text = svg(plot);
   const std::size_t start = text.find("d=\"", text.find("class=\"curve"));
   const std::string path = text.substr(start, text.find('"', start + 3) - start);
 
@@ -227,7 +233,7 @@ TEST(SvgPlot, ABandWithAnOpenSideReachesTheEdge) {
   Plot plot = unit_plot();
   plot.bands = {{"", PlotTone::first, {0.5, {}}}};
 
-  const std::string text = svg_plot(plot)->text;
+  const std::string text = svg(plot);
 
   EXPECT_THAT(attribute(text, "<rect class=\"band", "x"), DoubleNear(224, 0.006));
   EXPECT_THAT(attribute(text, "<rect class=\"band", "width"), DoubleNear(158, 0.006));
@@ -241,7 +247,7 @@ TEST(SvgPlot, LegendEntriesNeverOverlapAndStayInThePicture) {
     plot.series.push_back(series);
   }
 
-  const std::string text = svg_plot(plot)->text;
+  const std::string text = svg(plot);
 
   std::vector<std::array<double, 3>> boxes;  // row, left, right
   const std::string start = "<text class=\"legend\"";
@@ -261,15 +267,14 @@ TEST(SvgPlot, LegendEntriesNeverOverlapAndStayInThePicture) {
 }
 
 TEST(SvgPlot, ADocumentOfItsOwnCarriesAStyleThatEveryViewerKnows) {
-  const std::array plots{unit_plot(), unit_plot()};
+  const std::array drawings{*drawn(unit_plot()), *drawn(unit_plot())};
 
-  const Result<std::string> document = svg_document(plots);
+  const std::string document = svg_document(drawings);
 
-  ASSERT_TRUE(document);
-  EXPECT_THAT(*document, ::testing::StartsWith("<?xml"));
-  EXPECT_THAT(*document, HasSubstr(".tone-a .marker,"));
-  EXPECT_THAT(*document, Not(HasSubstr("var(")));
-  EXPECT_THAT(*document, HasSubstr("viewBox=\"0 0 400.00 824.00\""));  // two of 400 by 400, each with 12 below
+  EXPECT_THAT(document, ::testing::StartsWith("<?xml"));
+  EXPECT_THAT(document, HasSubstr(".marker.tone-a{fill:#0072b2"));
+  EXPECT_THAT(document, Not(HasSubstr("var(")));
+  EXPECT_THAT(document, HasSubstr("viewBox=\"0 0 400.00 824.00\""));  // two of 400 by 400, each with 12 below
 }
 
 TEST(TodFigures, WilsonIntervalsAgreeWithTheScoreEquation) {
@@ -348,7 +353,7 @@ TEST(TodFigures, APointWithoutTrialsStillMakesAFigure) {
 
   const Plot plot = psychometric_figure("p", {"measured", &nothing}, {"", nullptr}, PsychometricForm::acuity);
 
-  EXPECT_TRUE(svg_plot(plot));
+  EXPECT_TRUE(drawn(plot));
   EXPECT_THAT(plot.bands, IsEmpty());
 }
 

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "bench/report/html.h"
+
 namespace todbench {
 namespace {
 
@@ -53,7 +55,7 @@ TEST(ReproductionPage, ShowsEveryFigureAndEscapesTexts) {
   reproduction.thresholds = thresholds(eo_vista::microscan, 1.5);
   reproduction.figures = eo_vista_figures(reproduction.thresholds, {});
 
-  const std::string page = render_reproduction(reproduction);
+  const std::string page = render_html(reproduction_document(reproduction));
 
   EXPECT_NE(page.find("A &lt; B"), std::string::npos);
   EXPECT_EQ(page.find("<script"), std::string::npos);

@@ -1,21 +1,17 @@
-// Small plots as SVG: points with intervals, lines, bands. A value in, text out; the same value gives the same text.
+// Small plots: points with intervals, lines, bands. A value in, a drawing out; the same value gives the same drawing.
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "acquisition/core/result.h"
-#include "bench/report/markup.h"
+#include "bench/report/drawing.h"
 #include "bench/report/plot_ticks.h"
 #include "tod/psychometric/psychometric_fit.h"
 
 namespace todbench {
 
-/// Colours of the palette by Okabe and Ito 2008, which colour-blind readers tell apart; each has a light and a dark
-/// shade. Marker and line differ too, so that a black-and-white print is readable.
-enum class PlotTone { first, second, third, muted };
 enum class PlotMarker { none, disc, square, bar };
 enum class PlotLine { none, solid, dashed, dotted };
 
@@ -61,13 +57,7 @@ struct Plot {
   std::vector<PlotSeries> series;  ///< later ones are drawn over earlier ones and stand earlier in the legend
 };
 
-/// One <svg> element for a page that has plot_style(). `invalid_input` for an axis that cannot be drawn.
-[[nodiscard]] Result<Markup> svg_plot(const Plot& plot);
-
-/// CSS of all plots: light, dark by the reader's preference, always light on paper.
-[[nodiscard]] std::string plot_style();
-
-/// A file of its own with its style inside, for any viewer: the plots one below the other, in light shades.
-[[nodiscard]] Result<std::string> svg_document(std::span<const Plot> plots);
+/// The plot with its axes, ticks and legend. `invalid_input` for an axis that cannot be drawn.
+[[nodiscard]] Result<Drawing> drawn(const Plot& plot);
 
 }  // namespace todbench

@@ -1,4 +1,6 @@
-#include "bench/report/report_pieces.h"
+#include "bench/report/html_style.h"
+
+#include "bench/report/markup.h"
 
 namespace todbench {
 
@@ -24,7 +26,7 @@ std::string css_string(std::string_view plain) {
 
 }  // namespace
 
-std::string report_style(std::string_view page_label) {
+std::string page_style(std::string_view page_label) {
   // Text and badges have a contrast of at least 4.5 to 1 against their ground (WCAG 2.1) in both schemes. Paper is
   // always light.
   const std::string paper = "@page{@bottom-left{content:" + css_string(page_label) +

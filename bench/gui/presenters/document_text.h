@@ -1,0 +1,14 @@
+// A document of the report as the text of QTextDocument.
+#pragma once
+
+#include <QTextDocument>
+
+#include "bench/gui/presenters/drawing_text_object.h"
+#include "bench/report/document.h"
+
+namespace todbench {
+
+/// Writes `document` into the empty `text`, whose layout paints with `drawings`; both are borrowed for the call.
+void write_text(QTextDocument& text, DrawingTextObject& drawings, const Document& document);
+
+}  // namespace todbench
