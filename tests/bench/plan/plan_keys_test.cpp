@@ -69,8 +69,10 @@ TEST(PlanKeys, AreNamedOnceAndSayWhatTheyAre) {
     EXPECT_TRUE(paths.insert(path).second) << path;
     EXPECT_FALSE(at.key->sentence.empty()) << path;
     EXPECT_EQ(plan_key(path).key, at.key);
-    if (!at.key->form.label.empty()) EXPECT_TRUE(lines.insert(std::string(at.key->form.object_name)).second) << path;
-    if (!at.key->option.name.empty()) EXPECT_TRUE(options.insert(std::string(at.key->option.name)).second) << path;
+    const bool own_line = at.key->form.label.empty() || lines.insert(std::string(at.key->form.object_name)).second;
+    EXPECT_TRUE(own_line) << path;
+    const bool own_option = at.key->option.name.empty() || options.insert(std::string(at.key->option.name)).second;
+    EXPECT_TRUE(own_option) << path;
   }
 }
 

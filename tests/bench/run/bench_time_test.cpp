@@ -75,7 +75,8 @@ TEST_P(BenchTimeOfAMeasurement, CountsTheChangesAndFramesThatMeasureAsksFor) {
   SimulatedSetUp set_up = simulated_set_up(plan, inputs, {}, {}).value();
   RecordingTarget target(*set_up.bench.target);
   TemplateObserver observer(inputs.observer, triangle_alternatives());
-  const auto measured = measure(*set_up.bench.camera, target, observer, *set_up.schedule, set_up.options, {}, {});
+  UnattendedHost host;
+  const auto measured = measure(*set_up.bench.camera, target, observer, *set_up.schedule, set_up.options, host, {}, {});
   ASSERT_TRUE(measured) << measured.error().message;
   ASSERT_FALSE(measured->ended_by);
 

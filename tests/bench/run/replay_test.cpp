@@ -104,9 +104,12 @@ class MeasuredSession : public ::testing::Test {
   }
 
   [[nodiscard]] Result<ExperimentOutcome> measure(const std::string& name) {
-    const auto inputs = read_inputs(plan_);
+    const auto loaded = LoadedPlan::load(plan_);
+    if (!loaded) return tl::unexpected(loaded.error());
+    EffectPlanner planner;
+    const auto inputs = experiment_inputs(*loaded, planner);
     if (!inputs) return tl::unexpected(inputs.error());
-    return measure_on_bench(plan_, *inputs, bench(*inputs), options(name), {}, {});
+    return measure_on_bench(*loaded, *inputs, bench(*inputs), options(name), {}, {});
   }
   [[nodiscard]] ExperimentOptions options(const std::string& name) const {
     return {.folder = at(name), .existing = ExistingFolder::refuse};

@@ -174,7 +174,7 @@ TEST(SessionVerdict, OfARunThatWasCutOffIsJudgedByWhatThereIsAndNotKept) {
   auto folder = SessionFolder::create(parent.path() / "s", ExistingFolder::refuse).value();
   Plan plan;
   plan.limits.acuity = {{16.9, 0.4}};
-  ASSERT_TRUE(folder.write_plan(plan));
+  ASSERT_TRUE(folder.write_plan(LoadedPlan::load(plan).value()));
   ASSERT_TRUE(folder.write_provenance(begin_provenance(plan, Side::measured)));
 
   const Verdict verdict = verdict_of(read_session(folder.path()).value());
