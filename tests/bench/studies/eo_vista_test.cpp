@@ -72,7 +72,7 @@ TEST(ReproductionPage, TellsAChangeFromAShareByItsKindWhateverItsWords) {
     figure.unit = "%";
     figure.value = 12;
     reproduction.figures = {figure};
-    return render_reproduction(reproduction);
+    return render_html(reproduction_document(reproduction));
   };
 
   EXPECT_NE(said(FigureKind::change).find(">+12"), std::string::npos);
