@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bench/report/html.h"
+#include "bench/report/markup.h"
 
 namespace todbench {
 namespace {
