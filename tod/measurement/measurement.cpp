@@ -55,7 +55,9 @@ class Run {
         shown = resume(*state, why, *lost_ns);
       }
       if (!shown) {
-        ended_by = shown.error();
+        // Whoever noticed the request first: it is the reason.
+        const bool asked_to = shown.error().code == ErrorCode::interrupted && stop_.stop_requested();
+        ended_by = asked_to ? Error{ErrorCode::interrupted, "stopped on request"} : shown.error();
         break;
       }
       schedule_.observe(std::span(result_.trials).subspan(before));

@@ -85,6 +85,7 @@ class MeasuredSession : public ::testing::Test {
     options.black_body = black_body_->endpoint();
     options.stage = stage_->endpoint();
     options.poll_interval = std::chrono::milliseconds(0);
+    options.connection = {.connect_timeout = std::chrono::minutes(1), .answer_timeout = std::chrono::minutes(1)};
     options.now = clock.now();
     instruments_ = open_scpi_target(options, {}).value();
   }
