@@ -18,7 +18,7 @@ struct Surface {
   PsychometricForm form = PsychometricForm::size;
   std::optional<double> lapse;
   ScanGrid grid;
-  std::vector<ScanNode> nodes;
+  LikelihoodScan scan;
   LikelihoodLimits limits;
   Maximum<3> maximum;
 
@@ -69,7 +69,7 @@ Judgement judge(const Surface& s) {
 // Two levels and a free lapse leave a ridge of equal likelihood; its member with the smallest lapse stands for it.
 Maximum<3> ridge_foot(const Surface& s) {
   if (s.lapse || s.counts.levels.size() != 2) return s.maximum;
-  const Maximum<3> foot = global_maximum(s.counts, s.form, best_per_slope(s.counts, scan_grid(s.form, 0.0)), 0.0);
+  const Maximum<3> foot = global_maximum(s.counts, s.form, scan_likelihood(s.counts, scan_grid(s.form, 0.0)), 0.0);
   return foot.expansion.value >= s.maximum.expansion.value - s.equal_within() ? foot : s.maximum;
 }
 
@@ -104,6 +104,41 @@ Interval interval95(const PooledCounts& counts, const ProfileCrossings& c) {
   return {};
 }
 
+// A step lies anywhere in its gap. Where the gap is so narrow that the steepest function of the domain falls short of
+// an ideal step, the profile over the domain knows nothing of it: the interval is joined with all ideal steps that the
+// data do not rule out. `drop`: of twice the ln likelihood.
+void join_steps(const Surface& s, double drop, Interval& sizes) {
+  constexpr double falls_short = 0.05;  // of ln likelihood: 3 % of what makes a 95 % interval
+  if (s.limits.step - s.supremum() < falls_short) return;
+  const double supremum = s.limits.step;
+  const StepExtent steps = step_extent(s.counts, s.lapse, supremum - drop / 2 - s.equal_within());
+  if (!steps.any) return;
+  const auto lower = [](const std::optional<double>& a, const std::optional<double>& b) {
+    return a && b ? std::optional(std::min(*a, *b)) : std::nullopt;
+  };
+  const auto upper = [](const std::optional<double>& a, const std::optional<double>& b) {
+    return a && b ? std::optional(std::max(*a, *b)) : std::nullopt;
+  };
+  sizes.low = lower(sizes.low, steps.low ? s.counts.size_at(*steps.low) : std::nullopt);
+  sizes.high = upper(sizes.high, steps.high ? s.counts.size_at(*steps.high) : std::nullopt);
+}
+
+// The maximum with every size as it is, after a search in groups; what was found moves with it.
+void refine(const PooledCounts& counts, const Surface& s, PsychometricFit& fit) {
+  fit.degrees_of_freedom += static_cast<int>(counts.levels.size()) - static_cast<int>(s.counts.levels.size());
+  if (!fit.threshold) return;
+  const auto likelihood = [&](const PsychometricPlace& place) { return expand_likelihood(counts, s.form, place); };
+  const Maximum<3> exact = climb<3>(likelihood, s.maximum.place, search_box(s.lapse));
+  const double moved = std::exp(exact.place[place_t] - s.maximum.place[place_t]);
+  fit.threshold = counts.size_at(exact.place[place_t]);
+  fit.slope = std::exp(exact.place[place_q]);
+  fit.lapse = s.lapse.value_or(exact.place[place_lapse]);
+  fit.log_likelihood = exact.expansion.value;
+  fit.deviance = deviance(counts, s.form, exact.place);
+  for (std::optional<double>* side : {&fit.ci95.low, &fit.ci95.high, &fit.ci90.low, &fit.ci90.high})
+    if (*side) **side *= moved;
+}
+
 Surface survey(PooledCounts counts, const FitOptions& options) {
   Surface s;
   s.counts = std::move(counts);
@@ -111,8 +146,8 @@ Surface survey(PooledCounts counts, const FitOptions& options) {
   s.lapse = options.fixed_lapse;
   s.grid = scan_grid(s.form, s.lapse);
   s.limits = likelihood_limits(s.counts, s.lapse);
-  s.nodes = best_per_slope(s.counts, s.grid);
-  s.maximum = global_maximum(s.counts, s.form, s.nodes, s.lapse);
+  s.scan = scan_likelihood(s.counts, s.grid);
+  s.maximum = global_maximum(s.counts, s.form, s.scan, s.lapse);
   return s;
 }
 
@@ -129,6 +164,7 @@ PsychometricFit describe(const Surface& s, const Judgement& judgement) {
   if (judgement.has_point) {
     fit.threshold = s.counts.size_at(s.maximum.place[place_t]);
     fit.slope = std::exp(s.maximum.place[place_q]);
+    fit.slope_at_cap = at_upper_slope(s.maximum);
     fit.log_likelihood = s.maximum.expansion.value;
     fit.deviance = deviance(s.counts, s.form, s.maximum.place);
   } else {
@@ -215,12 +251,19 @@ Result<PsychometricFit> fit_psychometric(std::span<const Level> levels, const Fi
   fit.lapse = options.fixed_lapse.value_or(0.0);
   fit.trials = counts.trials();
   if (counts.levels.empty()) return fit;
-  Surface s = survey(std::move(counts), options);
+  constexpr std::size_t most_levels = 400;
+  const bool in_groups = counts.levels.size() > most_levels;
+  Surface s = survey(in_groups ? grouped(counts, most_levels) : counts, options);
   s.maximum = ridge_foot(s);
   const ProfileCrossings crossings = add_intervals(s, fit, levels);
   fit.ci95 = interval95(s.counts, crossings);
   fit.ci90 = interval(s.counts, crossings.below.narrow, crossings.above.narrow);
-  if (options.with_posterior) fit.posterior = grid_posterior(s.counts, s.form, s.nodes, s.lapse);
+  if (fit.verdict == FitVerdict::step) {
+    join_steps(s, confidence_drop({}, 0.95), fit.ci95);
+    join_steps(s, confidence_drop({}, 0.90), fit.ci90);
+  }
+  if (in_groups) refine(counts, s, fit);
+  if (options.with_posterior) fit.posterior = grid_posterior(s.counts, s.form, s.scan.nodes, s.lapse);
   return fit;
 }
 

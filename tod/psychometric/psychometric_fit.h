@@ -67,6 +67,10 @@ struct PsychometricFit {
       ci95;  ///< profile likelihood (drop 3.84); with one side open the other is a one-sided 95 % limit (drop 2.71)
   Interval ci90;                ///< profile likelihood (drop 2.71), for equivalence tests
   std::optional<double> slope;  ///< b
+  /// The slope is at the upper end of its domain, 50: the data ask for a steeper one, and the likelihood ratio that the
+  /// interval rests on is that of the domain. The interval of a step whose gap is too narrow for the domain holds the
+  /// gap.
+  bool slope_at_cap = false;
   double lapse = 0;
   std::optional<double> log_likelihood;  ///< without binomial coefficients
   std::optional<double> deviance;
@@ -88,7 +92,9 @@ struct PsychometricFit {
 /// Maximum likelihood in (ln threshold, ln slope[, lapse]) by global search and Newton refinement, with
 /// profile-likelihood and posterior intervals. Levels may be unsorted, repeated, single trials. With clusters
 /// (Level::cluster >= 0) the intervals are widened by the sandwich variance over clusters and Student's t.
-/// `invalid_input`: negative or non-finite size, fractional or negative counts, correct > total.
+/// `invalid_input`: negative, denormal or non-finite size, fractional or negative counts, correct > total, more than
+/// 1e12 trials. Beyond 400 different sizes neighbours are searched together (at 100 000 sizes over a factor of ten
+/// they move by less than 1e-4 of the interval) and the maximum is climbed with each size as it is.
 [[nodiscard]] Result<PsychometricFit> fit_psychometric(std::span<const Level> levels, const FitOptions& options);
 
 }  // namespace todbench

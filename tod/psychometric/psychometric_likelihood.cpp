@@ -66,10 +66,13 @@ std::optional<double> PooledCounts::size_at(double ln_size) const {
 }
 
 Result<void> validate(std::span<const Level> levels) {
+  double trials = 0;
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const Level& row = levels[i];
     if (!std::isfinite(row.size)) return fail(ErrorCode::invalid_input, row_error(i, "size is not finite"));
     if (row.size < 0) return fail(ErrorCode::invalid_input, row_error(i, "size is negative"));
+    if (row.size > 0 && !std::isnormal(row.size))
+      return fail(ErrorCode::invalid_input, row_error(i, "size is too small for a number with all its digits"));
     if (!std::isfinite(row.correct) || !std::isfinite(row.total))
       return fail(ErrorCode::invalid_input, row_error(i, "count is not finite"));
     if (row.correct < 0 || row.total < 0) return fail(ErrorCode::invalid_input, row_error(i, "count is negative"));
@@ -77,6 +80,10 @@ Result<void> validate(std::span<const Level> levels) {
       return fail(ErrorCode::invalid_input, row_error(i, "count is not a whole number"));
     if (row.correct > row.total)
       return fail(ErrorCode::invalid_input, row_error(i, "more correct answers than trials"));
+    trials += row.total;
+    if (trials > most_trials)
+      return fail(ErrorCode::invalid_input,
+                  row_error(i, "more than 1e12 trials together: their likelihood has no digits left for an interval"));
   }
   return {};
 }
@@ -107,6 +114,27 @@ PooledCounts pool(std::span<const Level> levels) {
   for (const Level& row : merged)
     counts.levels.push_back({counts.relative(row.size), row.correct, row.total - row.correct});
   return counts;
+}
+
+PooledCounts grouped(const PooledCounts& counts, std::size_t most_levels) {
+  if (counts.levels.size() <= most_levels) return counts;
+  const double span = (counts.last() - counts.first()) / static_cast<double>(most_levels - 1);
+  PooledCounts coarse = counts;
+  coarse.levels.clear();
+  auto at = counts.levels.begin();
+  while (at != counts.levels.end()) {
+    const double first = at->ln_size;
+    PooledLevel together;
+    double moment = 0;
+    for (; at != counts.levels.end() && at->ln_size < first + span; ++at) {
+      together.right += at->right;
+      together.wrong += at->wrong;
+      moment += at->total() * (at->ln_size - first);
+    }
+    together.ln_size = first + moment / together.total();
+    coarse.levels.push_back(together);
+  }
+  return coarse;
 }
 
 PooledCounts pool(const PooledCounts& a, const PooledCounts& b) {
@@ -259,7 +287,39 @@ double step_limit_free(const PooledCounts& counts) {
   return best;
 }
 
+// ln likelihood of the levels from j on, all above the step, and the lapse that is best for them.
+double above_step(const PooledCounts& counts, std::size_t j, std::optional<double> lapse) {
+  double right = 0, wrong = 0;
+  for (std::size_t i = j; i < counts.levels.size(); ++i) {
+    right += counts.levels[i].right;
+    wrong += counts.levels[i].wrong;
+  }
+  const double l = lapse.value_or(right + wrong > 0 ? std::min(wrong / (right + wrong), max_free_lapse) : 0.0);
+  return times_log(right, 1 - l) + times_log(wrong, l);
+}
+
 }  // namespace
+
+StepExtent step_extent(const PooledCounts& counts, std::optional<double> lapse, double least) {
+  const std::vector<PooledLevel>& levels = counts.levels;
+  StepExtent extent;
+  bool open_low = false, open_high = false;
+  double below = blank_likelihood(counts);
+  for (std::size_t j = 0; j <= levels.size(); ++j) {
+    // The step between level j - 1 and level j.
+    if (below + above_step(counts, j, lapse) >= least) {
+      extent.any = true;
+      open_low = open_low || j == 0;
+      open_high = open_high || j == levels.size();
+      if (j > 0 && !extent.low) extent.low = levels[j - 1].ln_size;
+      if (j < levels.size()) extent.high = levels[j].ln_size;
+    }
+    if (j < levels.size()) below += binomial(levels[j].right, levels[j].wrong, chance_level);
+  }
+  if (open_low) extent.low = std::nullopt;
+  if (open_high) extent.high = std::nullopt;
+  return extent;
+}
 
 LikelihoodLimits likelihood_limits(const PooledCounts& counts, std::optional<double> lapse) {
   LikelihoodLimits limits;

@@ -35,13 +35,22 @@ struct PooledCounts {
   [[nodiscard]] std::optional<double> size_at(double ln_size) const;
 };
 
-/// Rows of size 0 or above with whole counts, correct <= total; `invalid_input` names the first row that is not.
+/// Most trials of one fit. The likelihood of n trials is about n, so it is rounded by 2e-16 n; at 1e12 the drop of 3.84
+/// that makes an interval is wrong by less than 2e-4 of itself, at 1e15 by a fifth.
+inline constexpr double most_trials = 1e12;
+
+/// Rows of size 0 or above with whole counts, correct <= total, at most most_trials together; sizes are 0 or normal
+/// numbers (a denormal one has lost digits). `invalid_input` names the first row that is not.
 [[nodiscard]] Result<void> validate(std::span<const Level> levels);
 
 /// Pools validated rows. Sizes closer than 1e-12 (relative) are one level.
 [[nodiscard]] PooledCounts pool(std::span<const Level> levels);
 /// The two sets together, sizes relative to the reference of the first.
 [[nodiscard]] PooledCounts pool(const PooledCounts& a, const PooledCounts& b);
+
+/// Neighbouring levels together so that at most `most_levels` are left, each at the mean of its ln sizes by trials.
+/// Equal spans of ln size: levels further apart than a span stay alone.
+[[nodiscard]] PooledCounts grouped(const PooledCounts& counts, std::size_t most_levels);
 
 /// Model parameters as they are searched: t = ln(threshold / reference size), q = ln slope, lapse.
 using PsychometricPlace = std::array<double, 3>;
@@ -73,6 +82,14 @@ struct LikelihoodLimits {
   double ceiling_lapse = 0;  ///< the lapse there
   double step = 0;           ///< slope -> infinity: chance below, 1 - lapse above, anything between at one level
 };
+/// Thresholds (relative ln size) of all ideal steps, chance below and 1 - lapse above, whose ln likelihood is at least
+/// `least`: with one that lies between two levels their whole gap. A side without a value has no end.
+struct StepExtent {
+  bool any = false;
+  std::optional<double> low, high;
+};
+/// `lapse` as in likelihood_limits.
+[[nodiscard]] StepExtent step_extent(const PooledCounts& counts, std::optional<double> lapse, double least);
 /// `lapse` fixed, or free in [0, 0.1] when not given.
 [[nodiscard]] LikelihoodLimits likelihood_limits(const PooledCounts& counts, std::optional<double> lapse);
 

@@ -65,6 +65,16 @@ std::vector<double> thresholds(const PooledCounts& counts, double slope) {
   return thinned;
 }
 
+// Beyond the ends nothing but a tail of the function is seen, and a flat ridge may peak anywhere along it.
+std::vector<double> outer_thresholds(const PooledCounts& counts, double slope) {
+  std::vector<double> t;
+  for (const double offset : {1.8, 3.2, 4.0, 5.0, 7.0, 8.0}) {
+    t.push_back(counts.first() - offset / slope);
+    t.push_back(counts.last() + offset / slope);
+  }
+  return t;
+}
+
 // Indices of local maxima; of a plateau the first.
 std::vector<std::size_t> local_maxima(const std::vector<ScanNode>& nodes) {
   std::vector<std::size_t> peaks;
@@ -74,6 +84,16 @@ std::vector<std::size_t> local_maxima(const std::vector<ScanNode>& nodes) {
     if (left && right) peaks.push_back(i);
   }
   return peaks;
+}
+
+// The one of `nodes` (increasing in t) nearest to a threshold.
+const ScanNode& nearest(const std::vector<ScanNode>& nodes, double t) {
+  const auto after = std::lower_bound(nodes.begin(), nodes.end(), t,
+                                      [](const ScanNode& node, double x) { return node.place[place_t] < x; });
+  if (after == nodes.begin()) return *after;
+  const auto before = std::prev(after);
+  if (after == nodes.end()) return *before;
+  return t - before->place[place_t] <= after->place[place_t] - t ? *before : *after;
 }
 
 }  // namespace
@@ -169,23 +189,44 @@ ScanGrid scan_grid(PsychometricForm form, std::optional<double> lapse) {
   return grid;
 }
 
-std::vector<ScanNode> best_per_slope(const PooledCounts& counts, const ScanGrid& grid) {
-  std::vector<ScanNode> best;
+LikelihoodScan scan_likelihood(const PooledCounts& counts, const ScanGrid& grid) {
+  std::vector<std::vector<ScanNode>> rows;  // one for each slope, increasing in t
+  LikelihoodScan scan;
   for (const double q : grid.q) {
     const double slope = std::exp(q);
-    ScanNode node{{0, q, 0}, -std::numeric_limits<double>::infinity()};
-    for (const double t : thresholds(counts, slope)) {
+    const auto node_at = [&](double t) {
+      ScanNode node{{t, q, 0}, -std::numeric_limits<double>::infinity()};
       for (const LinkTable& table : grid.tables) {
         const double value = table.log_likelihood(counts, t, slope);
         if (value > node.value) node = {{t, q, table.link().lapse}, value};
       }
-    }
-    best.push_back(node);
+      return node;
+    };
+    std::vector<ScanNode> row;
+    for (const double t : thresholds(counts, slope)) row.push_back(node_at(t));
+    const auto by_value = [](const ScanNode& a, const ScanNode& b) { return a.value < b.value; };
+    const ScanNode best = *std::max_element(row.begin(), row.end(), by_value);
+    for (const double t : outer_thresholds(counts, slope)) row.push_back(node_at(t));
+    std::sort(row.begin(), row.end(),
+              [](const ScanNode& a, const ScanNode& b) { return a.place[place_t] < b.place[place_t]; });
+    scan.nodes.push_back(best);
+    rows.push_back(std::move(row));
   }
-  return best;
+  // A maximum along t that neither neighbouring slope betters at its threshold. Rows have thresholds of their own, so a
+  // neighbour is asked at its nearest.
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (const std::size_t k : local_maxima(rows[i])) {
+      const ScanNode& node = rows[i][k];
+      const bool below = i == 0 || nearest(rows[i - 1], node.place[place_t]).value <= node.value;
+      const bool above = i + 1 == rows.size() || nearest(rows[i + 1], node.place[place_t]).value <= node.value;
+      if (below && above) scan.peaks.push_back(node);
+    }
+  }
+  for (const std::size_t i : local_maxima(scan.nodes)) scan.peaks.push_back(scan.nodes[i]);
+  return scan;
 }
 
-Maximum<3> global_maximum(const PooledCounts& counts, PsychometricForm form, const std::vector<ScanNode>& nodes,
+Maximum<3> global_maximum(const PooledCounts& counts, PsychometricForm form, const LikelihoodScan& scan,
                           std::optional<double> lapse) {
   const Box<3> box = search_box(lapse);
   const auto likelihood = [&](const PsychometricPlace& place) { return expand_likelihood(counts, form, place); };
@@ -193,13 +234,27 @@ Maximum<3> global_maximum(const PooledCounts& counts, PsychometricForm form, con
   const auto consider = [&best](const Maximum<3>& m) {
     if (!best || m.expansion.value > best->expansion.value) best = m;
   };
-  for (const std::size_t i : local_maxima(nodes)) consider(climb<3>(likelihood, nodes[i].place, box));
+  // A scan is coarse: by how much a peak may rise on the way up. Steps between scanned slopes (a factor of 1.22) and
+  // thresholds (a quarter of the width) change the likelihood of near-chance data by less than 1; in sharp peaks of
+  // many trials the highest scanned ones are nearest.
+  constexpr double hope = 3;
+  constexpr std::size_t most_climbs = 12;
+  std::vector<ScanNode> starts = scan.peaks;
+  std::sort(starts.begin(), starts.end(), [](const ScanNode& a, const ScanNode& b) { return a.value > b.value; });
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const bool repeated = i > 0 && starts[i].place == starts[i - 1].place;
+    if (repeated) continue;
+    const bool best_of_its_slope = std::any_of(scan.nodes.begin(), scan.nodes.end(),
+                                               [&](const ScanNode& node) { return node.place == starts[i].place; });
+    if (best_of_its_slope || (i < most_climbs && starts[i].value > starts.front().value - hope))
+      consider(climb<3>(likelihood, starts[i].place, box));
+  }
   // On a ridge that rises for ever more slowly towards a slope limit Newton steps end before it: the limits are climbed
   // on their own.
   for (const bool upper : {false, true}) {
     Box<3> edge = box;
     edge.lower[place_q] = edge.upper[place_q] = upper ? box.upper[place_q] : box.lower[place_q];
-    const ScanNode& start = upper ? nodes.back() : nodes.front();
+    const ScanNode& start = upper ? scan.nodes.back() : scan.nodes.front();
     consider(climb<3>(likelihood, climb<3>(likelihood, start.place, edge).place, box));
   }
   return *best;

@@ -60,14 +60,19 @@ struct ScanNode {
   PsychometricPlace place{};
   double value = 0;
 };
-/// For each slope of the grid the best node over threshold and lapse. Thresholds are spaced by the width of the
-/// function at that slope and lie around every level and in every gap, so that no step between two levels is missed.
-[[nodiscard]] std::vector<ScanNode> best_per_slope(const PooledCounts& counts, const ScanGrid& grid);
+/// What a scan of the whole domain finds.
+struct LikelihoodScan {
+  std::vector<ScanNode> nodes;  ///< for each slope of the grid the best over threshold and lapse
+  std::vector<ScanNode> peaks;  ///< maxima over threshold and slope, where Newton steps may begin; not empty
+};
+/// Thresholds are spaced by the width of the function at that slope and lie around every level, in every gap and beyond
+/// the ends, so that no step between two levels and no ridge outside them is missed.
+[[nodiscard]] LikelihoodScan scan_likelihood(const PooledCounts& counts, const ScanGrid& grid);
 
-/// The maximum over the domain, from the result of best_per_slope. Where the likelihood rises towards a slope limit the
-/// place is at that limit.
-[[nodiscard]] Maximum<3> global_maximum(const PooledCounts& counts, PsychometricForm form,
-                                        const std::vector<ScanNode>& nodes, std::optional<double> lapse);
+/// The maximum over the domain, from its scan. Where the likelihood rises towards a slope limit the place is at that
+/// limit.
+[[nodiscard]] Maximum<3> global_maximum(const PooledCounts& counts, PsychometricForm form, const LikelihoodScan& scan,
+                                        std::optional<double> lapse);
 
 /// max over slope and lapse at one threshold, from a scan over both and Newton steps from each local maximum.
 [[nodiscard]] Maximum<3> profile_maximum(const PooledCounts& counts, PsychometricForm form, const ScanGrid& grid,

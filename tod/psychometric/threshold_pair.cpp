@@ -86,21 +86,21 @@ ThresholdPair::ThresholdPair(std::span<const Level> a, std::span<const Level> b,
   const double shift = a_.relative(b_.reference_size);
   for (PooledLevel& level : b_.levels) level.ln_size += shift;
   b_.reference_size = a_.reference_size;
-  nodes_a_ = best_per_slope(a_, grid_);
-  nodes_b_ = best_per_slope(b_, grid_);
+  scan_a_ = scan_likelihood(a_, grid_);
+  scan_b_ = scan_likelihood(b_, grid_);
 }
 
 PairMaxima ThresholdPair::shared_slope() const {
   const Joint joint{a_, b_, form_, lapse_};
-  const std::vector<ScanNode> nodes_both = best_per_slope(pool(a_, b_), grid_);
+  const std::vector<ScanNode> nodes_both = scan_likelihood(pool(a_, b_), grid_).nodes;
   std::vector<double> apart, together;
   for (std::size_t i = 0; i < nodes_both.size(); ++i) {
-    apart.push_back(nodes_a_[i].value + nodes_b_[i].value);
+    apart.push_back(scan_a_.nodes[i].value + scan_b_.nodes[i].value);
     together.push_back(nodes_both[i].value);
   }
   std::vector<JointPlace> separate, common;
   for (std::size_t i = 0; i < nodes_both.size(); ++i) {
-    const PsychometricPlace &pa = nodes_a_[i].place, &pb = nodes_b_[i].place, &both = nodes_both[i].place;
+    const PsychometricPlace &pa = scan_a_.nodes[i].place, &pb = scan_b_.nodes[i].place, &both = nodes_both[i].place;
     if (is_peak(apart, i))
       separate.push_back({pa[place_t], pb[place_t], pa[place_q], pa[place_lapse], pb[place_lapse]});
     if (is_peak(together, i)) common.push_back({both[place_t], 0, both[place_q], both[place_lapse], both[place_lapse]});
@@ -114,8 +114,8 @@ PairMaxima ThresholdPair::shared_slope() const {
 
 PairMaxima ThresholdPair::separate_slopes() const {
   const Joint joint{a_, b_, form_, lapse_};
-  const Maximum<3> a = global_maximum(a_, form_, nodes_a_, lapse_);
-  const Maximum<3> b = global_maximum(b_, form_, nodes_b_, lapse_);
+  const Maximum<3> a = global_maximum(a_, form_, scan_a_, lapse_);
+  const Maximum<3> b = global_maximum(b_, form_, scan_b_, lapse_);
   const double ta = a.place[place_t], tb = b.place[place_t];
 
   // The common threshold lies between the two or, where the likelihood has several peaks, near them.

@@ -30,7 +30,7 @@ class ThresholdPair {
   PsychometricForm form_;
   std::optional<double> lapse_;
   ScanGrid grid_;
-  std::vector<ScanNode> nodes_a_, nodes_b_;
+  LikelihoodScan scan_a_, scan_b_;
 };
 
 }  // namespace todbench
