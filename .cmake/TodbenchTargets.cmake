@@ -26,7 +26,7 @@ endif()
 # what it needs: tests/layering compiles them alone. Clang wants the same macros everywhere, which targets here do not have.
 option(TODBENCH_PRECOMPILE "Compile the headers of other projects once" ON)
 if(TODBENCH_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # GCC 12 warns about the inside of std::string when its header comes precompiled; "science" builds without and has the warnings.
+  # GCC 12 warns about the inside of std::string when its header comes precompiled.
   target_compile_options(todbench_options INTERFACE -fpch-preprocess -Wno-array-bounds -Wno-stringop-overflow
     -Wno-stringop-overread)
 else()

@@ -22,8 +22,7 @@ class GigeLaboratoryCamera final : public LaboratoryCamera {
 };
 
 ConnectCamera connect_gige(EmulatedGigeCameraConfig config) {
-  return [config](const SensorSpec& sensor,
-                  LaboratoryExposure exposure) -> Result<std::unique_ptr<LaboratoryCamera>> {
+  return [config](const SensorSpec& sensor, LaboratoryExposure exposure) -> Result<std::unique_ptr<LaboratoryCamera>> {
     auto camera = EmulatedGigeCamera::start(as_sensor(config, sensor), std::move(exposure));
     if (!camera) return fail("starting the emulated GigE camera", camera.error());
     return std::make_unique<GigeLaboratoryCamera>(std::move(*camera));

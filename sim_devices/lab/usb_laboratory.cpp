@@ -37,13 +37,12 @@ Result<std::unique_ptr<LaboratoryCamera>> plugged(std::shared_ptr<MockSystem> sy
 }  // namespace
 
 ConnectCamera connect_u3v(std::shared_ptr<MockSystem> system, U3vCameraConfig config) {
-  return
-      [system = std::move(system), config](
-          const SensorSpec& sensor, LaboratoryExposure exposure) -> Result<std::unique_ptr<LaboratoryCamera>> {
-        auto camera = U3vCamera::create(as_sensor(config, sensor), std::move(exposure));
-        if (!camera) return tl::unexpected(camera.error());
-        return plugged(system, std::move(*camera), camera_id(camera_scheme::u3v, {config.vendor, config.serial}), {});
-      };
+  return [system = std::move(system), config](
+             const SensorSpec& sensor, LaboratoryExposure exposure) -> Result<std::unique_ptr<LaboratoryCamera>> {
+    auto camera = U3vCamera::create(as_sensor(config, sensor), std::move(exposure));
+    if (!camera) return tl::unexpected(camera.error());
+    return plugged(system, std::move(*camera), camera_id(camera_scheme::u3v, {config.vendor, config.serial}), {});
+  };
 }
 
 ConnectCamera connect_seek(std::shared_ptr<MockSystem> system, SeekCameraConfig config) {

@@ -71,7 +71,8 @@ void expect_gap_of_lost_exposures(FrameSource& source, const std::function<void(
 
 Result<Frame> next_damaged(FrameSource& source) {
   auto frame = source.next(patience);
-  for (int k = 0; k < most_frames && frame && frame->status == FrameStatus::complete; ++k) frame = source.next(patience);
+  for (int k = 0; k < most_frames && frame && frame->status == FrameStatus::complete; ++k)
+    frame = source.next(patience);
   return frame;
 }
 
