@@ -222,7 +222,6 @@ LikelihoodScan scan_likelihood(const PooledCounts& counts, const ScanGrid& grid)
       if (below && above) scan.peaks.push_back(node);
     }
   }
-  for (const std::size_t i : local_maxima(scan.nodes)) scan.peaks.push_back(scan.nodes[i]);
   return scan;
 }
 
@@ -234,21 +233,7 @@ Maximum<3> global_maximum(const PooledCounts& counts, PsychometricForm form, con
   const auto consider = [&best](const Maximum<3>& m) {
     if (!best || m.expansion.value > best->expansion.value) best = m;
   };
-  // A scan is coarse: by how much a peak may rise on the way up. Steps between scanned slopes (a factor of 1.22) and
-  // thresholds (a quarter of the width) change the likelihood of near-chance data by less than 1; in sharp peaks of
-  // many trials the highest scanned ones are nearest.
-  constexpr double hope = 3;
-  constexpr std::size_t most_climbs = 12;
-  std::vector<ScanNode> starts = scan.peaks;
-  std::sort(starts.begin(), starts.end(), [](const ScanNode& a, const ScanNode& b) { return a.value > b.value; });
-  for (std::size_t i = 0; i < starts.size(); ++i) {
-    const bool repeated = i > 0 && starts[i].place == starts[i - 1].place;
-    if (repeated) continue;
-    const bool best_of_its_slope = std::any_of(scan.nodes.begin(), scan.nodes.end(),
-                                               [&](const ScanNode& node) { return node.place == starts[i].place; });
-    if (best_of_its_slope || (i < most_climbs && starts[i].value > starts.front().value - hope))
-      consider(climb<3>(likelihood, starts[i].place, box));
-  }
+  for (const std::size_t i : local_maxima(scan.nodes)) consider(climb<3>(likelihood, scan.nodes[i].place, box));
   // On a ridge that rises for ever more slowly towards a slope limit Newton steps end before it: the limits are climbed
   // on their own.
   for (const bool upper : {false, true}) {
@@ -256,6 +241,20 @@ Maximum<3> global_maximum(const PooledCounts& counts, PsychometricForm form, con
     edge.lower[place_q] = edge.upper[place_q] = upper ? box.upper[place_q] : box.lower[place_q];
     const ScanNode& start = upper ? scan.nodes.back() : scan.nodes.front();
     consider(climb<3>(likelihood, climb<3>(likelihood, start.place, edge).place, box));
+  }
+  // Other hills, of the same slopes at other thresholds. A scan is coarse: by how much a peak may rise on the way up.
+  // Steps between scanned slopes (a factor of 1.22) and thresholds (a quarter of the width) change the likelihood of
+  // near-chance data by less than 1; in sharp peaks of many trials the highest scanned ones are nearest. What is not
+  // higher than rounding is the same hill.
+  constexpr double hope = 3;
+  constexpr std::size_t most_climbs = 12;
+  const double rounding = 1e-9 + 4e-16 * std::abs(best->expansion.value);
+  std::vector<ScanNode> starts = scan.peaks;
+  std::sort(starts.begin(), starts.end(), [](const ScanNode& a, const ScanNode& b) { return a.value > b.value; });
+  for (std::size_t i = 0; i < std::min(starts.size(), most_climbs); ++i) {
+    if (starts[i].value < starts.front().value - hope) break;
+    const Maximum<3> hill = climb<3>(likelihood, starts[i].place, box);
+    if (hill.expansion.value > best->expansion.value + rounding) best = hill;
   }
   return *best;
 }

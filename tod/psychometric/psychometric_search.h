@@ -63,7 +63,7 @@ struct ScanNode {
 /// What a scan of the whole domain finds.
 struct LikelihoodScan {
   std::vector<ScanNode> nodes;  ///< for each slope of the grid the best over threshold and lapse
-  std::vector<ScanNode> peaks;  ///< maxima over threshold and slope, where Newton steps may begin; not empty
+  std::vector<ScanNode> peaks;  ///< maxima over threshold and slope, where Newton steps may begin too
 };
 /// Thresholds are spaced by the width of the function at that slope and lie around every level, in every gap and beyond
 /// the ends, so that no step between two levels and no ridge outside them is missed.
