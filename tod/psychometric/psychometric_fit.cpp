@@ -108,7 +108,7 @@ Interval interval95(const PooledCounts& counts, const ProfileCrossings& c) {
 // an ideal step, the profile over the domain knows nothing of it: the interval is joined with all ideal steps that the
 // data do not rule out. `drop`: of twice the ln likelihood.
 void join_steps(const Surface& s, double drop, Interval& sizes) {
-  constexpr double falls_short = 0.05;  // of ln likelihood: 3 % of what makes a 95 % interval
+  constexpr double falls_short = 1;  // of ln likelihood: half of what makes a 95 % interval
   if (s.limits.step - s.supremum() < falls_short) return;
   const double supremum = s.limits.step;
   const StepExtent steps = step_extent(s.counts, s.lapse, supremum - drop / 2 - s.equal_within());
