@@ -154,7 +154,7 @@ TEST(ManySizes, FallByTheirOwnLikelihoodToTheEndsOfTheInterval) {
 TEST(ManySizes, TakeLessThanASecondOfTheProcessor) {
   const std::vector<Level> data = one_trial_a_size(100'000);
   for (const auto lapse : {std::optional(0.0), std::optional<double>()}) {
-    const std::clock_t begin = std::clock();
+    [[maybe_unused]] const std::clock_t begin = std::clock();
 
     const auto fit = fit_psychometric(data, {.fixed_lapse = lapse});
 
