@@ -1,13 +1,18 @@
 #include "acquisition/aravis/aravis_backend.h"
 
 #include <arpa/inet.h>
+#include <fmt/format.h>
+
+#include <optional>
+#include <utility>
 
 #include "acquisition/aravis/aravis_source.h"
-#include "acquisition/aravis/description_url.h"
+#include "acquisition/aravis/description_guard.h"
 #include "acquisition/aravis/genicam_features.h"
 #include "acquisition/aravis/gev_registers.h"
 #include "acquisition/aravis/glib_ptr.h"
 #include "acquisition/aravis/gvcp_client.h"
+#include "acquisition/aravis/u3v_registers.h"
 #include "acquisition/core/camera_id.h"
 
 namespace todbench {
@@ -24,7 +29,6 @@ constexpr BootstrapText bootstrap_vendor{gev::vendor_name, 32};
 constexpr BootstrapText bootstrap_model{gev::model_name, 32};
 constexpr BootstrapText bootstrap_version{gev::device_version, 32};
 constexpr BootstrapText bootstrap_serial{gev::serial_number, 16};
-constexpr std::uint16_t url_bytes = 512;
 
 std::string bootstrap_text(ArvDevice* device, BootstrapText field) {
   std::string text(field.size, '\0');
@@ -58,23 +62,22 @@ std::string address_of(ArvDevice* device) {
   return text_or_empty(text.get());
 }
 
+/// What stands in for the serial number of a GigE camera that has none.
+std::string mac_address(ArvDevice* device) {
+  guint32 high = 0, low = 0;
+  if (!ARV_IS_GV_DEVICE(device) || arv_device_read_register(device, gev::mac_high, &high, nullptr) == 0 ||
+      arv_device_read_register(device, gev::mac_low, &low, nullptr) == 0 || (high == 0 && low == 0)) {
+    return {};
+  }
+  return fmt::format("{:02x}:{:02x}:{:02x}:{:02x}:{:02x}:{:02x}", high >> 8U & 0xFFU, high & 0xFFU, low >> 24U,
+                     low >> 16U & 0xFFU, low >> 8U & 0xFFU, low & 0xFFU);
+}
+
 /// Asked before the camera is opened, because Aravis needs 5 s to notice.
 bool controlled_by_another(const std::string& address) {
   if (!is_ipv4(address)) return false;
   const auto privilege = gvcp_read_register(address, gvcp_control_privilege_register, 500ms);
   return privilege && *privilege != 0;
-}
-
-/// Before the camera is opened, because opening believes what the camera states. A camera that cannot be asked is left
-/// to the opening.
-Result<void> check_description(const std::string& address) {
-  if (!is_ipv4(address)) return {};
-  for (const std::uint32_t where : {gev::first_url, gev::second_url}) {
-    const auto url = gvcp_read_text(address, where, url_bytes, 500ms);
-    if (!url || url->empty()) continue;
-    if (auto valid = check_description_url(*url); !valid) return valid;
-  }
-  return {};
 }
 
 class AravisBackend : public CameraBackend {
@@ -96,8 +99,15 @@ class AravisBackend : public CameraBackend {
     return options_.transport == AravisTransport::gige_vision ? "GigE Vision" : "USB3 Vision";
   }
   [[nodiscard]] CameraEntry entry(unsigned index) const;
-  [[nodiscard]] Result<std::string> aravis_name(const std::string& id, const std::string& name);
-  [[nodiscard]] SourceInfo identity(ArvDevice* device) const;
+  /// A camera that is there, as Aravis calls it.
+  struct Found {
+    std::string name, address;
+    UsbNames usb{};  ///< of a camera on USB
+  };
+  [[nodiscard]] Result<Found> find(const std::string& id, const std::string& name);
+  /// The device of a camera whose description may be evaluated.
+  [[nodiscard]] Result<GObjectPtr<ArvDevice>> open_device(const Found& found);
+  [[nodiscard]] SourceInfo identity(ArvDevice* device, const std::string& aravis_name) const;
 
   AravisOptions options_;
 };
@@ -123,32 +133,41 @@ Result<std::vector<CameraEntry>> AravisBackend::list() {
   return cameras;
 }
 
-Result<std::string> AravisBackend::aravis_name(const std::string& id, const std::string& name) {
+Result<AravisBackend::Found> AravisBackend::find(const std::string& id, const std::string& name) {
   if (options_.transport == AravisTransport::gige_vision && is_ipv4(name)) {
     const auto answer = gvcp_read_register(name, gvcp_version_register, 500ms);
     if (!answer) return fail(ErrorCode::not_found, answer.error().message);
     if (controlled_by_another(name)) return fail(ErrorCode::not_found, "busy: another program controls " + id);
-    if (const auto valid = check_description(name); !valid) return tl::unexpected(valid.error());
-    return name;
+    return Found{.name = name, .address = name};
   }
   arv_interface_update_device_list(interface());
   std::string seen;
   const unsigned count = arv_interface_get_n_devices(interface());
+  unsigned namesakes = 0;
+  for (unsigned i = 0; i < count; ++i) namesakes += entry(i).id == id ? 1U : 0U;
+  if (namesakes > 1) {
+    return fail(ErrorCode::not_found, std::to_string(namesakes) + " cameras call themselves " + id +
+                                          "; open one by its address, or disconnect the others");
+  }
   for (unsigned i = 0; i < count; ++i) {
     const std::string candidate = entry(i).id;
     if (candidate == id) {
       if (controlled_by_another(entry(i).address)) {
         return fail(ErrorCode::not_found, "busy: another program controls " + id);
       }
-      if (const auto valid = check_description(entry(i).address); !valid) return tl::unexpected(valid.error());
-      return text_or_empty(arv_interface_get_device_id(interface(), i));
+      return Found{text_or_empty(arv_interface_get_device_id(interface(), i)),
+                   entry(i).address,
+                   {.vendor = text_or_empty(arv_interface_get_device_vendor(interface(), i)),
+                    .product = text_or_empty(arv_interface_get_device_model(interface(), i)),
+                    .serial = text_or_empty(arv_interface_get_device_serial_nbr(interface(), i))}};
     }
     seen += (seen.empty() ? "" : ", ") + candidate;
   }
   return fail(ErrorCode::not_found, "no such camera; seen: " + (seen.empty() ? "none" : seen));
 }
 
-SourceInfo AravisBackend::identity(ArvDevice* device) const {
+/// From the registers that every camera has, then from its description, then from what it was found by.
+SourceInfo AravisBackend::identity(ArvDevice* device, const std::string& aravis_name) const {
   SourceInfo info;
   info.transport = transport_name();
   if (ARV_IS_GV_DEVICE(device)) {
@@ -156,38 +175,71 @@ SourceInfo AravisBackend::identity(ArvDevice* device) const {
     info.model = bootstrap_text(device, bootstrap_model);
     info.firmware = bootstrap_text(device, bootstrap_version);
     info.serial = bootstrap_text(device, bootstrap_serial);
+  } else if (ARV_IS_UV_DEVICE(device)) {
+    const U3vIdentity said = u3v_identity(device);
+    info.vendor = said.vendor;
+    info.model = said.model;
+    info.firmware = said.version;
+    info.serial = said.serial;
   }
   info.vendor = first_of(info.vendor, first_feature(device, {"DeviceVendorName"}));
   info.model = first_of(info.model, first_feature(device, {"DeviceModelName"}));
   info.serial = first_of(info.serial, first_feature(device, {"DeviceSerialNumber", "CameraSN", "DeviceID"}));
   info.firmware = first_of(first_feature(device, {"DeviceFirmwareVersion"}),
                            first_of(info.firmware, first_feature(device, {"DeviceVersion"})));
+  const unsigned count = arv_interface_get_n_devices(interface());
+  for (unsigned i = 0; i < count; ++i) {
+    if (text_or_empty(arv_interface_get_device_id(interface(), i)) != aravis_name) continue;
+    const CameraEntry found = entry(i);
+    info.vendor = first_of(info.vendor, found.vendor);
+    info.model = first_of(info.model, found.model);
+    info.serial = first_of(info.serial, found.serial);
+  }
+  if (info.serial.empty()) info.serial = mac_address(device);
   info.id = camera_id(scheme(), {info.vendor, info.serial});
+  if (info.serial.empty()) {
+    info.warnings.emplace_back("The camera has no serial number: it is not known again when it was lost.");
+  }
   return info;
+}
+
+Result<GObjectPtr<ArvDevice>> AravisBackend::open_device(const Found& found) {
+  const DescriptionReading reading{
+      .patience = options_.description_patience, .stop = options_.stop, .on_progress = options_.on_progress};
+  const bool on_usb = options_.transport == AravisTransport::usb3_vision;
+  auto description = on_usb                   ? read_safe_description(found.usb, reading)
+                     : is_ipv4(found.address) ? read_safe_description(found.address, reading)
+                                              : Result<std::optional<std::string>>(std::nullopt);
+  if (!description) return tl::unexpected(description.error());
+  GErrorSlot error;
+  GObjectPtr<ArvDevice> device(arv_interface_open_device(interface(), found.name.c_str(), error.out()));
+  if (!device) return fail(ErrorCode::not_found, error ? error.message() : "it has gone");
+  if (ARV_IS_GV_DEVICE(device.get()) && arv_gv_device_is_controller(ARV_GV_DEVICE(device.get())) == 0) {
+    return fail(ErrorCode::not_found, "busy: another program controls it");
+  }
+  if (const auto safe = guard_device(device.get(), *description); !safe) return tl::unexpected(safe.error());
+  return device;
 }
 
 Result<std::unique_ptr<FrameSource>> AravisBackend::open(const std::string& id) {
   const auto stated = camera_name(id, scheme());
   if (!stated) return fail(ErrorCode::invalid_input, "'" + id + "' does not begin with " + scheme() + ":");
-  const auto name = aravis_name(id, *stated);
-  if (!name) return tl::unexpected(name.error());
+  const auto found = find(id, *stated);
+  if (!found) return tl::unexpected(found.error());
+  const std::string& name = found->name;
+  auto opened = open_device(*found);
+  if (!opened) return fail("opening " + name, opened.error());
+  GObjectPtr<ArvDevice> device = std::move(*opened);
   GErrorSlot error;
-  GObjectPtr<ArvDevice> device(arv_interface_open_device(interface(), name->c_str(), error.out()));
-  if (!device) {
-    return fail(ErrorCode::not_found, "opening " + *name + ": " + (error ? error.message() : "it has gone"));
-  }
-  if (ARV_IS_GV_DEVICE(device.get()) && arv_gv_device_is_controller(ARV_GV_DEVICE(device.get())) == 0) {
-    return fail(ErrorCode::not_found, "busy: another program controls " + *name);
-  }
   GObjectPtr<ArvCamera> camera(ARV_CAMERA(arv_camera_new_with_device(device.get(), error.out())));
-  if (!camera) return fail(ErrorCode::not_found, "opening " + *name + ": " + error.message());
-  SourceInfo info = identity(device.get());
+  if (!camera) return fail(ErrorCode::not_found, "opening " + name + ": " + error.message());
+  SourceInfo info = identity(device.get(), name);
   std::string address = address_of(device.get());
   device.reset();
   auto source = AravisSource::create(std::move(camera), options_, std::move(info), std::move(address));
   if (!source) {
     // A camera that vanishes while it is being opened is not a camera lost in use.
-    return fail("opening " + *name, with_code(ErrorCode::not_found, source.error()));
+    return fail("opening " + name, with_code(ErrorCode::not_found, source.error()));
   }
   return source;
 }

@@ -1,8 +1,11 @@
 // GigE Vision and USB3 Vision cameras through Aravis.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <string_view>
 
@@ -33,6 +36,10 @@ struct AravisOptions {
   int packet_size_bytes = 0;
   /// The receive buffer is never smaller than eight payloads either: cameras send whole frames in one burst.
   std::uint64_t min_socket_buffer_bytes = 4U << 20U;
+  /// How long a GigE camera may take for its description, which is read twice.
+  std::chrono::milliseconds description_patience{30'000};
+  std::stop_token stop = {};                                        ///< ends the reading of a description
+  std::function<void(std::string_view sentence)> on_progress = {};  ///< about once a second while one is read
 };
 
 /// Lists by discovery (1 s on a network) and opens "gige:VENDOR-SERIAL", or "gige:192.168.1.10" where broadcasts do not
@@ -40,7 +47,8 @@ struct AravisOptions {
 /// full depth, filters off; camera_families.h), looks at its test ramp where it has one and reads everything back. The
 /// first commanded non-uniformity correction also ends the automatic ones. Opening fails with `not_found` when the
 /// camera is absent, busy (another program controls it, or crashed less than its heartbeat of about 3 s ago) or offers
-/// no 10 ... 16 bit monochrome format.
+/// no 10 ... 16 bit monochrome format, and when its description is not safe to be evaluated (description_guard.h);
+/// with `interrupted` on a stop request.
 ///
 /// The sources' stop() returns within milliseconds while the camera answers and within 0.4 s when it has vanished; only
 /// a get or set that is just waiting for a vanished camera delays it, by up to 2.5 s (five attempts of 0.5 s inside

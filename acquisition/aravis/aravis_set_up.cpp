@@ -4,9 +4,12 @@
 
 #include "acquisition/aravis/aravis_source.h"
 #include "acquisition/aravis/genicam_features.h"
+#include "acquisition/aravis/object_parameters.h"
 #include "acquisition/aravis/socket_buffer.h"
 #include "acquisition/aravis/test_ramp.h"
+#include "acquisition/aravis/u3v_registers.h"
 #include "acquisition/core/control_text.h"
+#include "acquisition/core/host_clock.h"
 
 namespace todbench {
 namespace {
@@ -18,6 +21,8 @@ constexpr int loopback_packet_bytes = 8000;
 /// A test pattern is in the picture some frames after it was chosen.
 constexpr int ramp_frames = 10;
 constexpr auto ramp_patience = 1s;
+/// A correction that interrupts the stream is over by then.
+constexpr auto longest_correction = 5s;
 /// What a plan states of a scale that was measured on the bench; never written into the camera.
 constexpr const char* scale_feature = "TemperatureLinearScale";
 constexpr const char* offset_feature = "TemperatureLinearOffset";
@@ -55,7 +60,8 @@ Result<std::unique_ptr<FrameSource>> AravisSource::create(GObjectPtr<ArvCamera> 
   source->bytes_swapped_ = source->family_.high_byte_first;
   auto warnings = prepare_camera(source->camera_.get(), source->family_, source->options_.pixel_format);
   if (!warnings) return tl::unexpected(warnings.error());
-  source->setup_warnings_ = std::move(*warnings);
+  source->setup_warnings_ = source->info_.warnings;
+  source->setup_warnings_.insert(source->setup_warnings_.end(), warnings->begin(), warnings->end());
   source->configure_transport();
   const auto read = source->refresh();
   if (!read) return tl::unexpected(read.error());
@@ -140,11 +146,15 @@ Result<void> AravisSource::refresh() {
 
 Result<std::shared_ptr<ArvStream>> AravisSource::create_stream() {
   GErrorSlot error;
-  auto* shared_events = new std::shared_ptr<Events>(events_);
+  if (auto safe = check_stream_registers(arv_camera_get_device(camera_.get())); !safe) {
+    return fail("creating the frame stream", safe.error());
+  }
+  auto* tap = new StreamTap{.events = events_};
   ArvStream* raw = arv_camera_create_stream_full(
-      camera_.get(), &AravisSource::on_stream_event, shared_events,
-      [](void* data) { delete static_cast<std::shared_ptr<Events>*>(data); }, error.out());
+      camera_.get(), &AravisSource::on_stream_event, tap, [](void* data) { delete static_cast<StreamTap*>(data); },
+      error.out());
   if (raw == nullptr) return error.failure(ErrorCode::not_found, "creating the frame stream");
+  tap->stream = raw;
   auto stream = shared(raw);
   if (ARV_IS_GV_STREAM(raw)) {
     const bool resend = options_.packet_resend == PacketResend::always ||
@@ -177,6 +187,10 @@ void AravisSource::check_socket_buffer(ArvStream* stream) {
 
 void AravisSource::publish_socket_buffer() {
   info_.warnings = setup_warnings_;
+  // Counts that are no temperatures are not computed for a scene.
+  if (info_.scale.calibrated()) {
+    for (auto& note : object_parameter_notes(info_.settings)) info_.warnings.push_back(std::move(note));
+  }
   if (!socket_buffer_bytes_.empty()) info_.settings["SocketBufferBytes"] = socket_buffer_bytes_;
   if (!socket_buffer_warning_.empty()) info_.warnings.push_back(socket_buffer_warning_);
 }
@@ -231,6 +245,7 @@ Result<void> AravisSource::correct_nonuniformity() {
     if (*warning) setup_warnings_.push_back(**warning);
     if (auto read = refresh(); !read) return read;
   }
+  may_pause_until_ns_ = monotonic_ns() + std::chrono::nanoseconds(longest_correction).count();
   auto done = set_feature(device, commands.front(), "1");
   if (!done && done.error().code == ErrorCode::disconnected) mark_lost();
   return done;

@@ -22,10 +22,17 @@ constexpr auto silence_before_ping = 2s;
 /// Two unanswered pings and this much silence make a camera lost.
 constexpr auto silence_before_lost = 3s;
 
-FrameIdKind frame_id_kind(ArvDevice* device, AravisTransport transport) {
-  if (transport == AravisTransport::usb3_vision) return FrameIdKind::wide;
+/// What Aravis threw away over USB because it belonged to no frame or did not fit into its buffer; 0 on a network. To
+/// be asked by the stream's own thread.
+std::uint64_t ignored_bytes(ArvStream* stream) {
+  const bool usb = stream != nullptr && ARV_IS_UV_STREAM(stream);
+  return usb ? arv_stream_get_info_uint64_by_name(stream, "n_ignored_bytes") : 0;
+}
+
+FrameNumberKind number_kind(ArvDevice* device, AravisTransport transport) {
+  if (transport == AravisTransport::usb3_vision) return FrameNumberKind::wide;
   const auto extended = get_feature(device, "GevGVSPExtendedIDMode").value_or("Off");
-  return extended == "On" || extended == "true" ? FrameIdKind::wide : FrameIdKind::gvsp16;
+  return extended == "On" || extended == "true" ? FrameNumberKind::gvsp64 : FrameNumberKind::gvsp16;
 }
 
 }  // namespace
@@ -41,11 +48,15 @@ AravisSource::~AravisSource() {
 }
 
 void AravisSource::on_stream_event(void* data, ArvStreamCallbackType type, ArvBuffer*) {
+  auto& tap = *static_cast<StreamTap*>(data);
+  const std::uint64_t ignored = ignored_bytes(tap.stream);
+  if (type == ARV_STREAM_CALLBACK_TYPE_START_BUFFER) tap.ignored_bytes = ignored;
   if (type != ARV_STREAM_CALLBACK_TYPE_BUFFER_DONE) return;
-  auto& events = **static_cast<std::shared_ptr<Events>*>(data);
+  Events& events = *tap.events;
   {
     const std::lock_guard lock(events.mutex);
-    events.arrivals_ns.push_back(monotonic_ns());
+    // Over USB frames follow each other: what was thrown away since this one began was its own.
+    events.arrivals.push_back({.host_time_ns = monotonic_ns(), .oversized = ignored != tap.ignored_bytes});
     events.last_sign_of_life = Clock::now();
     events.failed_pings = 0;
   }
@@ -86,12 +97,12 @@ Result<void> AravisSource::start() {
   auto stream = create_stream();
   if (!stream) return failed(stream.error());
   for (int i = buffer_count(info_.frame_rate_hz, format_.payload_bytes); i > 0; --i) {
-    arv_stream_push_buffer(stream->get(), new_frame_buffer(format_.payload_bytes).release());
+    arv_stream_push_buffer(stream->get(), new_frame_buffer(buffer_bytes(format_)).release());
   }
-  sequence_ = FrameSequence(frame_id_kind(arv_camera_get_device(camera_.get()), options_.transport));
+  sequence_ = FrameSequence(number_kind(arv_camera_get_device(camera_.get()), options_.transport), info_.frame_rate_hz);
   {
     const std::lock_guard lock(events_->mutex);
-    events_->arrivals_ns.clear();
+    events_->arrivals.clear();
     events_->last_sign_of_life = Clock::now();
     events_->failed_pings = 0;
     events_->running = true;
@@ -138,21 +149,21 @@ Result<Frame> AravisSource::next(std::chrono::milliseconds timeout) {
   const auto deadline = Clock::now() + timeout;
   for (;;) {
     std::shared_ptr<ArvStream> stream;
-    std::int64_t arrived_ns = 0;
+    Arrival arrived;
     {
       std::unique_lock lock(events_->mutex);
-      const auto ready = [&] { return !events_->running || !events_->arrivals_ns.empty() || events_->lost; };
+      const auto ready = [&] { return !events_->running || !events_->arrivals.empty() || events_->lost; };
       if (!events_->changed.wait_until(lock, deadline, ready)) {
         lock.unlock();
         return tl::unexpected(silence(timeout));
       }
-      if (events_->lost && (events_->arrivals_ns.empty() || !events_->running)) {
+      if (events_->lost && (events_->arrivals.empty() || !events_->running)) {
         lock.unlock();
         return tl::unexpected(disconnected());
       }
       if (!events_->running) return fail(ErrorCode::interrupted, info_.id + " is stopped");
-      arrived_ns = events_->arrivals_ns.front();
-      events_->arrivals_ns.pop_front();
+      arrived = events_->arrivals.front();
+      events_->arrivals.pop_front();
       stream = stream_;
     }
     GObjectPtr<ArvBuffer> buffer(arv_stream_try_pop_buffer(stream.get()));
@@ -160,8 +171,14 @@ Result<Frame> AravisSource::next(std::chrono::milliseconds timeout) {
     std::optional<Frame> frame;
     if (holds_exposure(buffer.get())) {
       frame = frame_from_buffer(buffer.get(), format_);
-      frame->sequence = sequence_.next(frame_id_of(buffer.get()));
-      frame->host_time_ns = arrived_ns;
+      if (arrived.oversized && frame->status == FrameStatus::complete) frame->status = FrameStatus::wrong_size;
+      frame->host_time_ns = arrived.host_time_ns;
+      const FramePlace place = sequence_.next({.number = frame_id_of(buffer.get()),
+                                               .device_time_ns = frame->device_time_ns,
+                                               .host_time_ns = frame->host_time_ns,
+                                               .may_pause = frame->host_time_ns < may_pause_until_ns_});
+      frame->sequence = place.sequence;
+      frame->numbering = place.numbering;
       frame->scale = scale_;
     }
     clear_frame_id(buffer.get());

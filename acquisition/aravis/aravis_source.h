@@ -1,6 +1,7 @@
 // One open camera as a FrameSource. Private to the Aravis back end.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <memory>
@@ -10,9 +11,9 @@
 
 #include "acquisition/aravis/aravis_backend.h"
 #include "acquisition/aravis/camera_setup.h"
-#include "acquisition/aravis/frame_id.h"
 #include "acquisition/aravis/glib_ptr.h"
 #include "acquisition/aravis/watched_camera.h"
+#include "acquisition/core/frame_sequence.h"
 #include "acquisition/core/frame_source.h"
 
 namespace todbench {
@@ -36,11 +37,17 @@ class AravisSource : public FrameSource {
  private:
   using Clock = std::chrono::steady_clock;
 
+  /// A buffer that came into the stream's output queue.
+  struct Arrival {
+    std::int64_t host_time_ns = 0;
+    bool oversized = false;  ///< bytes came for it that no buffer holds
+  };
+
   /// What Aravis's threads report. Shared with its callbacks, so that a late one never meets a destroyed source.
   struct Events {
     std::mutex mutex;
     std::condition_variable changed;
-    std::deque<std::int64_t> arrivals_ns;  ///< host time of every buffer in the stream's output queue, in order
+    std::deque<Arrival> arrivals;  ///< of every buffer in the stream's output queue, in order
     Clock::time_point last_sign_of_life;
     bool running = false;
     bool lost = false;
@@ -49,8 +56,15 @@ class AravisSource : public FrameSource {
     void mark_lost();
   };
 
+  /// What the callback of one stream knows; destroyed with the stream.
+  struct StreamTap {
+    std::shared_ptr<Events> events;
+    std::atomic<ArvStream*> stream = nullptr;
+    std::uint64_t ignored_bytes = 0;  ///< by the stream, when the present buffer was begun
+  };
+
   AravisSource(GObjectPtr<ArvCamera> camera, AravisOptions options, SourceInfo info, std::string device_address);
-  static void on_stream_event(void* events, ArvStreamCallbackType type, ArvBuffer* buffer);
+  static void on_stream_event(void* tap, ArvStreamCallbackType type, ArvBuffer* buffer);
 
   [[nodiscard]] Result<void> refresh();
   [[nodiscard]] Result<void> check_byte_order();
@@ -81,7 +95,8 @@ class AravisSource : public FrameSource {
   std::optional<double> stated_kelvin_per_count_, stated_offset_k_;
   StreamFormat format_;
   std::shared_ptr<const RadiometricScale> scale_;
-  FrameSequence sequence_{FrameIdKind::gvsp16};
+  FrameSequence sequence_{FrameNumberKind::gvsp16, 0};
+  std::int64_t may_pause_until_ns_ = 0;  ///< host time until which a commanded correction may interrupt the stream
 
   std::mutex control_;                 ///< one conversation with the camera at a time; taken before events_->mutex
   std::shared_ptr<ArvStream> stream_;  ///< guarded by events_->mutex; next() keeps it alive while it copies

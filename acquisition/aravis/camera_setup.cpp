@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "acquisition/aravis/genicam_features.h"
+#include "acquisition/aravis/object_parameters.h"
 
 namespace todbench {
 namespace {
@@ -56,14 +57,6 @@ constexpr std::array recorded_features{
     "DeviceTemperature",
     "SensorTemperature",
     "HousingTemperature",
-    "ObjectEmissivity",
-    "ReflectedTemperature",
-    "AtmosphericTemperature",
-    "ObjectDistance",
-    "RelativeHumidity",
-    "EstimatedTransmission",
-    "ExtOpticsTemperature",
-    "ExtOpticsTransmission",
     "R",
     "B",
     "F",
@@ -179,6 +172,7 @@ Result<StreamFormat> read_stream_format(ArvCamera* camera) {
   ArvDevice* device = arv_camera_get_device(camera);
   GErrorSlot error;
   StreamFormat format;
+  if (arv_camera_is_uv_device(camera) != 0) format.transport = AravisTransport::usb3_vision;
   gint x = 0;
   gint y = 0;
   arv_camera_get_region(camera, &x, &y, &format.width, &format.height, error.out());
@@ -234,7 +228,7 @@ RadiometricScale read_scale(ArvDevice* device, const CameraFamily& family) {
 double read_frame_rate(ArvCamera* camera, const CameraFamily& family) {
   ArvDevice* device = arv_camera_get_device(camera);
   for (const auto& feature : family.frame_rate) {
-    if (const auto rate = number(device, feature.c_str()); rate && *rate > 0) return *rate;
+    if (const auto rate = number(device, feature.c_str()); rate && std::isfinite(*rate) && *rate > 0) return *rate;
     // "PAL50HZ", "NTSC60HZ", "Rate50Hz": the number is the rate.
     const auto entry = get_feature(device, feature);
     if (!entry) continue;
@@ -246,10 +240,12 @@ double read_frame_rate(ArvCamera* camera, const CameraFamily& family) {
 
 std::map<std::string, std::string> read_settings(ArvDevice* device) {
   std::map<std::string, std::string> settings;
-  for (const char* feature : recorded_features) {
-    if (!has_feature(device, feature)) continue;
+  const auto read = [&](const char* feature) {
+    if (!has_feature(device, feature)) return;
     if (auto value = get_feature(device, feature)) settings[feature] = std::move(*value);
-  }
+  };
+  for (const char* feature : recorded_features) read(feature);
+  for (const char* feature : object_parameters()) read(feature);
   return settings;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "acquisition/aravis/aravis_backend.h"
 #include "acquisition/aravis/camera_families.h"
 #include "acquisition/aravis/glib_ptr.h"
 #include "acquisition/core/frame_source.h"
@@ -21,6 +22,7 @@ struct StreamFormat {
   int significant_bits = 16;
   std::size_t payload_bytes = 0;
   bool big_endian = false;  ///< pixels arrive with the high byte first
+  AravisTransport transport = AravisTransport::gige_vision;
 };
 
 /// The line of the table of families that this camera is.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "acquisition/aravis/image_layout.h"
+
 namespace todbench {
 namespace {
 
@@ -12,6 +14,9 @@ constexpr std::uint64_t no_frame_id = ~std::uint64_t{0};
 FrameStatus status_of(ArvBuffer* buffer, const StreamFormat& format) {
   switch (arv_buffer_get_status(buffer)) {
     case ARV_BUFFER_STATUS_SUCCESS: {
+      // Aravis calls a frame a success too whose leader it did not take: what is in the buffer's head is an older
+      // one's.
+      if (!frame_id_of(buffer)) return FrameStatus::incomplete;
       const auto type = arv_buffer_get_payload_type(buffer);
       // Chunks lie behind the image.
       const bool image = type == ARV_BUFFER_PAYLOAD_TYPE_IMAGE || type == ARV_BUFFER_PAYLOAD_TYPE_EXTENDED_CHUNK_DATA;
@@ -27,6 +32,13 @@ FrameStatus status_of(ArvBuffer* buffer, const StreamFormat& format) {
   }
 }
 
+ChunkLayout chunk_layout(ArvBuffer* buffer, const StreamFormat& format) {
+  const bool chunks = arv_buffer_has_chunks(buffer) != 0 ||
+                      arv_buffer_get_payload_type(buffer) == ARV_BUFFER_PAYLOAD_TYPE_EXTENDED_CHUNK_DATA;
+  if (!chunks) return ChunkLayout::none;
+  return format.transport == AravisTransport::usb3_vision ? ChunkLayout::little_endian : ChunkLayout::big_endian;
+}
+
 }  // namespace
 
 int buffer_count(double frame_rate_hz, std::size_t payload_bytes) {
@@ -35,9 +47,13 @@ int buffer_count(double frame_rate_hz, std::size_t payload_bytes) {
   return static_cast<int>(std::max(4.0, std::min({std::max(16.0, two_seconds), affordable, 512.0})));
 }
 
-GObjectPtr<ArvBuffer> new_frame_buffer(std::size_t payload_bytes) {
-  void* memory = std::calloc(1, payload_bytes);
-  GObjectPtr<ArvBuffer> buffer(arv_buffer_new_full(payload_bytes, memory, memory, std::free));
+std::size_t buffer_bytes(const StreamFormat& format) {
+  return format.payload_bytes + (format.transport == AravisTransport::gige_vision ? 1 : 0);
+}
+
+GObjectPtr<ArvBuffer> new_frame_buffer(std::size_t bytes) {
+  void* memory = std::calloc(1, bytes);
+  GObjectPtr<ArvBuffer> buffer(arv_buffer_new_full(bytes, memory, memory, std::free));
   clear_frame_id(buffer.get());
   return buffer;
 }
@@ -62,13 +78,24 @@ Frame frame_from_buffer(ArvBuffer* buffer, const StreamFormat& format) {
   frame.significant_bits = format.significant_bits;
   // Without leader the buffer still holds the time of an older frame.
   if (frame_id_of(buffer)) frame.device_time_ns = static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer));
+  StatedImage image{.format = format.pixel_format, .width = format.width, .height = format.height};
   std::size_t bytes = 0;
   const auto* data = static_cast<const std::uint8_t*>(arv_buffer_get_data(buffer, &bytes));
-  auto counts = decode_pixels({data, data != nullptr ? bytes : 0},
-                              {.format = format.pixel_format,
-                               .order = format.big_endian ? ByteOrder::big_endian : ByteOrder::little_endian,
-                               .width = format.width,
-                               .height = format.height});
+  std::optional<std::span<const std::uint8_t>> pixels = std::span(data, data != nullptr ? bytes : 0);
+  if (frame.status == FrameStatus::complete) {
+    arv_buffer_get_image_padding(buffer, &image.x_padding, &image.y_padding);
+    pixels = image_bytes(*pixels, image, chunk_layout(buffer, format));
+  }
+  if (!pixels) {
+    frame.status = FrameStatus::wrong_size;
+    frame.counts = cv::Mat1w::zeros(format.height, format.width);
+    return frame;
+  }
+  auto counts = decode_pixels(*pixels, {.format = format.pixel_format,
+                                        .order = format.big_endian ? ByteOrder::big_endian : ByteOrder::little_endian,
+                                        .width = format.width,
+                                        .height = format.height,
+                                        .row_bytes = row_bytes(image)});
   if (counts) {
     frame.counts = std::move(*counts);
     return frame;

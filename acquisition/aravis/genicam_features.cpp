@@ -6,6 +6,8 @@
 #include <optional>
 #include <set>
 
+#include "acquisition/aravis/description_guard.h"
+
 namespace todbench {
 namespace {
 
@@ -25,6 +27,9 @@ std::optional<Kind> kind_of(ArvGcNode* node) {
 Result<Kind> find(ArvDevice* device, const std::string& name) {
   const auto kind = kind_of(arv_device_get_feature(device, name.c_str()));
   if (!kind) return fail(ErrorCode::invalid_input, "the camera has no feature " + name);
+  if (const auto fault = feature_fault(device, name)) {
+    return fail(ErrorCode::invalid_input, "feature " + name + " is not used, because " + *fault);
+  }
   GErrorSlot error;
   const bool available = arv_device_is_feature_available(device, name.c_str(), error.out()) != 0;
   if (error) return error.failure(ErrorCode::invalid_input, "looking up " + name);
@@ -108,30 +113,36 @@ Result<void> set_boolean(ArvDevice* device, const std::string& name, const std::
   return {};
 }
 
-/// Adds the names of nodes of one kind below a category.
-void collect(ArvGc* genicam, const char* category, Kind wanted, std::set<std::string>& visited,
-             std::vector<std::string>& names) {
-  ArvGcNode* node = arv_gc_get_node(genicam, category);
-  if (node == nullptr || !visited.insert(category).second) return;
-  if (kind_of(node) == wanted) names.emplace_back(category);
-  if (!ARV_IS_GC_CATEGORY(node)) return;
-  for (const GSList* item = arv_gc_category_get_features(ARV_GC_CATEGORY(node)); item != nullptr; item = item->next) {
-    collect(genicam, static_cast<const char*>(item->data), wanted, visited, names);
+/// The names of the nodes of one kind below the root. Categories may be in each other as deep as a camera likes.
+std::vector<std::string> collect(ArvGc* genicam, Kind wanted) {
+  std::vector<std::string> names, open{"Root"};
+  std::set<std::string> visited;
+  while (!open.empty()) {
+    const std::string name = std::move(open.back());
+    open.pop_back();
+    ArvGcNode* node = arv_gc_get_node(genicam, name.c_str());
+    if (node == nullptr || !visited.insert(name).second) continue;
+    if (kind_of(node) == wanted) names.push_back(name);
+    if (!ARV_IS_GC_CATEGORY(node)) continue;
+    const auto members = static_cast<std::ptrdiff_t>(open.size());
+    for (const GSList* item = arv_gc_category_get_features(ARV_GC_CATEGORY(node)); item != nullptr; item = item->next) {
+      open.emplace_back(static_cast<const char*>(item->data));
+    }
+    // The first member is taken first.
+    std::reverse(open.begin() + members, open.end());
   }
+  return names;
 }
 
 std::vector<std::string> names_of(ArvDevice* device, Kind wanted) {
-  std::set<std::string> visited;
-  std::vector<std::string> names;
   ArvGc* genicam = arv_device_get_genicam(device);
-  if (genicam != nullptr) collect(genicam, "Root", wanted, visited, names);
-  return names;
+  return genicam != nullptr ? collect(genicam, wanted) : std::vector<std::string>();
 }
 
 }  // namespace
 
 bool has_feature(ArvDevice* device, const std::string& name) {
-  return kind_of(arv_device_get_feature(device, name.c_str())).has_value() &&
+  return kind_of(arv_device_get_feature(device, name.c_str())).has_value() && !feature_fault(device, name) &&
          arv_device_is_feature_available(device, name.c_str(), nullptr) != 0;
 }
 
@@ -198,7 +209,7 @@ Result<double> get_number(ArvDevice* device, const std::string& name) {
 
 std::vector<std::string> enumeration_entries(ArvDevice* device, const std::string& name) {
   ArvGcNode* node = arv_device_get_feature(device, name.c_str());
-  if (node == nullptr || !ARV_IS_GC_ENUMERATION(node)) return {};
+  if (node == nullptr || !ARV_IS_GC_ENUMERATION(node) || feature_fault(device, name)) return {};
   guint count = 0;
   const GPtr<const char*> names(
       arv_device_dup_available_enumeration_feature_values_as_strings(device, name.c_str(), &count, nullptr));

@@ -18,6 +18,11 @@ namespace {
 constexpr std::uint16_t read_register_command = 0x0080;
 constexpr std::uint16_t read_memory_command = 0x0084;
 constexpr auto repeat_after = std::chrono::milliseconds(50);
+/// Most bytes of one READMEM that every device answers, how long an answer may take, and when it is asked again: a slow
+/// device answers every repetition, each as slowly.
+constexpr std::uint32_t block_bytes = 512;
+constexpr auto block_patience = std::chrono::milliseconds(2000);
+constexpr auto repeat_block_after = std::chrono::milliseconds(250);
 
 class UdpSocket {
  public:
@@ -56,9 +61,9 @@ std::uint32_t big_endian_32(const std::uint8_t* bytes) {
   return std::uint32_t{bytes[0]} << 24 | std::uint32_t{bytes[1]} << 16 | std::uint32_t{bytes[2]} << 8 | bytes[3];
 }
 
-/// Sends a request every 50 ms until its acknowledge comes; the payload of that.
+/// Sends a request again and again until its acknowledge comes; the payload of that.
 Result<Bytes> exchange(const std::string& ipv4, std::uint16_t command, const Bytes& payload,
-                       std::chrono::milliseconds patience) {
+                       std::chrono::milliseconds patience, std::chrono::milliseconds repeat = repeat_after) {
   using Clock = std::chrono::steady_clock;
   sockaddr_in device{};
   device.sin_family = AF_INET;
@@ -75,7 +80,7 @@ Result<Bytes> exchange(const std::string& ipv4, std::uint16_t command, const Byt
     const auto request = request_of(command, request_id, payload);
     // A refused send (nobody listens yet) is no different from a lost one: wait and repeat.
     [[maybe_unused]] const auto sent = ::send(socket.fd(), request.data(), request.size(), 0);
-    const auto repeat_at = std::min(deadline, Clock::now() + repeat_after);
+    const auto repeat_at = std::min(deadline, Clock::now() + repeat);
     for (;;) {
       const auto left = std::chrono::ceil<std::chrono::milliseconds>(repeat_at - Clock::now());
       pollfd readable{socket.fd(), POLLIN, 0};
@@ -118,6 +123,37 @@ Result<std::string> gvcp_read_text(const std::string& ipv4, std::uint32_t addres
   if (answer->size() < 4) return fail(ErrorCode::not_found, ipv4 + " answers with too few bytes");
   const auto end = std::find(answer->begin() + 4, answer->end(), std::uint8_t{0});
   return std::string(answer->begin() + 4, end);
+}
+
+Result<std::string> gvcp_read_memory(const std::string& ipv4, std::uint32_t address, std::uint32_t bytes,
+                                     const GvcpReading& reading) {
+  using Clock = std::chrono::steady_clock;
+  const auto deadline = Clock::now() + reading.patience;
+  std::string content;
+  content.reserve(bytes);
+  while (content.size() < bytes) {
+    if (reading.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+    if (Clock::now() >= deadline) {
+      return fail(ErrorCode::not_found, ipv4 + " has sent " + std::to_string(content.size()) + " of " +
+                                            std::to_string(bytes) + " bytes in " +
+                                            std::to_string(reading.patience.count() / 1000) + " s");
+    }
+    const auto at = static_cast<std::uint32_t>(content.size());
+    // Whole words are read.
+    const std::uint32_t wanted = std::min(block_bytes, (bytes - at + 3) / 4 * 4);
+    Bytes payload;
+    append(payload, address + at, 4);
+    append(payload, wanted, 4);
+    const auto answer = exchange(ipv4, read_memory_command, payload, block_patience, repeat_block_after);
+    if (!answer) return tl::unexpected(answer.error());
+    if (answer->size() != 4 + wanted || big_endian_32(answer->data()) != address + at) {
+      return fail(ErrorCode::not_found, ipv4 + " answers with other bytes than were asked for");
+    }
+    content.append(answer->begin() + 4, answer->end());
+    if (reading.on_bytes) reading.on_bytes(std::min<std::uint64_t>(content.size(), bytes));
+  }
+  content.resize(bytes);
+  return content;
 }
 
 }  // namespace todbench

@@ -4,6 +4,8 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
+#include <stop_token>
 #include <string>
 
 #include "acquisition/aravis/gev_registers.h"
@@ -28,5 +30,17 @@ inline constexpr std::uint32_t gvcp_control_privilege_register = gev::control_pr
 /// Reads the text in at most `bytes` (a multiple of 4, up to 536) bytes of the device's memory, in the same way.
 [[nodiscard]] Result<std::string> gvcp_read_text(const std::string& ipv4, std::uint32_t address, std::uint16_t bytes,
                                                  std::chrono::milliseconds patience);
+
+/// How a long reading may go on.
+struct GvcpReading {
+  std::chrono::milliseconds patience{30'000};  ///< for the whole
+  std::stop_token stop = {};
+  std::function<void(std::uint64_t bytes)> on_bytes = {};  ///< read so far; in between, on the calling thread
+};
+
+/// Reads `bytes` of the device's memory, from an address that is a multiple of 4, 512 at a time. Errors: as above;
+/// `not_found` also where patience has ended, with how far it came; `interrupted`.
+[[nodiscard]] Result<std::string> gvcp_read_memory(const std::string& ipv4, std::uint32_t address, std::uint32_t bytes,
+                                                   const GvcpReading& reading);
 
 }  // namespace todbench

@@ -14,6 +14,18 @@ std::string_view to_string(FrameStatus status) {
   return "unknown";
 }
 
+std::string_view to_string(Numbering numbering) {
+  switch (numbering) {
+    case Numbering::counted:
+      return "counted";
+    case Numbering::restarted:
+      return "restarted";
+    case Numbering::timed:
+      return "timed";
+  }
+  return "unknown";
+}
+
 Result<cv::Mat1d> to_kelvin(const Frame& frame) {
   cv::Mat1d kelvin(frame.counts.size());
   if (const LinearScale* line = frame.scale->straight_line()) {

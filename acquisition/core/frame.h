@@ -26,6 +26,15 @@ enum class CorrectionState {
   running,  ///< imminent, or the shutter is closed
 };
 
+/// How the sequence of a frame came about.
+enum class Numbering : std::uint8_t {
+  counted,    ///< by the numbers of the camera or its driver, which fit the time that passed
+  restarted,  ///< the numbers began anew or jumped against all clocks; what is missing is estimated from time
+  timed,      ///< the numbers go on, the time does not: what is missing is estimated from time
+};
+
+[[nodiscard]] std::string_view to_string(Numbering numbering);
+
 /// One exposed image. Immutable once handed out: pixels are shared, copying is cheap, any thread may read.
 struct Frame {
   cv::Mat1w counts;            ///< as the camera sent them, row by row from the top
@@ -34,6 +43,7 @@ struct Frame {
       0;  ///< the camera's own clock (start of transfer where the camera does not say more); 0: none
   std::int64_t host_time_ns = 0;  ///< CLOCK_MONOTONIC when the complete frame reached the program
   FrameStatus status = FrameStatus::complete;
+  Numbering numbering = Numbering::counted;
   CorrectionState correction = CorrectionState::unknown;  ///< while this frame was exposed
   double since_correction_s = -1;                         ///< as the camera says; negative: it does not
   int significant_bits = 16;                              ///< full scale is 2^significant_bits - 1 counts

@@ -60,15 +60,28 @@ std::string_view to_string(Rejection reason) {
   return "unknown";
 }
 
+std::string describe(const NumberingFaults& faults) {
+  if (faults == NumberingFaults()) return {};
+  std::string text = "The numbers of the camera's frames do not fit the time that passed: they began anew " +
+                     std::to_string(faults.restarts) + " times and went on over a pause " +
+                     std::to_string(faults.silent_gaps) + " times; " + std::to_string(faults.estimated_lost) +
+                     " of the lost frames are estimated from time.";
+  return text;
+}
+
 IntegrityGate::IntegrityGate(IntegrityOptions options) : options_(options) {}
 
 std::optional<Rejection> IntegrityGate::judge_sequence(const Frame& frame) {
   const auto last = last_sequence_;
+  numbering_.restarts += frame.numbering == Numbering::restarted ? 1 : 0;
+  numbering_.silent_gaps += frame.numbering == Numbering::timed ? 1 : 0;
   if (last && frame.sequence == *last) return Rejection::repeated;
   if (last && frame.sequence < *last) return Rejection::out_of_order;
   last_sequence_ = frame.sequence;
   if (!last || frame.sequence == *last + 1) return std::nullopt;
-  lost_ += frame.sequence - *last - 1;
+  const std::uint64_t missing = frame.sequence - *last - 1;
+  lost_ += missing;
+  if (frame.numbering != Numbering::counted) numbering_.estimated_lost += missing;
   return Rejection::gapped;
 }
 

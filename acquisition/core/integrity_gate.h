@@ -31,6 +31,17 @@ inline constexpr Rejection all_rejections[] = {
 
 [[nodiscard]] std::string_view to_string(Rejection reason);
 
+/// What was wrong with the numbers of the frames themselves.
+struct NumberingFaults {
+  std::uint64_t restarts = 0;        ///< Numbering::restarted
+  std::uint64_t silent_gaps = 0;     ///< Numbering::timed
+  std::uint64_t estimated_lost = 0;  ///< exposures missing at both, of those in lost()
+  bool operator==(const NumberingFaults&) const = default;
+};
+
+/// One sentence about them; empty where there were none.
+[[nodiscard]] std::string describe(const NumberingFaults& faults);
+
 struct IntegrityOptions {
   int width = 0, height = 0;          ///< expected geometry; 0: not checked
   double max_saturated_share = 0.01;  ///< of all pixels
@@ -54,6 +65,8 @@ class IntegrityGate {
   [[nodiscard]] const std::map<Rejection, std::uint64_t>& rejected_by_reason() const { return rejected_; }
   /// Exposures that never arrived: gaps in the sequence, summed.
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
+  /// How often the numbers of the camera did not fit the time that passed, and what of lost() is estimated from time.
+  [[nodiscard]] const NumberingFaults& numbering() const { return numbering_; }
 
  private:
   /// What is wrong with the order of arrival; moves the expected sequence on.
@@ -66,6 +79,7 @@ class IntegrityGate {
   std::deque<cv::Mat1w> recent_;  ///< pixels of the last complete frames, the newest first
   std::uint64_t accepted_ = 0;
   std::uint64_t lost_ = 0;
+  NumberingFaults numbering_;
   std::map<Rejection, std::uint64_t> rejected_;
 };
 

@@ -43,7 +43,7 @@ struct FrameHead {
   std::int64_t host_time_ns = 0;
   double since_correction_s = -1;
   std::uint16_t width = 0, height = 0;
-  std::uint8_t status = 0, correction = 0, significant_bits = 16, zero = 0;
+  std::uint8_t status = 0, correction = 0, significant_bits = 16, numbering = 0;
 };
 static_assert(sizeof(FrameHead) == 40);
 
@@ -105,7 +105,7 @@ struct FramePlace {
 
 bool plausible(const FrameHead& head, std::uint32_t payload_bytes) {
   return payload_bytes == sizeof(FrameHead) + std::size_t{2} * head.width * head.height && head.status <= 2 &&
-         head.correction <= 2 && head.significant_bits >= 1 && head.significant_bits <= 16;
+         head.correction <= 2 && head.numbering <= 2 && head.significant_bits >= 1 && head.significant_bits <= 16;
 }
 
 Result<RecordedFrame> read_frame(const File& file, const FramePlace& place) {
@@ -135,6 +135,7 @@ Result<RecordedFrame> read_frame(const File& file, const FramePlace& place) {
   frame.correction = static_cast<CorrectionState>(head.correction);
   frame.significant_bits = head.significant_bits;
   frame.status = static_cast<FrameStatus>(head.status);
+  frame.numbering = static_cast<Numbering>(head.numbering);
   return frame;
 }
 
@@ -214,72 +215,35 @@ class StreamIndex {
 
 }  // namespace
 
-Result<FrameStreamWriter> FrameStreamWriter::create(const std::filesystem::path& file, const StreamHeader& header) {
-  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (descriptor < 0) return fail(ErrorCode::io, file.string() + ": cannot be created: " + reason());
-  FrameStreamWriter writer(file, descriptor);
-  if (auto written = writer.write_all(magic, magic_bytes); !written) return tl::unexpected(written.error());
+Result<FrameStreamWriter> FrameStreamWriter::create(const std::filesystem::path& path, const StreamHeader& header) {
+  auto file = WrittenFile::create(path);
+  if (!file) return tl::unexpected(file.error());
+  FrameStreamWriter writer(*std::move(file));
+  if (auto written = writer.file_.append(magic, magic_bytes); !written) return tl::unexpected(written.error());
   const std::string text = stream_header_text(header);
   if (auto written = writer.write_record("HEAD", text.data(), text.size(), nullptr, 0); !written)
     return tl::unexpected(written.error());
   return writer;
 }
 
-FrameStreamWriter::FrameStreamWriter(FrameStreamWriter&& other) noexcept
-    : path_(std::move(other.path_)),
-      descriptor_(std::exchange(other.descriptor_, -1)),
-      frames_(other.frames_),
-      bytes_(other.bytes_),
-      broken_(other.broken_),
-      appending_(std::move(other.appending_)) {}
-
-FrameStreamWriter& FrameStreamWriter::operator=(FrameStreamWriter&& other) noexcept {
-  std::swap(path_, other.path_);
-  std::swap(descriptor_, other.descriptor_);
-  std::swap(frames_, other.frames_);
-  std::swap(bytes_, other.bytes_);
-  std::swap(broken_, other.broken_);
-  std::swap(appending_, other.appending_);
-  return *this;
-}
-
-FrameStreamWriter::~FrameStreamWriter() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-Result<void> FrameStreamWriter::write_all(const void* data, std::size_t bytes) {
-  const auto* at = static_cast<const char*>(data);
-  while (bytes > 0) {
-    const ssize_t done = ::write(descriptor_, at, bytes);
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) return fail(ErrorCode::io, path_.string() + ": " + (done < 0 ? reason() : "the disk is full"));
-    at += done;
-    bytes -= static_cast<std::size_t>(done);
-    bytes_ += static_cast<std::uint64_t>(done);
-  }
-  return {};
-}
-
 Result<void> FrameStreamWriter::write_record(const char (&kind)[5], const void* head, std::size_t head_bytes,
                                              const void* body, std::size_t body_bytes) {
   const std::lock_guard lock(*appending_);
-  if (broken_) return fail(ErrorCode::io, path_.string() + ": ended where the disk refused to go on");
+  if (refused_) return tl::unexpected(*refused_);
   RecordHead record;
   std::memcpy(record.kind.data(), kind, 4);
   record.payload_bytes = static_cast<std::uint32_t>(head_bytes + body_bytes);
   record.head_crc = crc_of(record);
   record.payload_crc = crc_of(head, head_bytes);
   if (body_bytes > 0) record.payload_crc = crc_of(body, body_bytes, record.payload_crc);
-  const std::uint64_t before = bytes_;
-  Result<void> written = write_all(&record, sizeof record);
-  if (written) written = write_all(head, head_bytes);
-  if (written && body_bytes > 0) written = write_all(body, body_bytes);
+  const std::uint64_t before = bytes();
+  Result<void> written = file_.check_present();
+  if (written) written = file_.append(&record, sizeof record);
+  if (written) written = file_.append(head, head_bytes);
+  if (written && body_bytes > 0) written = file_.append(body, body_bytes);
   if (written) return {};
-  broken_ = true;
-  if (::ftruncate(descriptor_, static_cast<off_t>(before)) == 0 &&
-      ::lseek(descriptor_, static_cast<off_t>(before), SEEK_SET) >= 0) {
-    bytes_ = before;
-  }
+  refused_ = written.error();
+  file_.cut(before);
   return written;
 }
 
@@ -299,6 +263,7 @@ Result<void> FrameStreamWriter::append(const Frame& frame) {
   head.status = static_cast<std::uint8_t>(frame.status);
   head.correction = static_cast<std::uint8_t>(frame.correction);
   head.significant_bits = static_cast<std::uint8_t>(frame.significant_bits);
+  head.numbering = static_cast<std::uint8_t>(frame.numbering);
   const cv::Mat1w pixels = frame.counts.isContinuous() ? frame.counts : cv::Mat1w(frame.counts.clone());
   auto written = write_record("FRAM", &head, sizeof head, pixels.data, pixel_bytes);
   const std::lock_guard lock(*appending_);
@@ -321,8 +286,19 @@ Result<void> FrameStreamWriter::append_reading(const Reading& reading) {
 }
 
 Result<void> FrameStreamWriter::sync() {
-  if (::fdatasync(descriptor_) != 0) return fail(ErrorCode::io, path_.string() + ": " + reason());
-  return {};
+  const std::lock_guard lock(*appending_);
+  return file_.sync();
+}
+
+Result<std::uint64_t> FrameStreamWriter::verified_frames() {
+  if (auto synced = sync(); !synced) return tl::unexpected(synced.error());
+  const auto again = open_frame_stream(path());
+  if (!again) return fail("reading it again", with_code(ErrorCode::io, again.error()));
+  if (again->recording.frame_count != frames_ || again->torn_bytes > 0) {
+    return fail(ErrorCode::io, path().string() + ": holds " + std::to_string(again->recording.frame_count) +
+                                   " frames, and " + std::to_string(frames_) + " were written");
+  }
+  return frames_;
 }
 
 bool is_frame_stream(const std::filesystem::path& path) {

@@ -6,12 +6,14 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "acquisition/core/frame_source.h"
 #include "acquisition/recording/recorded_source.h"
+#include "acquisition/recording/written_file.h"
 
 namespace todbench {
 
@@ -33,14 +35,13 @@ struct Reading {
 /// Appends to a recording. Every record is handed to the system whole, with checksums, before the call returns: a crash
 /// of the program loses nothing, one of the machine at most what the system had not written yet. Move-only; several
 /// threads may append, each record is whole. Errors: `io` with the path; what a full disk cut off is taken back, and
-/// nothing is appended any more: a recording has no holes.
+/// nothing is appended any more: a recording has no holes. Nothing is appended to a file that was deleted either.
 class FrameStreamWriter {
  public:
   /// Creates the file or empties it.
   [[nodiscard]] static Result<FrameStreamWriter> create(const std::filesystem::path& file, const StreamHeader& header);
-  FrameStreamWriter(FrameStreamWriter&& other) noexcept;
-  FrameStreamWriter& operator=(FrameStreamWriter&& other) noexcept;
-  ~FrameStreamWriter();
+  FrameStreamWriter(FrameStreamWriter&&) noexcept = default;
+  FrameStreamWriter& operator=(FrameStreamWriter&&) noexcept = default;
 
   /// A frame as it came, whatever its status; `invalid_input` for one of more than 2^29 pixels.
   [[nodiscard]] Result<void> append(const Frame& frame);
@@ -49,24 +50,23 @@ class FrameStreamWriter {
   /// What the measuring program was told between two frames; `invalid_input` for a tag that is empty or has a space, or
   /// more than 64 KiB.
   [[nodiscard]] Result<void> append_reading(const Reading& reading);
-  /// Waits until everything is on the disk.
+  /// Waits until everything is on the disk, and fails unless it is where it was created.
   [[nodiscard]] Result<void> sync();
+  /// sync(), and opens the file again: what a reader finds in it. Fails unless that is what was appended.
+  [[nodiscard]] Result<std::uint64_t> verified_frames();
 
   [[nodiscard]] std::uint64_t frames() const { return frames_; }
-  [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] std::uint64_t bytes() const { return file_.bytes(); }
+  [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
 
  private:
-  FrameStreamWriter(std::filesystem::path path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {}
+  explicit FrameStreamWriter(WrittenFile file) : file_(std::move(file)) {}
   [[nodiscard]] Result<void> write_record(const char (&kind)[5], const void* head, std::size_t head_bytes,
                                           const void* body, std::size_t body_bytes);
-  [[nodiscard]] Result<void> write_all(const void* data, std::size_t bytes);
 
-  std::filesystem::path path_;
-  int descriptor_ = -1;
+  WrittenFile file_;
   std::uint64_t frames_ = 0;
-  std::uint64_t bytes_ = 0;
-  bool broken_ = false;                                                     ///< a record was refused by the disk
+  std::optional<Error> refused_;                                            ///< why nothing is appended any more
   std::unique_ptr<std::mutex> appending_ = std::make_unique<std::mutex>();  ///< guards all of it
 };
 

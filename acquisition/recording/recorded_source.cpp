@@ -75,6 +75,7 @@ class RecordedSource : public FrameSource {
     ++position_;
     result.device_time_ns = recorded.device_time_ns;
     result.host_time_ns = playback_ == Playback::replay ? recorded.host_time_ns : monotonic_ns();
+    result.numbering = recorded.numbering;
     result.correction = recorded.correction;
     result.since_correction_s = recorded.since_correction_s;
     result.significant_bits = recorded.significant_bits.value_or(recording_.info.significant_bits);

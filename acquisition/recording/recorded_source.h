@@ -18,6 +18,7 @@ struct RecordedFrame {
   std::optional<std::uint64_t> sequence;  ///< nothing: one more than the frame before
   std::int64_t host_time_ns = 0;          ///< of the host that recorded it; 0: not stated
   FrameStatus status = FrameStatus::complete;
+  Numbering numbering = Numbering::counted;
   CorrectionState correction = CorrectionState::unknown;
   double since_correction_s = -1;
   std::optional<int> significant_bits;  ///< nothing: those of the recording

@@ -49,6 +49,8 @@ Result<RawRecordingFormat> raw_format(std::map<std::string, double> values) {
   format.height = whole("height", 0);
   format.significant_bits = whole("bits", 16);
   format.frame_rate_hz = take("frame_rate_hz", 0);
+  if (!std::isfinite(format.frame_rate_hz) || format.frame_rate_hz < 0)
+    return fail(ErrorCode::invalid_input, "frame_rate_hz must be 0 or more");
   const bool calibrated = values.contains("kelvin_per_count");
   const double kelvin_per_count = take("kelvin_per_count", 0);
   const double offset_k = take("offset_k", 0);

@@ -1,5 +1,6 @@
 #include "acquisition/recording/stream_header.h"
 
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -23,6 +24,12 @@ Json scale_json(const RadiometricScale& scale) {
     return {{"kind", "planck"}, {"r", planck->r}, {"b", planck->b}, {"f", planck->f}, {"o", planck->o}};
   }
   return {{"kind", "uncalibrated"}};
+}
+
+/// A rate that a number can be; 0, which is unknown, of what a camera states against all reason. JSON has no number for
+/// the others.
+double known_rate(double frame_rate_hz) {
+  return std::isfinite(frame_rate_hz) && frame_rate_hz > 0 ? frame_rate_hz : 0;
 }
 
 /// Reads keys of one object and remembers the first that is missing or of the wrong kind.
@@ -132,7 +139,7 @@ std::string stream_header_text(const StreamHeader& header) {
               {"height", info.height},
               {"pixel_format", info.pixel_format},
               {"significant_bits", info.significant_bits},
-              {"frame_rate_hz", info.frame_rate_hz},
+              {"frame_rate_hz", known_rate(info.frame_rate_hz)},
               {"scale", scale_json(info.scale)},
               {"settings", Json::object()},
               {"warnings", info.warnings}}},
@@ -167,7 +174,9 @@ Result<StreamHeader> parse_stream_header(std::string_view text) {
   info.height = static_cast<int>(of_camera.whole("height", 1, 65535));
   info.pixel_format = of_camera.text("pixel_format");
   info.significant_bits = static_cast<int>(of_camera.whole("significant_bits", 1, 16));
-  info.frame_rate_hz = of_camera.number("frame_rate_hz");
+  const Json* rate = of_camera.find("frame_rate_hz");
+  if (rate == nullptr || (!rate->is_number() && !rate->is_null())) of_camera.refuse("frame_rate_hz");
+  if (rate != nullptr && rate->is_number()) info.frame_rate_hz = known_rate(rate->get<double>());
   info.settings = of_camera.table("settings");
   info.warnings = of_camera.texts("warnings");
   const Json* scale = of_camera.find("scale");

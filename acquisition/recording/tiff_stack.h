@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 
 #include "acquisition/recording/recorded_source.h"
 
@@ -20,25 +19,5 @@ struct TiffFormat {
 /// BigTIFF. Pages are read when they are asked for. Errors: `io`, `invalid_input` (not a TIFF, another kind of picture,
 /// pages of different size, no page).
 [[nodiscard]] Result<Recording> open_tiff_stack(const std::filesystem::path& path, const TiffFormat& format);
-
-/// Writes pages one after another, uncompressed, little-endian, BigTIFF (there is no limit of 4 GiB). Move-only, one
-/// thread at a time. Errors: `io` with the path.
-class TiffWriter {
- public:
-  [[nodiscard]] static Result<TiffWriter> create(const std::filesystem::path& file);
-  TiffWriter(TiffWriter&&) noexcept;
-  TiffWriter& operator=(TiffWriter&&) noexcept;
-  ~TiffWriter();
-
-  /// One page; `invalid_input` for an empty picture.
-  [[nodiscard]] Result<void> append(const cv::Mat1w& counts);
-  /// Writes what is left and closes. Nothing may be appended after it.
-  [[nodiscard]] Result<void> finish();
-
- private:
-  struct State;
-  explicit TiffWriter(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
-};
 
 }  // namespace todbench

@@ -1,5 +1,8 @@
 #include "acquisition/usb/seek_source.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "acquisition/core/control_text.h"
 #include "acquisition/core/host_clock.h"
 
@@ -13,6 +16,10 @@ constexpr int initialisation_attempts = 3;
 /// Frames until the shutter's; a camera sends it among the first ten.
 constexpr int most_calibration_frames = 40;
 constexpr auto calibration_frame_timeout = 900ms;
+/// However slowly its bytes come; at 7 Hz a frame is there after 0.15 s, and the shutter takes half a second.
+constexpr auto calibration_frame_patience = 2s;
+/// All attempts together; a camera needs two seconds.
+constexpr auto calibration_patience = 20s;
 /// Eight seconds of the fastest camera, 23 MiB.
 constexpr std::size_t frames_kept = 128;
 
@@ -72,12 +79,17 @@ Result<void> SeekSource::initialise() {
   return {};
 }
 
-Result<SeekFrame> SeekSource::read_frame() {
+Result<SeekFrame> SeekSource::read_frame(std::chrono::steady_clock::time_point latest) {
+  const auto deadline = std::min(latest, std::chrono::steady_clock::now() + calibration_frame_patience);
   const auto requested = connection_.control(seek_frame_request(model_));
   if (!requested) return tl::unexpected(requested.error());
   std::vector<std::uint8_t> bytes;
   const std::size_t wanted = geometry(model_).frame_bytes();
   while (bytes.size() < wanted) {
+    if (!running_) return fail(ErrorCode::interrupted, "stopped");
+    if (std::chrono::steady_clock::now() > deadline) {
+      return fail(ErrorCode::io, "its first frames do not come in time");
+    }
     const auto more = connection_.bulk_in(wanted - bytes.size(), calibration_frame_timeout);
     if (!more) return tl::unexpected(more.error());
     if (more->empty()) break;
@@ -86,9 +98,9 @@ Result<SeekFrame> SeekSource::read_frame() {
   return parse_seek_frame(bytes, model_);
 }
 
-Result<void> SeekSource::read_calibration_frames() {
+Result<void> SeekSource::read_calibration_frames(std::chrono::steady_clock::time_point deadline) {
   shutter_.release();
-  const auto first = read_frame();
+  const auto first = read_frame(deadline);
   if (!first) return tl::unexpected(first.error());
   if (!first->is(SeekFrameKind::calibration)) {
     return fail(ErrorCode::io, "the first frame is of kind " + std::to_string(first->kind) + ", not 4");
@@ -96,7 +108,7 @@ Result<void> SeekSource::read_calibration_frames() {
   dead_ = SeekDeadPixels(first->picture);
   info_.settings["DeadPixels"] = std::to_string(dead_.count());
   for (int k = 0; k < most_calibration_frames && running_; ++k) {
-    const auto frame = read_frame();
+    const auto frame = read_frame(deadline);
     if (!frame) return tl::unexpected(frame.error());
     if (!frame->is(SeekFrameKind::shutter)) continue;
     shutter_ = frame->picture;
@@ -108,10 +120,12 @@ Result<void> SeekSource::read_calibration_frames() {
 }
 
 Result<void> SeekSource::calibrate() {
+  const auto deadline = std::chrono::steady_clock::now() + calibration_patience;
   Result<void> done;
   for (int attempt = 0; attempt < initialisation_attempts; ++attempt) {
     done = initialise();
-    if (done) done = read_calibration_frames();
+    if (done) done = read_calibration_frames(deadline);
+    if (std::chrono::steady_clock::now() > deadline) break;
     if (done || done.error().code == ErrorCode::disconnected || done.error().code == ErrorCode::interrupted) break;
   }
   return done;
@@ -123,8 +137,9 @@ Result<void> SeekSource::start() {
   if (stream_ && running_) return {};
   stream_.reset();
   running_ = true;
-  last_counter_.reset();
-  sequence_ = 0;
+  pictures_begun_ = false;
+  sequence_ = FrameSequence(FrameNumberKind::wrap16, 0);
+  corrected_last_ = false;
   if (auto calibrated = calibrate(); !calibrated) {
     running_ = false;
     return failed(calibrated.error());
@@ -158,15 +173,14 @@ Frame SeekSource::frame_of(const SeekArrival& arrival) {
   frame.significant_bits = info_.significant_bits;
   frame.scale = scale_;
   const auto parsed = parse_seek_frame(arrival.bytes, model_);
-  const auto counter = seek_counter(arrival.bytes, model_);
-  if (last_counter_) {
-    // Of a frame without a header nothing better is known than that it is one.
-    sequence_ += counter ? static_cast<std::uint16_t>(*counter - *last_counter_) : 1U;
-    last_counter_ = counter.value_or(static_cast<std::uint16_t>(*last_counter_ + 1));
-  } else {
-    last_counter_ = counter;
-  }
-  frame.sequence = sequence_;
+  pictures_begun_ = true;
+  const bool corrects = parsed && !parsed->is(SeekFrameKind::image);
+  const FramePlace place = sequence_.next({.number = seek_counter(arrival.bytes, model_),
+                                           .device_time_ns = 0,
+                                           .host_time_ns = arrival.host_time_ns,
+                                           .may_pause = std::exchange(corrected_last_, corrects) || corrects});
+  frame.sequence = place.sequence;
+  frame.numbering = place.numbering;
   if (!parsed) {
     frame.status = FrameStatus::incomplete;
     frame.counts = cv::Mat1w::zeros(info_.height, info_.width);
@@ -176,7 +190,7 @@ Frame SeekSource::frame_of(const SeekArrival& arrival) {
     shutter_ = parsed->picture;
     shutter_time_ns_ = arrival.host_time_ns;
   }
-  frame.correction = parsed->is(SeekFrameKind::image) ? CorrectionState::idle : CorrectionState::running;
+  frame.correction = corrects ? CorrectionState::running : CorrectionState::idle;
   frame.since_correction_s = static_cast<double>(arrival.host_time_ns - shutter_time_ns_) * 1e-9;
   frame.counts = corrected_seek_picture(parsed->picture, shutter_, dead_);
   return frame;
@@ -196,8 +210,8 @@ Result<Frame> SeekSource::next(std::chrono::milliseconds timeout) {
     const auto arrival = stream->next(std::max(left, 0ms));
     if (!arrival) return failed(arrival.error());
     // Calibration goes on for some frames after the first shutter picture: the sequence begins with the first image.
-    const auto parsed = last_counter_ ? Result<SeekFrame>() : parse_seek_frame(arrival->bytes, model_);
-    if (!last_counter_ && (!parsed || !parsed->is(SeekFrameKind::image))) {
+    const auto parsed = pictures_begun_ ? Result<SeekFrame>() : parse_seek_frame(arrival->bytes, model_);
+    if (!pictures_begun_ && (!parsed || !parsed->is(SeekFrameKind::image))) {
       if (parsed && parsed->is(SeekFrameKind::shutter)) {
         shutter_ = parsed->picture;
         shutter_time_ns_ = arrival->host_time_ns;

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 
+#include "acquisition/core/frame_sequence.h"
 #include "acquisition/core/frame_source.h"
 #include "acquisition/usb/seek_stream.h"
 #include "acquisition/usb/usb_connection.h"
@@ -33,8 +34,9 @@ class SeekSource final : public FrameSource {
   [[nodiscard]] Result<void> calibrate();
   [[nodiscard]] Result<void> initialise();
   /// The calibration frame, the frames after it up to the shutter's, and the shutter's.
-  [[nodiscard]] Result<void> read_calibration_frames();
-  [[nodiscard]] Result<SeekFrame> read_frame();
+  [[nodiscard]] Result<void> read_calibration_frames(std::chrono::steady_clock::time_point deadline);
+  /// In two seconds and by `latest`, however slowly its bytes come.
+  [[nodiscard]] Result<SeekFrame> read_frame(std::chrono::steady_clock::time_point latest);
   [[nodiscard]] Frame frame_of(const SeekArrival& arrival);
   void sleep();
   void update_scale();
@@ -51,8 +53,9 @@ class SeekSource final : public FrameSource {
   SeekDeadPixels dead_;
   cv::Mat1w shutter_;
   std::int64_t shutter_time_ns_ = 0;
-  std::optional<std::uint16_t> last_counter_;
-  std::uint64_t sequence_ = 0;
+  bool pictures_begun_ = false;  ///< the first image has come, from which frames are counted
+  FrameSequence sequence_{FrameNumberKind::wrap16, 0};
+  bool corrected_last_ = false;  ///< the frame before was one of a correction
 
   std::atomic<bool> running_{false};
   std::atomic<bool> lost_{false};

@@ -69,6 +69,12 @@ class UsbBackend final : public CameraBackend {
     auto seen = search(context->get());
     if (!seen) return tl::unexpected(seen.error());
     std::string names;
+    const auto namesakes =
+        std::count_if(seen->found.begin(), seen->found.end(), [&id](const Found& camera) { return camera.id == id; });
+    if (namesakes > 1) {
+      return fail(ErrorCode::not_found, std::to_string(namesakes) + " cameras call themselves " + id +
+                                            "; unplug the others: they cannot be told apart");
+    }
     for (auto& camera : seen->found) {
       if (camera.id != id) {
         names += (names.empty() ? "" : ", ") + camera.id;

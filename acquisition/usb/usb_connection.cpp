@@ -1,6 +1,7 @@
 #include "acquisition/usb/usb_connection.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <array>
 
 namespace todbench {
@@ -111,6 +112,12 @@ Result<std::string> UsbConnection::serial_number() {
   }
   const auto chip = control({SeekRequest::read_chip_id, std::vector<std::uint8_t>(12)});
   if (!chip) return fail("reading the chip's number", chip.error());
+  // A chip that was never given one: every other such chip has the same.
+  const auto blank = [&chip](std::uint8_t value) {
+    return std::all_of(chip->begin(), chip->end(), [value](std::uint8_t byte) { return byte == value; });
+  };
+  if (blank(0x00) || blank(0xFF))
+    return fail(ErrorCode::not_found, "the camera has neither a serial nor a chip's number");
   return hexadecimal(*chip);
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "acquisition/core/control_text.h"
 #include "acquisition/core/host_clock.h"
@@ -17,6 +18,8 @@ namespace {
 constexpr std::chrono::milliseconds longest_nap{250};
 /// A Lepton that corrects itself at the start of a stream is silent for up to 3 s.
 constexpr std::chrono::seconds patience_with_first_frame{5};
+/// A correction that interrupts the stream is over by then.
+constexpr std::int64_t longest_correction_ns = 5'000'000'000;
 /// Frames between the receiving thread and the reader: 5 s of a 50 Hz camera, 37 MiB of 320 x 240.
 constexpr std::size_t most_arrivals = 256;
 
@@ -116,7 +119,8 @@ Result<void> V4l2Source::start() {
   }
   std::uint64_t stale = 0;
   static_cast<void>(!::read(wake_.get(), &stale, sizeof stale));
-  first_sequence_.reset();
+  sequence_ = FrameSequence(FrameNumberKind::wrap32, info_.frame_rate_hz);
+  corrected_last_ = false;
   last_counter_.reset();
   repeated_ = 0;
   if (const auto started = device_.start(options_.buffers); !started) {
@@ -192,6 +196,7 @@ void V4l2Source::keep(const VideoBuffer& buffer) {
     frame.counts = cv::Mat1w::zeros(layout_.picture.size());
     frame.status = FrameStatus::wrong_size;
   }
+  if (buffer.oversized) frame.status = FrameStatus::wrong_size;
   // UVC marks a frame with missing packets so.
   if (buffer.damaged) frame.status = FrameStatus::incomplete;
   {
@@ -204,7 +209,6 @@ void V4l2Source::keep(const VideoBuffer& buffer) {
 
 std::optional<Frame> V4l2Source::finished(Arrival arrival) {
   Frame& frame = arrival.frame;
-  if (!first_sequence_) first_sequence_ = arrival.sequence;
   if (arrival.telemetry) {
     const LeptonTelemetry& telemetry = *arrival.telemetry;
     // A Lepton exposes 26 times a second and sends every third; its bridge may send one twice.
@@ -219,7 +223,15 @@ std::optional<Frame> V4l2Source::finished(Arrival arrival) {
     frame.since_correction_s = telemetry.since_ffc_s().value_or(-1);
     if (const auto scale = scale_of(telemetry); scale != info_.scale) set_scale(scale);
   }
-  frame.sequence = arrival.sequence - *first_sequence_ - repeated_;
+  const bool corrects = frame.correction == CorrectionState::running;
+  const bool corrected = std::exchange(corrected_last_, corrects);
+  const FramePlace place =
+      sequence_.next({.number = static_cast<std::uint32_t>(arrival.sequence - repeated_),
+                      .device_time_ns = frame.device_time_ns,
+                      .host_time_ns = frame.host_time_ns,
+                      .may_pause = corrects || corrected || frame.host_time_ns < may_pause_until_ns_});
+  frame.sequence = place.sequence;
+  frame.numbering = place.numbering;
   frame.scale = scale_;
   return std::move(frame);
 }
@@ -340,6 +352,7 @@ Result<void> V4l2Source::correct_nonuniformity() {
   if (button == nullptr) {
     return fail(ErrorCode::invalid_input, "camera " + info_.id + " has no control that corrects its non-uniformity");
   }
+  may_pause_until_ns_ = monotonic_ns() + longest_correction_ns;
   if (const auto done = set_control(device_, *button, "1"); !done) return tl::unexpected(noted(done.error()));
   return {};
 }

@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "acquisition/core/frame_sequence.h"
 #include "acquisition/core/frame_source.h"
 #include "acquisition/v4l2/v4l2_backend.h"
 #include "acquisition/v4l2/video_controls.h"
@@ -85,8 +86,10 @@ class V4l2Source final : public FrameSource {
   double stated_offset_k_ = 0;
 
   // Of the reader, over one run.
-  std::optional<std::uint32_t> first_sequence_;
-  std::uint32_t repeated_ = 0;  ///< frames that the camera sent twice, taken out of the sequence
+  FrameSequence sequence_{FrameNumberKind::wrap32, 0};
+  bool corrected_last_ = false;          ///< the frame before was exposed during a correction
+  std::int64_t may_pause_until_ns_ = 0;  ///< host time until which a commanded correction may interrupt the stream
+  std::uint32_t repeated_ = 0;           ///< frames that the camera sent twice, taken out of the sequence
   std::optional<std::uint32_t> last_counter_;
 
   std::mutex control_;  ///< one of start, stop, get, set at a time; taken before inbox_.mutex

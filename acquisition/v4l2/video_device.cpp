@@ -17,6 +17,23 @@ namespace {
 constexpr std::uint32_t capture = V4L2_BUF_TYPE_VIDEO_CAPTURE;
 /// Enumerations of a hostile or broken driver end here.
 constexpr std::uint32_t most_formats = 256;
+/// What no camera has; a driver makes its largest of it.
+constexpr int largest_tried = 16384;
+/// More buffers than any driver grants.
+constexpr std::uint32_t most_buffers = 1024;
+constexpr std::size_t page_bytes = 4096;
+
+bool is_size(std::uint32_t width, std::uint32_t height) {
+  return width >= 1 && height >= 1 && width <= 65535 && height <= 65535;
+}
+
+/// 0 for a time that does not fit into nanoseconds.
+std::int64_t nanoseconds(const timeval& time) {
+  const std::int64_t seconds = time.tv_sec, microseconds = time.tv_usec;
+  constexpr std::int64_t most_seconds = 9'000'000'000;
+  if (seconds < 0 || seconds > most_seconds || microseconds < 0 || microseconds >= 1'000'000) return 0;
+  return seconds * 1'000'000'000 + microseconds * 1000;
+}
 
 template <std::size_t N>
 std::string text_of(const __u8 (&field)[N]) {
@@ -103,6 +120,52 @@ Result<VideoDevice> VideoDevice::open(const std::string& node) {
   return device;
 }
 
+std::vector<VideoMode> VideoDevice::listed_sizes(std::uint32_t fourcc) const {
+  std::vector<VideoMode> modes;
+  for (std::uint32_t s = 0; s < most_formats; ++s) {
+    v4l2_frmsizeenum size{};
+    size.pixel_format = fourcc;
+    size.index = s;
+    if (call(VIDIOC_ENUM_FRAMESIZES, &size) != 0) break;
+    const bool discrete = size.type == V4L2_FRMSIZE_TYPE_DISCRETE;
+    const std::uint32_t width = discrete ? size.discrete.width : size.stepwise.max_width;
+    const std::uint32_t height = discrete ? size.discrete.height : size.stepwise.max_height;
+    if (is_size(width, height)) modes.push_back({fourcc, static_cast<int>(width), static_cast<int>(height)});
+    if (!discrete) break;
+  }
+  return modes;
+}
+
+std::optional<VideoMode> VideoDevice::tried(VideoMode wanted) const {
+  v4l2_format format{};
+  format.type = capture;
+  format.fmt.pix.width = static_cast<__u32>(wanted.width);
+  format.fmt.pix.height = static_cast<__u32>(wanted.height);
+  format.fmt.pix.pixelformat = wanted.fourcc;
+  format.fmt.pix.field = V4L2_FIELD_NONE;
+  const v4l2_pix_format& pix = format.fmt.pix;
+  if (call(VIDIOC_TRY_FMT, &format) != 0 || pix.pixelformat != wanted.fourcc || !is_size(pix.width, pix.height)) {
+    return std::nullopt;
+  }
+  return VideoMode{pix.pixelformat, static_cast<int>(pix.width), static_cast<int>(pix.height)};
+}
+
+std::vector<VideoMode> VideoDevice::tried_sizes(std::uint32_t fourcc) const {
+  std::vector<VideoMode> modes;
+  const auto add = [&modes](const std::optional<VideoMode>& mode) {
+    if (mode && std::find(modes.begin(), modes.end(), *mode) == modes.end()) modes.push_back(*mode);
+  };
+  add(tried({fourcc, largest_tried, largest_tried}));
+  add(tried({fourcc, 1, 1}));
+  v4l2_format present{};
+  present.type = capture;
+  const v4l2_pix_format& pix = present.fmt.pix;
+  if (call(VIDIOC_G_FMT, &present) == 0 && pix.pixelformat == fourcc && is_size(pix.width, pix.height)) {
+    add(VideoMode{fourcc, static_cast<int>(pix.width), static_cast<int>(pix.height)});
+  }
+  return modes;
+}
+
 std::vector<VideoMode> VideoDevice::modes() const {
   std::vector<VideoMode> modes;
   for (std::uint32_t f = 0; f < most_formats; ++f) {
@@ -110,19 +173,9 @@ std::vector<VideoMode> VideoDevice::modes() const {
     format.type = capture;
     format.index = f;
     if (call(VIDIOC_ENUM_FMT, &format) != 0) break;
-    for (std::uint32_t s = 0; s < most_formats; ++s) {
-      v4l2_frmsizeenum size{};
-      size.pixel_format = format.pixelformat;
-      size.index = s;
-      if (call(VIDIOC_ENUM_FRAMESIZES, &size) != 0) break;
-      const bool discrete = size.type == V4L2_FRMSIZE_TYPE_DISCRETE;
-      const std::uint32_t width = discrete ? size.discrete.width : size.stepwise.max_width;
-      const std::uint32_t height = discrete ? size.discrete.height : size.stepwise.max_height;
-      if (width <= 65535 && height <= 65535) {
-        modes.push_back({format.pixelformat, static_cast<int>(width), static_cast<int>(height)});
-      }
-      if (!discrete) break;
-    }
+    auto sizes = listed_sizes(format.pixelformat);
+    if (sizes.empty()) sizes = tried_sizes(format.pixelformat);
+    modes.insert(modes.end(), sizes.begin(), sizes.end());
   }
   return modes;
 }
@@ -147,6 +200,11 @@ Result<VideoLayout> VideoDevice::set_format(VideoLayout layout) {
   }
   // Some drivers leave bytesperline at 0: rows without padding.
   layout.row_bytes = std::max<std::size_t>(layout.row_bytes, pix.bytesperline);
+  image_bytes_ = pix.sizeimage;
+  // A driver that moves whole pages says so of every frame. What a USB camera sends is all picture.
+  const std::size_t rows = layout.row_bytes * static_cast<std::size_t>(layout.mode.height);
+  const bool whole_pages = image_bytes_ % page_bytes == 0 && image_bytes_ > rows && image_bytes_ - rows < page_bytes;
+  layout.filler_bytes = whole_pages && capability_.driver != "uvcvideo" ? image_bytes_ - rows : 0;
   return layout;
 }
 
@@ -214,6 +272,9 @@ Result<void> VideoDevice::start(unsigned buffers) {
   }
   requested_ = true;
   Result<void> done;
+  if (request.count > most_buffers) {
+    done = fail(ErrorCode::not_found, "the driver grants " + std::to_string(request.count) + " buffers");
+  }
   for (unsigned i = 0; i < request.count && done; ++i) done = map_and_queue(i);
   if (done && request.count < 2) {
     done = fail(ErrorCode::not_found, "the driver grants " + std::to_string(request.count) + " buffers, 2 are needed");
@@ -251,11 +312,12 @@ Result<bool> VideoDevice::take(const std::function<void(const VideoBuffer&)>& us
                                              std::to_string(buffers_.size()));
   }
   const auto bytes = buffers_[buffer.index].bytes();
-  const std::int64_t seconds = buffer.timestamp.tv_sec;
-  use({.bytes = bytes.first(std::min<std::size_t>(bytes.size(), buffer.bytesused)),
+  const std::size_t stated = buffer.bytesused;
+  use({.bytes = bytes.first(std::min(bytes.size(), stated)),
        .sequence = buffer.sequence,
-       .time_ns = seconds * 1'000'000'000 + std::int64_t{buffer.timestamp.tv_usec} * 1000,
-       .damaged = (buffer.flags & V4L2_BUF_FLAG_ERROR) != 0});
+       .time_ns = nanoseconds(buffer.timestamp),
+       .damaged = (buffer.flags & V4L2_BUF_FLAG_ERROR) != 0 || stated == 0,
+       .oversized = stated > bytes.size() || (image_bytes_ > 0 && stated > image_bytes_)});
   v4l2_buffer again = mapped_buffer(buffer.index);
   if (const int error = call(VIDIOC_QBUF, &again); error != 0) {
     return tl::unexpected(video_error(error, "queueing a buffer", ErrorCode::disconnected));

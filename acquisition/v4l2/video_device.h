@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -43,8 +44,9 @@ struct VideoCapability {
 struct VideoBuffer {
   std::span<const std::uint8_t> bytes;
   std::uint32_t sequence = 0;
-  std::int64_t time_ns = 0;
-  bool damaged = false;  ///< V4L2_BUF_FLAG_ERROR
+  std::int64_t time_ns = 0;  ///< 0: none
+  bool damaged = false;      ///< V4L2_BUF_FLAG_ERROR, or nothing in it
+  bool oversized = false;    ///< states more bytes than its buffer or the format has
 };
 
 /// An open node. Errors of every method: `disconnected` when the device has gone (ENODEV), otherwise as said. Not
@@ -61,7 +63,8 @@ class VideoDevice {
 
   [[nodiscard]] int fd() const { return fd_.get(); }
   [[nodiscard]] const VideoCapability& capability() const { return capability_; }
-  /// Formats and discrete sizes; a range of sizes counts as its largest.
+  /// Formats and discrete sizes; a range of sizes counts as its largest. Of a driver that does not list sizes, those
+  /// that it makes of very large and very small ones, and the present one.
   [[nodiscard]] std::vector<VideoMode> modes() const;
   /// Sets the mode; fills in what the driver made of the rows. `not_found`: busy, or another mode was set.
   [[nodiscard]] Result<VideoLayout> set_format(VideoLayout layout);
@@ -102,11 +105,18 @@ class VideoDevice {
 
   VideoDevice(FileDescriptor fd, VideoCapability capability);
   [[nodiscard]] Result<void> map_and_queue(unsigned index);
+  /// Sizes of a format that the driver lists.
+  [[nodiscard]] std::vector<VideoMode> listed_sizes(std::uint32_t fourcc) const;
+  /// Sizes that are found by trying.
+  [[nodiscard]] std::vector<VideoMode> tried_sizes(std::uint32_t fourcc) const;
+  /// What the driver would make of a size; nothing where it cannot be asked or makes another format of it.
+  [[nodiscard]] std::optional<VideoMode> tried(VideoMode wanted) const;
 
   FileDescriptor fd_;
   VideoCapability capability_;
   std::vector<Mapping> buffers_;
   bool requested_ = false;
+  std::size_t image_bytes_ = 0;  ///< of the format, as the driver says; 0: it does not
 };
 
 /// The failure of an ioctl: `disconnected` for a device that has gone, `busy` and others `otherwise`.

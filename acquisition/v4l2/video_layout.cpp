@@ -99,6 +99,11 @@ Result<VideoLayout> choose_layout(const std::vector<VideoMode>& modes, VideoFami
 }
 
 Result<VideoPicture> read_video_frame(std::span<const std::uint8_t> bytes, const VideoLayout& layout) {
+  const std::size_t rows = layout.row_bytes * static_cast<std::size_t>(std::max(layout.mode.height, 0));
+  if (bytes.size() > rows && bytes.size() != rows + layout.filler_bytes) {
+    return fail(ErrorCode::invalid_input,
+                std::to_string(bytes.size()) + " bytes for rows of " + std::to_string(rows) + " bytes");
+  }
   auto counts = read_rows(bytes, layout, {layout.picture.y, layout.picture.height});
   if (!counts) return tl::unexpected(counts.error());
   const auto telemetry = read_rows(bytes, layout, {layout.picture.y + layout.picture.height, layout.telemetry_rows});

@@ -36,8 +36,9 @@ struct VideoMode {
 /// How a frame of a mode is to be read.
 struct VideoLayout {
   VideoMode mode;
-  std::size_t row_bytes = 0;  ///< from row to row, as the driver says
-  std::string pixel_format;   ///< PFNC name of the counts
+  std::size_t row_bytes = 0;     ///< from row to row, as the driver says
+  std::size_t filler_bytes = 0;  ///< behind the last row, of a driver that moves whole pages
+  std::string pixel_format;      ///< PFNC name of the counts
   int significant_bits = 16;
   cv::Rect picture;             ///< rows that hold counts
   int telemetry_rows = 0;       ///< below the picture
@@ -56,7 +57,8 @@ struct VideoPicture {
   std::optional<LeptonTelemetry> telemetry;
 };
 
-/// Counts and telemetry of one frame. `invalid_input` when there are fewer bytes than the layout needs.
+/// Counts and telemetry of one frame. `invalid_input` when there are not as many bytes as the layout says: with more,
+/// the rows are longer than the driver states, or there are others than it states, and every pixel would be in doubt.
 [[nodiscard]] Result<VideoPicture> read_video_frame(std::span<const std::uint8_t> bytes, const VideoLayout& layout);
 
 /// "Y16 ", "YUYV", "Y16 -BE": for messages.

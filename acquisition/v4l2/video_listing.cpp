@@ -60,10 +60,12 @@ VideoNode described(udev_device* video, const VideoCapability& capability) {
     node.serial = attribute(usb, "serial");
     node.firmware = attribute(usb, "bcdDevice");
     node.port = text_or_empty(udev_device_get_sysname(usb));
+    node.device_path = text_or_empty(udev_device_get_syspath(usb));
   } else {
     node.vendor = capability.driver;
     node.model = capability.card;
     node.port = capability.bus;
+    node.device_path = capability.bus.empty() ? node.sys_path : capability.bus;
   }
   node.id = video_id(node);
   return node;
@@ -74,6 +76,22 @@ VideoNode described(udev_device* video, const VideoCapability& capability) {
 std::string video_id(const VideoNode& node) {
   const std::string told_by = node.serial.empty() ? "at_" + node.port : node.serial;
   return camera_id(camera_scheme::v4l2, {node.vendor, node.model, told_by});
+}
+
+void tell_apart(std::vector<VideoNode>& nodes) {
+  std::vector<std::string> ids;
+  for (const VideoNode& node : nodes) {
+    const bool has_double = std::any_of(nodes.begin(), nodes.end(), [&](const VideoNode& other) {
+      return other.device_path != node.device_path && video_id(other) == video_id(node);
+    });
+    ids.push_back(has_double && !node.serial.empty()
+                      ? camera_id(camera_scheme::v4l2, {node.vendor, node.model, node.serial, "at_" + node.port})
+                      : video_id(node));
+  }
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const auto before = std::count(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(k), ids[k]);
+    nodes[k].id = before > 0 ? ids[k] + "." + std::to_string(before + 1) : ids[k];
+  }
 }
 
 Result<VideoListing> list_video_nodes() {
@@ -94,13 +112,9 @@ Result<VideoListing> list_video_nodes() {
       continue;
     }
     if (!device->capability().captures) continue;
-    VideoNode node = described(video.get(), device->capability());
-    // A second capture node of one device, or two devices with the same serial: told apart by the order of their nodes.
-    const auto same = std::count_if(listing.nodes.begin(), listing.nodes.end(),
-                                    [&](const VideoNode& other) { return video_id(other) == node.id; });
-    if (same > 0) node.id.append(".").append(std::to_string(same + 1));
-    listing.nodes.push_back(std::move(node));
+    listing.nodes.push_back(described(video.get(), device->capability()));
   }
+  tell_apart(listing.nodes);
   return listing;
 }
 

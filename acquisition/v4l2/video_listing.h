@@ -16,9 +16,10 @@ namespace todbench {
 
 /// A capture node and the identity of the device behind it.
 struct VideoNode {
-  std::string id;        ///< "v4l2:VENDOR-MODEL-SERIAL"
-  std::string node;      ///< "/dev/video2": where it is now, never part of the identity
-  std::string sys_path;  ///< of the video device
+  std::string id;           ///< "v4l2:VENDOR-MODEL-SERIAL"
+  std::string node;         ///< "/dev/video2": where it is now, never part of the identity
+  std::string sys_path;     ///< of the video device
+  std::string device_path;  ///< of the device that it is a part of
   std::string vendor, model, serial, firmware;
   std::string port;  ///< of a USB device, "1-2.3"
   std::uint16_t usb_vendor = 0, usb_product = 0;
@@ -30,6 +31,11 @@ struct VideoNode {
 /// "v4l2:VENDOR-MODEL-SERIAL" in letters, digits, '.', '_' (anything else becomes '_'); a camera without a serial is
 /// told by where it is plugged in: "v4l2:VENDOR-MODEL-at_1_2.3".
 [[nodiscard]] std::string video_id(const VideoNode& node);
+
+/// Gives every node an id of its own. Cameras of one kind with one serial number are told apart by where they are
+/// plugged in too, "v4l2:VENDOR-MODEL-SERIAL-at_1_2.3": by the order of their nodes one would be taken for the other
+/// when they are plugged in again. A second capture node of one device is told by that order, ".2".
+void tell_apart(std::vector<VideoNode>& nodes);
 
 /// Every node that captures with streaming; nodes that cannot be opened are named in `unreadable`.
 struct VideoListing {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "acquisition/aravis/camera_families.h"
-#include "acquisition/aravis/description_url.h"
+#include "acquisition/aravis/object_parameters.h"
 #include "acquisition/aravis/test_ramp.h"
 
 namespace todbench {
@@ -63,6 +63,22 @@ TEST(CorrectionModes, AreFoundByNameAndTheCommandedEntryIsManualOrOff) {
   EXPECT_EQ(commanded_entry({"Automatic", "Periodic"}), "");
 }
 
+TEST(ObjectParameters, ThatAreNotNeutralAreTold) {
+  const auto notes = [](const std::map<std::string, std::string>& settings) {
+    const auto all = object_parameter_notes(settings);
+    return all.empty() ? std::string() : all.front();
+  };
+  EXPECT_EQ(notes({}), "");
+  EXPECT_EQ(notes({{"ObjectEmissivity", "0.9999999"}, {"WindowTransmission", "1"}, {"WindowTemperature", "350"}}), "");
+  EXPECT_EQ(notes({{"EstimatedTransmission", "1"}, {"ObjectDistance", "100"}}), "");
+  EXPECT_THAT(notes({{"ObjectEmissivity", "0.95"}, {"WindowTransmission", "0.8"}}),
+              HasSubstr("ObjectEmissivity = 0.95, WindowTransmission = 0.8:"));
+  EXPECT_THAT(notes({{"WindowReflection", "0.1"}}), HasSubstr("WindowReflection"));
+  EXPECT_THAT(notes({{"EstimatedTransmission", "0"}, {"ObjectDistance", "2"}}), HasSubstr("ObjectDistance = 2"));
+  EXPECT_THAT(notes({{"EstimatedTransmission", "0.9"}}), HasSubstr("EstimatedTransmission = 0.9"));
+  EXPECT_THAT(notes({{"ExtOpticsTransmission", "nan"}}), HasSubstr("ExtOpticsTransmission"));
+}
+
 cv::Mat1w ramp(int width, int step) {
   cv::Mat1w picture(4, width);
   for (int x = 0; x < width; ++x) picture.col(x).setTo(x * step);
@@ -90,20 +106,6 @@ TEST(TestRamp, IsNotSeenInAFlatOrNoisyOrTooSmallPicture) {
   EXPECT_EQ(judge_test_ramp(cv::Mat1w(8, 64, ushort{7000})), RampVerdict::no_ramp);
   EXPECT_EQ(judge_test_ramp(noise), RampVerdict::no_ramp);
   EXPECT_EQ(judge_test_ramp(ramp(8, 1)), RampVerdict::no_ramp);
-}
-
-TEST(DescriptionUrl, OfAReasonableSizeIsAccepted) {
-  EXPECT_TRUE(check_description_url("Local:camera.xml;5C000;8A3"));
-  EXPECT_TRUE(check_description_url("local:camera.zip;0xFFE00000;0x1FFFF?SchemaVersion=1.1.0"));
-}
-
-TEST(DescriptionUrl, ThatWouldReserveMemoryWithoutBoundIsRefused) {
-  EXPECT_THAT(check_description_url("Local:camera.xml;1000;FFFFFFFF").error().message, HasSubstr("out of reason"));
-  EXPECT_FALSE(check_description_url("Local:camera.xml;1000;FFFFFFFFFFFFFFFFFF"));
-  EXPECT_FALSE(check_description_url("Local:camera.xml;1000;0"));
-  EXPECT_FALSE(check_description_url("Local:camera.xml"));
-  EXPECT_FALSE(check_description_url("http://example.org/camera.xml"));
-  EXPECT_FALSE(check_description_url(""));
 }
 
 }  // namespace

@@ -5,8 +5,12 @@
 #include <algorithm>
 #include <chrono>
 #include <optional>
+#include <ostream>
+#include <tuple>
+#include <utility>
 
 #include "acquisition/aravis/glib_ptr.h"
+#include "acquisition/core/integrity_gate.h"
 #include "tests/support/gvsp_test_support.h"
 
 namespace todbench {
@@ -107,6 +111,31 @@ TEST(Ax5, IsSetUpForMeasuring) {
   EXPECT_EQ(info.settings.at("SensorDDEMode"), "Off");
   EXPECT_THAT(info.warnings, testing::Not(testing::Contains(HasSubstr("order of bytes"))));
   EXPECT_EQ(*source->get("IRTestPattern"), "Off");
+}
+
+TEST(Ax5, TellsWhatItTakesTheSceneFor) {
+  const auto camera = start_gvsp_camera({});
+  const auto source = open_camera();
+  ASSERT_TRUE(source);
+  EXPECT_THAT(source->info().warnings, testing::Not(testing::Contains(HasSubstr("computes its temperatures"))));
+  for (const char* feature : {"ObjectEmissivity", "WindowTransmission", "AtmosphericTransmission"}) {
+    ASSERT_TRUE(source->info().settings.contains(feature)) << feature;
+    EXPECT_NEAR(std::stod(source->info().settings.at(feature)), 1, 1e-6) << feature;
+  }
+  for (const char* feature : {"ReflectedTemperature", "WindowTemperature", "AtmosphericTemperature"}) {
+    ASSERT_TRUE(source->info().settings.contains(feature)) << feature;
+    EXPECT_NEAR(std::stod(source->info().settings.at(feature)), 293, 1e-6) << feature;
+  }
+
+  ASSERT_TRUE(source->set("WindowTransmission", "0.8"));
+  ASSERT_TRUE(source->set("WindowTemperature", "300"));
+
+  // Steps of 1/8192.
+  EXPECT_NEAR(std::stod(source->info().settings.at("WindowTransmission")), 0.8, 1.3e-4);
+  EXPECT_NEAR(std::stod(source->info().settings.at("WindowTemperature")), 300, 0.01);
+  EXPECT_THAT(source->info().warnings, testing::Contains(HasSubstr("for WindowTransmission = 0.79")));
+  ASSERT_TRUE(source->set("WindowTransmission", "1"));
+  EXPECT_THAT(source->info().warnings, testing::Not(testing::Contains(HasSubstr("computes its temperatures"))));
 }
 
 TEST(Ax5, WhoseBytesArriveSwappedIsFoundOutByItsTestRampAndReadRight) {
@@ -318,6 +347,138 @@ TEST(GvspFaults, LostAndWrongSizedFramesAreToldApart) {
   EXPECT_LE(got.gaps, static_cast<int>(faults.frames_lost));
   EXPECT_EQ(got.incomplete, 0);
 }
+
+/// Bytes behind every row and behind the last one.
+class StatedPadding : public testing::TestWithParam<std::pair<int, int>> {};
+
+TEST_P(StatedPadding, IsTakenOutOfThePicture) {
+  auto config = quick();
+  std::tie(config.row_padding_bytes, config.image_padding_bytes) = GetParam();
+  const auto camera = start_gvsp_camera(config);
+  const auto source = open_started();
+  ASSERT_TRUE(source);
+
+  const Received got = receive(*source, config, 30);
+
+  EXPECT_EQ(got.complete, 30);
+  EXPECT_EQ(got.false_pixels, 0);
+}
+
+TEST_P(StatedPadding, IsTakenOutOfAPictureWithChunksBehindIt) {
+  auto config = quick();
+  std::tie(config.row_padding_bytes, config.image_padding_bytes) = GetParam();
+  const auto camera = start_gvsp_camera(config);
+  const auto source = open_camera();
+  ASSERT_TRUE(source && source->set("ChunkModeActive", "On") && source->start());
+
+  const Received got = receive(*source, config, 30);
+
+  EXPECT_EQ(got.complete, 30);
+  EXPECT_EQ(got.false_pixels, 0);
+}
+
+TEST_P(StatedPadding, ThatIsNotStatedMakesEveryFrameOneOfAWrongSize) {
+  auto config = quick();
+  config.states_padding = false;
+  std::tie(config.row_padding_bytes, config.image_padding_bytes) = GetParam();
+  const auto camera = start_gvsp_camera(config);
+  const auto source = open_started();
+  ASSERT_TRUE(source);
+
+  const Received got = receive(*source, config, 30);
+
+  EXPECT_EQ(got.wrong_size, 30);
+  EXPECT_EQ(got.complete, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Gvsp, StatedPadding,
+                         testing::Values(std::pair(8, 0), std::pair(1, 0), std::pair(320, 0), std::pair(0, 16),
+                                         std::pair(6, 100)));
+
+TEST(GvspFaults, FramesThatAreLargerThanStatedAreOfAWrongSize) {
+  for (const int packet_bytes : {8000, 1436}) {
+    auto config = quick();
+    // With packets of 1436 bytes, 1400 of data, the payload of 160 x 140 pixels fills its 32 packets to the last byte.
+    config.height = packet_bytes == 1436 ? 140 : 128;
+    const auto camera = start_gvsp_camera(config);
+    AravisOptions options;
+    options.packet_size_bytes = packet_bytes;
+    const auto source = open_started(options);
+    ASSERT_TRUE(source && source->next(patience));
+    camera->set_faults({.too_long = 0.5});
+
+    const Received got = receive(*source, config, 100);
+
+    const auto faults = camera->counts().faults;
+    EXPECT_EQ(got.false_pixels, 0);
+    // Binomial, n = 100, p = 0.5: outside 20 ... 80 with probability below 1e-8.
+    EXPECT_GT(got.wrong_size, 20);
+    EXPECT_GT(got.complete, 20);
+    EXPECT_LE(got.wrong_size + got.incomplete, static_cast<int>(faults.frames_too_long));
+    EXPECT_EQ(got.complete + got.wrong_size + got.incomplete, 100);
+  }
+}
+
+/// The ids of the frames before and after they begin anew, and what the camera's clock does.
+struct Renumbering {
+  std::uint16_t first = 1;
+  int frames = 0;
+  std::uint16_t anew = 1;
+  ClockRestart clock = ClockRestart::goes_on;
+};
+void PrintTo(const Renumbering& r, std::ostream* out) {
+  *out << r.first << " + " << r.frames << " -> " << r.anew << (r.clock == ClockRestart::goes_on ? "" : " with clock");
+}
+
+class FrameIds : public testing::TestWithParam<Renumbering> {};
+
+TEST_P(FrameIds, ThatBeginAnewHideNoLossAndInventNone) {
+  const Renumbering& renumbering = GetParam();
+  auto config = quick();
+  config.first_block_id = renumbering.first;
+  const auto camera = start_gvsp_camera(config);
+  const auto source = open_camera();
+  // The stream that looks at the test ramp has used some ids.
+  camera->restart_numbers(renumbering.first, ClockRestart::goes_on);
+  ASSERT_TRUE(source && source->start());
+  IntegrityGate gate({.width = config.width, .height = config.height});
+  const auto began = camera->counts().exposures;
+  for (int k = 0; k < renumbering.frames; ++k) {
+    const auto frame = source->next(patience);
+    ASSERT_TRUE(frame) << frame.error().message;
+    static_cast<void>(gate.judge(*frame));
+  }
+  ASSERT_EQ(gate.lost(), 0U);
+  camera->restart_numbers(renumbering.anew, renumbering.clock);
+
+  // Aravis drops up to a hundred frames; what comes after them counts.
+  std::uint64_t seen = static_cast<std::uint64_t>(renumbering.frames);
+  std::int64_t last_exposure = 0;
+  for (int k = 0; k < 50; ++k) {
+    const auto frame = source->next(patience);
+    ASSERT_TRUE(frame) << frame.error().message;
+    static_cast<void>(gate.judge(*frame));
+    ++seen;
+    last_exposure = static_cast<std::int64_t>(camera->counts().exposures);
+  }
+
+  const auto exposed = static_cast<double>(last_exposure) - static_cast<double>(began);
+  const auto accounted = static_cast<double>(seen + gate.lost());
+  // Frames are on their way while the last one is read, and where only the host's clock knows, it knows by its jitter.
+  EXPECT_NEAR(accounted, exposed, 6 + 0.1 * exposed);
+  EXPECT_EQ(gate.numbering().restarts + gate.numbering().silent_gaps, 1U);
+  EXPECT_THAT(describe(gate.numbering()), HasSubstr("estimated from time"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Gvsp, FrameIds,
+    testing::Values(Renumbering{1, 40, 1, ClockRestart::goes_on}, Renumbering{1, 60, 1, ClockRestart::goes_on},
+                    Renumbering{1, 60, 1, ClockRestart::begins_anew}, Renumbering{1, 130, 1, ClockRestart::goes_on},
+                    Renumbering{1, 130, 1, ClockRestart::begins_anew}, Renumbering{59970, 30, 1, ClockRestart::goes_on},
+                    Renumbering{59970, 30, 1, ClockRestart::begins_anew},
+                    Renumbering{65500, 30, 1, ClockRestart::begins_anew},
+                    Renumbering{30000, 30, 20000, ClockRestart::goes_on},
+                    Renumbering{500, 60, 510, ClockRestart::goes_on}));
 
 TEST(GvspFaults, ASilentControllerLosesControlAndTheStreamEnds) {
   auto config = quick();

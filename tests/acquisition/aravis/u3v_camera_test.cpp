@@ -76,6 +76,42 @@ TEST(U3vCameras, WithAZippedDescriptionAreReadToo) {
   EXPECT_EQ(source->info().model, "Emulated U3V");
 }
 
+/// The refusal of a camera; fails the test where it is opened.
+std::string refusal_of(const U3vCameraConfig& config) {
+  const auto bench = plug_u3v(config);
+  const auto source = backend()->open("u3v:todbench-TB0001");
+  expect_not_found(source);
+  return source ? std::string() : source.error().message;
+}
+
+TEST(HostileU3vCameras, AreRefusedWithASentence) {
+  auto config = small();
+  config.description_text =
+      "<RegisterDescription><Integer Name=\"Width\"><pValue>Width</pValue></Integer></RegisterDescription>";
+  EXPECT_THAT(refusal_of(config), testing::HasSubstr("Width: its value depends on itself"));
+  config.description_text =
+      "<RegisterDescription><IntReg Name=\"R\"><Address>0</Address><Length>-1</Length></IntReg>"
+      "</RegisterDescription>";
+  EXPECT_THAT(refusal_of(config), testing::HasSubstr("its length is -1 bytes"));
+}
+
+TEST(HostileU3vCameras, ThatStateImmenseDescriptionsAreRefused) {
+  auto config = small();
+  for (const std::uint64_t bytes : {std::uint64_t{1} << 63U, std::uint64_t{20} << 30U, std::uint64_t{17} << 20U}) {
+    config.stated_description_bytes = bytes;
+
+    EXPECT_THAT(refusal_of(config), testing::HasSubstr("out of reason")) << bytes;
+  }
+}
+
+TEST(HostileU3vCameras, WithADamagedArchiveAreRefused) {
+  auto config = small();
+  config.description = U3vDescription::zipped;
+  config.stated_description_bytes = 400;
+
+  EXPECT_THAT(refusal_of(config), testing::HasSubstr("zipped description"));
+}
+
 TEST(U3vCameras, ThatAreAbsentAreNotFound) {
   const auto source = backend()->open("u3v:Nobody-7");
 
@@ -134,6 +170,118 @@ TEST(U3vStream, LostExposuresAreAGapOfTheirNumber) {
 
   expect_gap_of_lost_exposures(*source, [&](unsigned count) { bench.camera->lose_exposures(count); });
 }
+
+TEST(U3vStream, StatedPaddingIsTakenOutOfThePicture) {
+  for (const int padding : {8, 2, 1, 160}) {
+    auto config = small();
+    config.row_padding_bytes = padding;
+    const auto bench = plug_u3v(config);
+    const auto source = open_u3v(config);
+    ASSERT_TRUE(source && source->start());
+
+    for (int k = 0; k < 20; ++k) {
+      const auto frame = source->next(patience);
+      ASSERT_TRUE(frame) << frame.error().message;
+      ASSERT_EQ(frame->status, FrameStatus::complete);
+      ASSERT_TRUE(same_pixels(frame->counts, test_picture(exposure_of(*frame, 200), 160, 120, 14)));
+    }
+  }
+}
+
+TEST(U3vStream, PaddingThatIsNotStatedMakesEveryFrameOneOfAWrongSize) {
+  auto config = small();
+  config.row_padding_bytes = 8;
+  config.states_padding = false;
+  const auto bench = plug_u3v(config);
+  const auto source = open_u3v(config);
+  ASSERT_TRUE(source && source->start());
+
+  for (int k = 0; k < 20; ++k) {
+    const auto frame = source->next(patience);
+    ASSERT_TRUE(frame) << frame.error().message;
+    ASSERT_EQ(frame->status, FrameStatus::wrong_size);
+  }
+}
+
+TEST(U3vStream, FramesThatAreLargerThanStatedAreNotComplete) {
+  const auto bench = plug_u3v(small());
+  const auto source = open_u3v(small());
+  ASSERT_TRUE(source && source->start() && source->next(patience));
+  for (const std::size_t surplus : {1U, 8U, 300U, 5000U, 70000U}) {
+    bench.camera->lengthen_next_frame(surplus);
+
+    int odd = 0;
+    for (int k = 0; k < 15; ++k) {
+      const auto frame = source->next(patience);
+      ASSERT_TRUE(frame) << frame.error().message;
+      if (frame->status != FrameStatus::complete) {
+        ++odd;
+        continue;
+      }
+      ASSERT_TRUE(same_pixels(frame->counts, test_picture(exposure_of(*frame, 200), 160, 120, 14)));
+    }
+    EXPECT_EQ(odd, 1) << surplus;
+  }
+}
+
+TEST(U3vStream, NumbersThatBeginAnewHideNoLossAndInventNone) {
+  const auto bench = plug_u3v(small());
+  const auto source = open_u3v(small());
+  ASSERT_TRUE(source && source->start());
+  auto last = source->next(patience);
+  for (int k = 0; k < 40; ++k) last = source->next(patience);
+  ASSERT_TRUE(last);
+  // The exposures that are lost here are in the camera's clock, not in its numbers.
+  bench.camera->lose_exposures(7);
+  bench.camera->restart_numbers(0);
+
+  int restarts = 0;
+  for (int k = 0; k < 40; ++k) {
+    const auto frame = source->next(patience);
+    ASSERT_TRUE(frame) << frame.error().message;
+    restarts += frame->numbering == Numbering::counted ? 0 : 1;
+    ASSERT_EQ(frame->sequence - last->sequence, exposure_of(*frame, 200) - exposure_of(*last, 200));
+    last = frame;
+  }
+
+  EXPECT_EQ(restarts, 1);
+}
+
+TEST(U3vIdentity, ComesFromTheBootstrapRegistersWhereTheDescriptionHasNone) {
+  auto config = small();
+  config.identity_nodes = U3vIdentityNodes::absent;
+  const auto bench = plug_u3v(config);
+
+  const auto source = open_u3v(config);
+
+  ASSERT_TRUE(source);
+  EXPECT_EQ(source->info().id, "u3v:todbench-TB0001");
+  EXPECT_EQ(source->info().vendor, "todbench");
+  EXPECT_EQ(source->info().model, "Emulated U3V");
+  EXPECT_EQ(source->info().serial, "TB0001");
+  EXPECT_EQ(source->info().firmware, "1.0");
+}
+
+/// A register of the stream interface and what it says.
+class FalseRegisters : public testing::TestWithParam<std::pair<std::uint64_t, std::uint32_t>> {};
+
+TEST_P(FalseRegisters, AreRefusedBeforeAravisCalculatesWithThem) {
+  auto config = small();
+  config.false_registers = {GetParam()};
+  const auto bench = plug_u3v(config);
+
+  const auto source = backend()->open("u3v:todbench-TB0001");
+
+  expect_not_found(source);
+}
+
+INSTANTIATE_TEST_SUITE_P(U3v, FalseRegisters,
+                         testing::Values(std::pair(0x1108U, 0U),           // a payload of nothing
+                                         std::pair(0x110CU, 1U),           // of 4 GiB and more
+                                         std::pair(0x1110U, 0xFFFFFFFFU),  // the leader
+                                         std::pair(0x1114U, 0x7FFFFFFFU),  // the trailer
+                                         std::pair(0x1100U, 0xFF000000U),  // an alignment of 2^255
+                                         std::pair(0x1100U, 0x1F000000U)));
 
 TEST(U3vStream, AFrameWithMissingBytesIsNotComplete) {
   const auto bench = plug_u3v(small());

@@ -7,11 +7,14 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <functional>
+#include <limits>
 
 #include "acquisition/core/rng.h"
 #include "acquisition/recording/recording_backend.h"
 #include "acquisition/recording/recording_camera.h"
 #include "acquisition/recording/tiff_stack.h"
+#include "acquisition/recording/tiff_writer.h"
 
 namespace todbench {
 namespace {
@@ -191,6 +194,127 @@ TEST_F(Recordings, AreReadableAfterTheWriterWasKilled) {
   }
 }
 
+TEST_F(Recordings, InTiffAreReadableAtEveryLengthThatACrashCanLeave) {
+  std::vector<std::uint64_t> lengths;
+  {
+    auto tiff = TiffWriter::create(file("whole.tif"));
+    for (std::uint64_t k = 0; k < 3; ++k) {
+      ASSERT_TRUE(tiff->append(frame(k).counts).has_value());
+      lengths.push_back(std::filesystem::file_size(file("whole.tif")));
+    }
+  }
+  const std::string whole = content(file("whole.tif"));
+  // A page is written behind the others, and then the offset of its directory into the one in front of it: what a crash
+  // leaves is a file of two pages with any part of the third behind them.
+  const std::string link(8, '\0');
+  const std::uint64_t last_link = lengths[1] - 8;
+
+  for (std::uint64_t length = lengths[1]; length <= lengths[2]; ++length) {
+    overwrite(file("cut.tif"), whole.substr(0, length).replace(last_link, 8, link));
+    const auto stack = open_tiff_stack(file("cut.tif"), {});
+
+    ASSERT_TRUE(stack.has_value()) << stack.error().message;
+    ASSERT_EQ(stack->frame_count, 2u) << length;
+    for (const std::uint64_t k : {0u, 1u}) ASSERT_TRUE(equal(stack->read(k)->counts, frame(k).counts)) << length;
+  }
+}
+
+TEST_F(Recordings, InTiffAreReadableAfterTheWriterWasKilled) {
+  int ready[2];
+  ASSERT_EQ(::pipe(ready), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    auto tiff = TiffWriter::create(file("killed.tif"));
+    for (std::uint64_t k = 0;; ++k) {
+      if (!tiff || !tiff->append(frame(k).counts)) ::_exit(1);
+      if (k == 20 && ::write(ready[1], "x", 1) != 1) ::_exit(1);
+    }
+  }
+  char byte = 0;
+  ASSERT_EQ(::read(ready[0], &byte, 1), 1);
+  ::kill(child, SIGKILL);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status));
+
+  const auto stack = open_tiff_stack(file("killed.tif"), {});
+
+  ASSERT_TRUE(stack.has_value()) << stack.error().message;
+  ASSERT_GE(stack->frame_count, 21u);
+  for (std::uint64_t k = 0; k < stack->frame_count; ++k)
+    ASSERT_TRUE(equal(stack->read(k)->counts, frame(k).counts)) << k;
+}
+
+TEST_F(Recordings, WhoseFileIsNotThereAnyMoreSaySo) {
+  const auto deleted = [](const std::filesystem::path& path) { std::filesystem::remove(path); };
+  const auto moved = [](const std::filesystem::path& path) { std::filesystem::rename(path, path.string() + ".old"); };
+  const auto replaced = [](const std::filesystem::path& path) {
+    overwrite(path.string() + ".new", content(path));
+    std::filesystem::rename(path.string() + ".new", path);
+  };
+  const auto cut = [](const std::filesystem::path& path) { std::filesystem::resize_file(path, 100); };
+  const std::function<void(const std::filesystem::path&)> accidents[] = {deleted, moved, replaced, cut};
+  for (const auto& accident : accidents) {
+    auto stream = written(file("a"), 3);
+    auto tiff = TiffWriter::create(file("a.tif"));
+    ASSERT_TRUE(tiff->append(frame(0).counts).has_value());
+    ASSERT_TRUE(stream.verified_frames().has_value());
+    ASSERT_TRUE(tiff->verified_pages().has_value());
+    accident(file("a"));
+    accident(file("a.tif"));
+
+    EXPECT_EQ(stream.sync().error().code, ErrorCode::io);
+    EXPECT_EQ(stream.verified_frames().error().code, ErrorCode::io);
+    EXPECT_EQ(tiff->verified_pages().error().code, ErrorCode::io);
+  }
+}
+
+TEST_F(Recordings, WhoseFileWasDeletedTakeNothingMore) {
+  auto stream = written(file("a"), 3);
+  auto tiff = TiffWriter::create(file("a.tif"));
+  std::filesystem::remove(file("a"));
+  std::filesystem::remove(file("a.tif"));
+
+  EXPECT_EQ(stream.append(frame(3)).error().code, ErrorCode::io);
+  EXPECT_EQ(tiff->append(frame(0).counts).error().code, ErrorCode::io);
+  EXPECT_EQ(stream.frames(), 3u);
+  EXPECT_EQ(tiff->pages(), 0u);
+}
+
+TEST_F(Recordings, OfACameraWithAnImpossibleFrameRateAreReadWithoutOne) {
+  for (const double rate : {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+                            std::numeric_limits<double>::quiet_NaN(), -5.0}) {
+    StreamHeader h = header();
+    h.info.frame_rate_hz = rate;
+    ASSERT_TRUE(FrameStreamWriter::create(file("rate"), h).has_value());
+
+    const auto stream = open_frame_stream(file("rate"));
+
+    ASSERT_TRUE(stream.has_value()) << stream.error().message;
+    EXPECT_EQ(stream->header.info.frame_rate_hz, 0);
+  }
+  for (const char* rate : {"inf", "nan", "-5", "-inf", "-0.001"}) {
+    overwrite(file("raw"), std::string(2 * 4 * 4, 'x'));
+    EXPECT_EQ(open_recording(file("raw"), std::string("width=4&height=4&frame_rate_hz=") + rate).error().code,
+              ErrorCode::invalid_input)
+        << rate;
+  }
+}
+
+TEST_F(Recordings, KeepHowTheNumberOfAFrameCameAbout) {
+  auto writer = FrameStreamWriter::create(file("a"), header());
+  for (const auto numbering : {Numbering::counted, Numbering::restarted, Numbering::timed}) {
+    Frame f = frame(0);
+    f.numbering = numbering;
+    ASSERT_TRUE(writer->append(f).has_value());
+  }
+  const auto source = recorded_source(open_frame_stream(file("a"))->recording);
+  ASSERT_TRUE(source->start());
+
+  for (const auto numbering : {Numbering::counted, Numbering::restarted, Numbering::timed})
+    EXPECT_EQ(source->next(std::chrono::milliseconds(1))->numbering, numbering);
+}
+
 TEST_F(Recordings, NoticeEveryFlippedByteOfAFrame) {
   const std::uint64_t before = written(file("one"), 1).bytes();
   (void)written(file("two"), 2);
@@ -319,7 +443,7 @@ TEST_F(Recordings, GoThroughTiffWithoutLosingABit) {
   auto tiff = TiffWriter::create(file("stack.tif"));
   ASSERT_TRUE(tiff.has_value()) << tiff.error().message;
   for (std::uint64_t k = 0; k < 5; ++k) ASSERT_TRUE(tiff->append(frame(k).counts).has_value());
-  ASSERT_TRUE(tiff->finish().has_value());
+  ASSERT_TRUE(tiff->verified_pages().has_value());
 
   const auto stack = open_recording(file("stack.tif"), "bits=14&kelvin_per_count=0.04");
 
@@ -336,7 +460,7 @@ TEST_F(Recordings, AreReadFromAFolderOfSinglePagesInTheOrderOfTheirNames) {
     auto tiff = TiffWriter::create(file("pages") / ("frame-00" + std::to_string(k) + ".tiff"));
     ASSERT_TRUE(tiff.has_value());
     ASSERT_TRUE(tiff->append(frame(k).counts).has_value());
-    ASSERT_TRUE(tiff->finish().has_value());
+    ASSERT_TRUE(tiff->verified_pages().has_value());
   }
   overwrite(file("pages") / "notes.txt", "not a picture");
 
@@ -351,7 +475,7 @@ TEST_F(Recordings, RefuseTiffPagesOfDifferentSizeAndBrokenFiles) {
   auto tiff = TiffWriter::create(file("mixed.tif"));
   ASSERT_TRUE(tiff->append(cv::Mat1w(3, 4, std::uint16_t{1})).has_value());
   ASSERT_TRUE(tiff->append(cv::Mat1w(4, 3, std::uint16_t{1})).has_value());
-  ASSERT_TRUE(tiff->finish().has_value());
+  EXPECT_FALSE(tiff->verified_pages().has_value());
   overwrite(file("broken.tif"), "II*");
 
   EXPECT_THAT(open_recording(file("mixed.tif"), "").error().message, HasSubstr("page 2 is 3 x 4, the first one 4 x 3"));

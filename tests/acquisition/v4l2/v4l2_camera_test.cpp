@@ -1,7 +1,11 @@
 // The V4L2 back end against an emulated camera: real open, ioctl, mmap and udev calls of this process.
 #include <gmock/gmock.h>
 
+#include <ostream>
+#include <string>
 #include <thread>
+#include <tuple>
+#include <utility>
 
 #include "acquisition/core/host_clock.h"
 #include "tests/support/parameter_names.h"
@@ -172,6 +176,179 @@ TEST(V4l2Stream, AFrameWithMissingBytesIsIncompleteAndTheNextIsGood) {
 
   EXPECT_EQ(next_damaged(*source).value().status, FrameStatus::incomplete);
   EXPECT_EQ(source->next(patience).value().status, FrameStatus::complete);
+}
+
+/// What a driver does otherwise than uvcvideo.
+struct Quirk {
+  const char* name;
+  VideoDriverQuirks quirks;
+};
+void PrintTo(const Quirk& quirk, std::ostream* out) {
+  *out << quirk.name;
+}
+
+class V4l2Quirks : public testing::TestWithParam<std::tuple<Quirk, VideoCameraKind>> {};
+
+TEST_P(V4l2Quirks, ChangeNoPixel) {
+  const auto& [quirk, kind] = GetParam();
+  const auto config = small(kind);
+  const auto bench = start_video(config, quirk.quirks);
+  const auto source = open_video(config);
+  ASSERT_TRUE(source && source->start());
+  EXPECT_EQ(source->info().width, 160);
+  EXPECT_EQ(source->info().height, 120);
+
+  for (int k = 0; k < 20; ++k) {
+    const auto frame = source->next(patience);
+    ASSERT_TRUE(frame) << frame.error().message;
+    ASSERT_EQ(frame->status, FrameStatus::complete);
+    ASSERT_TRUE(same_pixels(frame->counts, test_picture(exposure_of(*frame, 200), 160, 120, significant_bits(kind))));
+  }
+}
+
+using Sizes = VideoDriverQuirks::Sizes;
+INSTANTIATE_TEST_SUITE_P(
+    Every, V4l2Quirks,
+    testing::Combine(
+        testing::Values(Quirk{"stepwise", {.sizes = Sizes::stepwise}},
+                        Quirk{"continuous", {.sizes = Sizes::continuous}},
+                        Quirk{"unlisted", {.sizes = Sizes::unlisted}},
+                        Quirk{"unlisted_no_parameters", {.sizes = Sizes::unlisted, .has_parameters = false}},
+                        Quirk{"padded", {.row_padding_bytes = 8}}, Quirk{"padded_much", {.row_padding_bytes = 320}}),
+        testing::Values(VideoCameraKind::y16, VideoCameraKind::grey, VideoCameraKind::temperature_rows)),
+    [](const auto& parameters) {
+      return std::string(std::get<0>(parameters.param).name) + "_" + test::name_of(std::get<1>(parameters.param));
+    });
+
+TEST(V4l2Stream, ACameraThatOnlySaysItsPresentFormatIsOpenedWithIt) {
+  const auto config = small(VideoCameraKind::y16);
+  const auto bench = start_video(config, {.sizes = Sizes::unlisted, .has_try_format = false, .has_parameters = false});
+
+  const auto source = open_video(config);
+
+  ASSERT_TRUE(source);
+  EXPECT_EQ(source->info().width, 160);
+  EXPECT_EQ(source->info().height, 120);
+  EXPECT_EQ(source->info().frame_rate_hz, 0);
+}
+
+TEST(V4l2Stream, ALeptonWhoseSizesAreNotListedIsReadWithItsTelemetry) {
+  const auto config = small(VideoCameraKind::lepton);
+  const auto bench = start_video(config, {.sizes = Sizes::unlisted});
+
+  const auto source = open_video(config);
+
+  ASSERT_TRUE(source);
+  EXPECT_EQ(source->info().height, 120);
+  EXPECT_EQ(source->info().settings.at("TelemetryRows"), "2");
+}
+
+TEST(V4l2Stream, PaddingThatIsNotStatedMakesEveryFrameOneOfAWrongSize) {
+  const auto config = small(VideoCameraKind::y16);
+  const auto bench = start_video(config, {.row_padding_bytes = 8, .states_row_bytes = false});
+  const auto source = open_video(config);
+  ASSERT_TRUE(source && source->start());
+
+  for (int k = 0; k < 20; ++k) {
+    const auto frame = source->next(patience);
+    ASSERT_TRUE(frame) << frame.error().message;
+    ASSERT_EQ(frame->status, FrameStatus::wrong_size);
+  }
+}
+
+/// Bytes that a driver states, and what becomes of the frame.
+class FalseLengths : public testing::TestWithParam<std::pair<std::uint32_t, FrameStatus>> {};
+
+TEST_P(FalseLengths, AreNeverCompleteFrames) {
+  const auto [bytes, status] = GetParam();
+  const auto config = small(VideoCameraKind::y16);
+  const auto bench = start_video(config);
+  const auto source = open_video(config);
+  ASSERT_TRUE(source && source->start() && source->next(patience));
+  bench.camera->misstate_next_frame(bytes);
+
+  int odd = 0;
+  for (int k = 0; k < 20; ++k) {
+    const auto frame = source->next(patience);
+    ASSERT_TRUE(frame) << frame.error().message;
+    if (frame->status == FrameStatus::complete) continue;
+    ++odd;
+    EXPECT_EQ(frame->status, status);
+  }
+
+  EXPECT_EQ(odd, 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(V4l2, FalseLengths,
+                         testing::Values(std::pair(0xFFFFFFFFU, FrameStatus::wrong_size),
+                                         std::pair(0x80000000U, FrameStatus::wrong_size),
+                                         std::pair(40961U, FrameStatus::wrong_size),  // larger than the buffer
+                                         std::pair(40960U, FrameStatus::wrong_size),  // all of it
+                                         std::pair(38401U, FrameStatus::wrong_size),  // larger than the picture
+                                         std::pair(38399U, FrameStatus::wrong_size),
+                                         std::pair(1U, FrameStatus::wrong_size),
+                                         std::pair(0U, FrameStatus::incomplete)));
+
+TEST(V4l2Stream, ABufferThatDoesNotExistEndsTheStream) {
+  for (const std::uint32_t index : {9U, 32U, 0xFFFFFFFFU}) {
+    const auto config = small(VideoCameraKind::y16);
+    const auto bench = start_video(config);
+    const auto source = open_video(config);
+    ASSERT_TRUE(source && source->start() && source->next(patience));
+    bench.camera->misplace_next_frame(index);
+
+    Result<Frame> frame = source->next(patience);
+    for (int k = 0; k < 300 && frame; ++k) frame = source->next(patience);
+
+    ASSERT_FALSE(frame);
+    EXPECT_EQ(frame.error().code, ErrorCode::disconnected);
+  }
+}
+
+TEST(V4l2Stream, ASequenceThatBeginsAnewHidesNoLossAndInventsNone) {
+  for (const std::uint32_t anew : {0U, 1U, 5U, 0xFFFFFFF0U}) {
+    const auto config = small(VideoCameraKind::y16);
+    const auto bench = start_video(config);
+    const auto source = open_video(config);
+    ASSERT_TRUE(source && source->start());
+    auto last = source->next(patience);
+    for (int k = 0; k < 40; ++k) last = source->next(patience);
+    ASSERT_TRUE(last);
+    bench.camera->restart_sequence(anew);
+
+    int restarts = 0;
+    for (int k = 0; k < 40; ++k) {
+      const auto frame = source->next(patience);
+      ASSERT_TRUE(frame) << frame.error().message;
+      restarts += frame->numbering == Numbering::restarted ? 1 : 0;
+      ASSERT_EQ(frame->sequence - last->sequence, exposure_of(*frame, 200) - exposure_of(*last, 200)) << anew;
+      last = frame;
+    }
+
+    EXPECT_EQ(restarts, 1) << anew;
+  }
+}
+
+TEST(V4l2Cameras, OfOneKindAndSerialAreToldApartByTheirPorts) {
+  const auto config = small(VideoCameraKind::y16);
+  const auto bench = start_video(config);
+  const auto other =
+      EmulatedV4l2Camera::start(bench.system, config, [](std::uint64_t) { return cv::Mat1w::zeros(120, 160); });
+  ASSERT_TRUE(other) << other.error().message;
+
+  const auto listed = v4l2_backend()->list();
+  const auto opened = v4l2_backend()->open(video_camera_id(config));
+
+  ASSERT_TRUE(listed);
+  ASSERT_EQ(listed->size(), 2U);
+  for (const auto& camera : *listed) {
+    EXPECT_THAT(camera.id, testing::StartsWith(video_camera_id(config) + "-at_1_"));
+    EXPECT_TRUE(v4l2_backend()->open(camera.id).has_value());
+  }
+  EXPECT_NE((*listed)[0].id, (*listed)[1].id);
+  // Neither is taken for the other.
+  ASSERT_FALSE(opened);
+  EXPECT_EQ(opened.error().code, ErrorCode::not_found);
 }
 
 TEST(V4l2Stream, ACameraThatIsUnpluggedIsDisconnectedAndStaysDead) {

@@ -116,6 +116,18 @@ TEST(VideoFrames, WithTooFewBytesAreRefused) {
   EXPECT_TRUE(read_video_frame(std::vector<std::uint8_t>(2 * 160 * 122), layout));
 }
 
+TEST(VideoFrames, WithMoreBytesThanRowsAreRefusedUnlessTheDriverFillsPages) {
+  auto layout = choose_layout({{y16, 160, 120}}, VideoFamily::plain, "").value();
+  const std::size_t rows = 2 * 160 * 120;
+
+  for (const std::size_t more : {1U, 2U, 120U, 1920U, 2560U})
+    EXPECT_FALSE(read_video_frame(std::vector<std::uint8_t>(rows + more), layout)) << more;
+
+  layout.filler_bytes = 2560;
+  EXPECT_TRUE(read_video_frame(std::vector<std::uint8_t>(rows + 2560), layout));
+  EXPECT_FALSE(read_video_frame(std::vector<std::uint8_t>(rows + 1920), layout));
+}
+
 TEST(VideoFrames, WithoutTelemetryInItsRowsAreStillPictures) {
   const auto layout = choose_layout({{y16, 160, 120}, {y16, 160, 122}}, VideoFamily::lepton, "").value();
 

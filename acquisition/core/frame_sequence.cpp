@@ -1,0 +1,275 @@
+#include "acquisition/core/frame_sequence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace todbench {
+namespace {
+
+/// Ids 1 ... 65535 repeat with this period because 0 is skipped.
+constexpr std::int64_t gvsp16_period = 65535;
+/// Aravis takes an id that is up to so much smaller than the last one for a late packet and drops it.
+constexpr std::int64_t arrival_window = 100;
+/// What a busy host may delay the news of a frame by.
+constexpr double host_delay_ns = 1e9;
+/// Of the fastest camera there is, where nothing is known.
+constexpr double shortest_period_ns = 1e5;
+constexpr std::size_t remembered_periods = 15;
+/// Periods seen before they are believed more than the stated one.
+constexpr std::size_t enough_periods = 3;
+constexpr std::size_t remembered_arrivals = 32, enough_arrivals = 16;
+/// Frames after a silence that show whether they had only been waiting.
+constexpr int frames_after_silence = 4;
+/// A shorter silence of the host is nothing.
+constexpr double least_silence_ns = 0.3e9;
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+bool is_period(double ns) {
+  return ns > 0 && std::isfinite(ns);
+}
+
+bool is_gvsp(FrameNumberKind kind) {
+  return kind == FrameNumberKind::gvsp16 || kind == FrameNumberKind::gvsp64;
+}
+
+/// More exposures than any camera makes in a time on the host's clock.
+double most_steps(double host_ns) {
+  return (2 * std::max(host_ns, 0.0) + host_delay_ns) / shortest_period_ns;
+}
+
+}  // namespace
+
+void FrameSequence::DevicePeriod::learn(double ns) {
+  seen_ns_.push_back(ns);
+  if (seen_ns_.size() > remembered_periods) seen_ns_.pop_front();
+}
+
+void FrameSequence::DevicePeriod::forget() {
+  seen_ns_.clear();
+  stated_ns_ = 0;
+}
+
+std::optional<double> FrameSequence::DevicePeriod::ns() const {
+  const bool stated = is_period(stated_ns_);
+  if (seen_ns_.size() < (stated ? enough_periods : 1)) return stated ? std::optional(stated_ns_) : std::nullopt;
+  return median({seen_ns_.begin(), seen_ns_.end()});
+}
+
+double FrameSequence::DevicePeriod::scatter() const {
+  if (seen_ns_.size() < enough_periods) return 0;
+  const double centre = median({seen_ns_.begin(), seen_ns_.end()});
+  std::vector<double> off;
+  for (const double ns : seen_ns_) off.push_back(std::abs(ns - centre) / centre);
+  return median(std::move(off));
+}
+
+void FrameSequence::HostPeriod::learn(double ns, std::int64_t frames) {
+  seen_.push_back({ns, frames});
+  if (seen_.size() > remembered_arrivals) seen_.pop_front();
+}
+
+void FrameSequence::HostPeriod::forget() {
+  seen_.clear();
+  stated_ns_ = 0;
+}
+
+std::optional<double> FrameSequence::HostPeriod::ns() const {
+  const bool stated = is_period(stated_ns_);
+  if (seen_.size() < (stated ? enough_arrivals : 1)) return stated ? std::optional(stated_ns_) : std::nullopt;
+  double ns = 0, frames = 0;
+  for (const Seen& seen : seen_) {
+    ns += seen.ns;
+    frames += static_cast<double>(seen.frames);
+  }
+  const double mean_ns = ns / frames;
+  if (stated && std::abs(mean_ns - stated_ns_) < 0.25 * stated_ns_) return stated_ns_;
+  return is_period(mean_ns) ? std::optional(mean_ns) : std::nullopt;
+}
+
+std::optional<double> FrameSequence::Elapsed::best() const {
+  if (!device || !host) return device ? device : host;
+  constexpr double jitter_periods = 5, jitter_ns = 0.25e9;
+  return *host - *device > std::max(jitter_periods, jitter_ns / period_ns) ? host : device;
+}
+
+FrameSequence::FrameSequence(FrameNumberKind kind, double frame_rate_hz)
+    : kind_(kind), device_period_(1e9 / frame_rate_hz), host_period_(1e9 / frame_rate_hz) {}
+
+std::int64_t FrameSequence::step_to(std::uint64_t number) const {
+  const std::uint64_t from = anchor_->number;
+  switch (kind_) {
+    case FrameNumberKind::gvsp16: {
+      // A camera that does not know that 0 is skipped sends it between 65535 and 1.
+      if (from == gvsp16_period && number == 0) return 1;
+      const auto difference =
+          static_cast<std::int64_t>(number % gvsp16_period) - static_cast<std::int64_t>(from % gvsp16_period);
+      const std::int64_t forward = ((difference % gvsp16_period) + gvsp16_period) % gvsp16_period;
+      return forward <= gvsp16_period / 2 ? forward : forward - gvsp16_period;
+    }
+    case FrameNumberKind::wrap32:
+      return static_cast<std::int32_t>(static_cast<std::uint32_t>(number - from));
+    case FrameNumberKind::wrap16:
+      return static_cast<std::int16_t>(static_cast<std::uint16_t>(number - from));
+    case FrameNumberKind::gvsp64:
+    case FrameNumberKind::wide:
+      break;
+  }
+  return static_cast<std::int64_t>(number - from);
+}
+
+/// Exposures between two frames that are so many periods apart.
+std::uint64_t FrameSequence::steps_in(double periods, const FrameStamp& stamp) const {
+  const double host_ns = static_cast<double>(stamp.host_time_ns - anchor_->host_time_ns);
+  return static_cast<std::uint64_t>(std::clamp(std::round(periods), 1.0, most_steps(host_ns)));
+}
+
+FrameSequence::Elapsed FrameSequence::elapsed(const FrameStamp& stamp) const {
+  Elapsed out;
+  const double host_ns = static_cast<double>(stamp.host_time_ns) - static_cast<double>(anchor_->host_time_ns);
+  if (const auto period = host_period_.ns()) {
+    out.host = std::max(host_ns, 0.0) / *period;
+    out.period_ns = *period;
+  }
+  const auto period = device_period_.ns();
+  const bool both = stamp.device_time_ns > 0 && anchor_->device_time_ns > 0;
+  const double device_ns = static_cast<double>(stamp.device_time_ns) - static_cast<double>(anchor_->device_time_ns);
+  // A clock that was set anew says nothing; one that stood still neither.
+  const bool set_ahead = device_ns > 2 * std::max(host_ns, 0.0) + host_delay_ns;
+  const bool set_back = host_ns > 2 * device_ns + host_delay_ns;
+  if (both && period && device_ns > 0 && !set_ahead && !set_back) out.device = device_ns / *period;
+  return out;
+}
+
+/// Only packets on a network overtake each other.
+bool FrameSequence::is_older(std::int64_t step, const FrameStamp& stamp) const {
+  if (step >= 0 || step < -arrival_window || !is_gvsp(kind_)) return false;
+  if (stamp.device_time_ns == 0 || anchor_->device_time_ns == 0) return step >= -2;
+  const auto period = device_period_.ns();
+  if (stamp.device_time_ns >= anchor_->device_time_ns || !period) return false;
+  const double periods = static_cast<double>(stamp.device_time_ns - anchor_->device_time_ns) / *period;
+  const auto by_number = static_cast<double>(step);
+  return std::abs(periods - by_number) <= std::max(0.6, 0.25 * std::abs(by_number));
+}
+
+/// Whether a frame with the number of the last one is another exposure all the same.
+bool FrameSequence::is_new_exposure(std::int64_t step, const FrameStamp& stamp) const {
+  if (step != 0) return true;
+  if (stamp.device_time_ns == 0 || anchor_->device_time_ns == 0) return false;
+  const auto period = device_period_.ns();
+  const auto moved_ns = static_cast<double>(stamp.device_time_ns - anchor_->device_time_ns);
+  return std::abs(moved_ns) > 0.5 * period.value_or(0);
+}
+
+/// Whether numbers went ahead by far more than the clocks allow.
+bool FrameSequence::claims_too_much(std::int64_t step, const Elapsed& passed, const FrameStamp& stamp) const {
+  // A clock that begins anew takes the numbers with it, unless they go on one by one.
+  if (step > 1 && stamp.device_time_ns > 0 && stamp.device_time_ns < anchor_->device_time_ns) return true;
+  const auto claimed = static_cast<double>(step);
+  const double claimed_ns = claimed * host_period_.ns().value_or(shortest_period_ns);
+  const double host_ns = static_cast<double>(stamp.host_time_ns - anchor_->host_time_ns);
+  if (claimed > most_steps(host_ns)) return true;
+  if (!passed.device) return claimed_ns > 2 * host_ns + host_delay_ns;
+  // The host may learn late of the frame before, never of time that has not passed.
+  return *passed.device < 0.75 * claimed - 1 && host_ns < 0.75 * claimed_ns;
+}
+
+/// Whether the camera's clock moved on by frames that its numbers do not know of.
+bool FrameSequence::hides_a_gap(std::int64_t step, const Elapsed& passed, const FrameStamp& stamp) {
+  const auto last_gap = std::exchange(last_gap_, std::nullopt);
+  if (!passed.device || stamp.may_pause) return false;
+  const auto counted = static_cast<double>(step);
+  const double tolerance = std::max({0.6, 0.25 * counted, 6 * device_period_.scatter() * counted});
+  if (*passed.device < counted + tolerance) return false;
+  const double gap = *passed.device / counted;
+  if (last_gap && std::abs(gap - *last_gap) < 0.1 * gap) {
+    // The same twice in succession: it is the camera's new rate.
+    device_period_.forget();
+    host_period_.forget();
+    return false;
+  }
+  last_gap_ = gap;
+  return true;
+}
+
+/// Exposures that were dropped on arrival because their numbers had been seen: the numbers began anew at 0 or 1, and
+/// with them the camera's clock, so that both go on as if nothing had happened. Only the host's clock tells, and only
+/// where the silence is as long as the numbers are high. Known some frames later, when they have not come in a hurry.
+std::uint64_t FrameSequence::dropped_on_arrival(std::int64_t step, const Elapsed& passed, const FrameStamp& stamp) {
+  const auto period = host_period_.ns();
+  if (!is_gvsp(kind_) || !period || !passed.host) return 0;
+  if (silence_) {
+    ++silence_->frames;
+    const double since = static_cast<double>(stamp.host_time_ns - silence_->host_time_ns) / *period;
+    if (since < 0.5 * silence_->frames) silence_.reset();
+    if (!silence_ || silence_->frames < frames_after_silence) return 0;
+    return steps_in(std::exchange(silence_, std::nullopt)->missing, stamp);
+  }
+  const double missing = *passed.host - static_cast<double>(step);
+  const auto number = static_cast<double>(*stamp.number);
+  const bool as_long_as_the_numbers = number <= arrival_window + 1 && missing > number - 3 && missing < 2 * number + 3;
+  if (step == 1 && !stamp.may_pause && missing * *period > least_silence_ns && as_long_as_the_numbers) {
+    silence_ = Silence{.missing = missing, .host_time_ns = stamp.host_time_ns, .frames = 0};
+  }
+  return 0;
+}
+
+void FrameSequence::learn(std::int64_t step, const FrameStamp& stamp) {
+  constexpr std::int64_t most = 8;
+  if (step < 1 || step > most) return;
+  const auto frames = static_cast<double>(step);
+  const auto host_ns = static_cast<double>(stamp.host_time_ns - anchor_->host_time_ns);
+  host_period_.learn(std::max(host_ns, 0.0), step);
+  if (stamp.device_time_ns <= anchor_->device_time_ns || anchor_->device_time_ns == 0) return;
+  device_period_.learn(static_cast<double>(stamp.device_time_ns - anchor_->device_time_ns) / frames);
+}
+
+FramePlace FrameSequence::keep(const FrameStamp& stamp, std::uint64_t sequence, Numbering numbering) {
+  anchor_ = Anchor{.number = *stamp.number,
+                   .sequence = sequence,
+                   .device_time_ns = stamp.device_time_ns,
+                   .host_time_ns = stamp.host_time_ns};
+  last_ = sequence;
+  return {sequence, numbering};
+}
+
+FramePlace FrameSequence::next(const FrameStamp& as_told) {
+  FrameStamp stamp = as_told;
+  stamp.device_time_ns = std::max<std::int64_t>(stamp.device_time_ns, 0);
+  const bool first = !std::exchange(started_, true);
+  const std::uint64_t following = first ? 0 : last_ + 1;
+  if (!stamp.number) {
+    last_ = following;
+    return {following, Numbering::counted};
+  }
+  if (!anchor_) return keep(stamp, following, Numbering::counted);
+  const std::int64_t step = step_to(*stamp.number);
+  if (is_older(step, stamp)) {
+    const auto back = static_cast<std::uint64_t>(-step);
+    return {anchor_->sequence - std::min(back, anchor_->sequence), Numbering::counted};
+  }
+  if (!is_new_exposure(step, stamp)) return {anchor_->sequence, Numbering::counted};
+  const Elapsed passed = elapsed(stamp);
+  if (step <= 0 || claims_too_much(step, passed, stamp)) {
+    silence_.reset();
+    const std::uint64_t at = anchor_->sequence + steps_in(passed.best().value_or(1), stamp);
+    return keep(stamp, std::max(at, following), Numbering::restarted);
+  }
+  if (hides_a_gap(step, passed, stamp)) {
+    silence_.reset();
+    const std::uint64_t at = anchor_->sequence + steps_in(*passed.device, stamp);
+    return keep(stamp, std::max(at, following), Numbering::timed);
+  }
+  const std::uint64_t dropped = dropped_on_arrival(step, passed, stamp);
+  if (!silence_) learn(step, stamp);
+  const std::uint64_t sequence = anchor_->sequence + static_cast<std::uint64_t>(step) + dropped;
+  return keep(stamp, sequence, dropped > 0 ? Numbering::timed : Numbering::counted);
+}
+
+}  // namespace todbench

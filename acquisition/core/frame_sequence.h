@@ -1,0 +1,128 @@
+// The numbers that cameras and drivers give their frames, to an exposure count that never wraps; checked against time.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "acquisition/core/frame.h"
+
+namespace todbench {
+
+/// How frames are numbered on the way to the program.
+enum class FrameNumberKind {
+  gvsp16,  ///< GigE Vision without extended ids: 16 bits, 65535 is followed by 1, 0 is never sent
+  gvsp64,  ///< GigE Vision with extended ids
+  wide,    ///< 64 bits, never wraps: USB3 Vision
+  wrap32,  ///< V4L2
+  wrap16,  ///< a 16-bit counter that uses 0: Seek
+};
+
+/// What is known of a frame when it arrives.
+struct FrameStamp {
+  std::optional<std::uint64_t> number;  ///< nothing: lost with the packet that said it
+  std::int64_t device_time_ns = 0;      ///< on the clock of the camera or driver; 0: none
+  std::int64_t host_time_ns = 0;        ///< CLOCK_MONOTONIC at arrival
+  bool may_pause = false;               ///< the camera corrects itself: it may be silent without losing exposures
+};
+
+/// Frame::sequence, and how it came about.
+struct FramePlace {
+  std::uint64_t sequence = 0;
+  Numbering numbering = Numbering::counted;
+  bool operator==(const FramePlace&) const = default;
+};
+
+/// Turns frame numbers into Frame::sequence: 0 for the first frame of a stream, gaps where exposures were lost.
+///
+/// Numbers are believed while the clocks do not contradict them. A number that goes back, or ahead by far more than the
+/// time that passed, began anew; numbers that go on over a time of several frames hide a loss (Aravis drops up to a
+/// hundred frames whose ids it has seen, without a word). The gap is then estimated from the camera's clock where it
+/// agrees with the host's, else from the host's.
+///
+/// Frames must be given in the order in which the transport completed them. One thread at a time.
+class FrameSequence {
+ public:
+  /// `frame_rate_hz` as the camera states it, 0: unknown.
+  FrameSequence(FrameNumberKind kind, double frame_rate_hz);
+
+  /// The place of a frame. One without number gets the place after the last one: its true place can only be that or
+  /// later, because the numbers of the frames round it differ from its own. 16-bit numbers are unwrapped over gaps of
+  /// up to 32767 frames (ten minutes at 50 Hz). A frame that is older by number and by the camera's clock gets its
+  /// older place.
+  [[nodiscard]] FramePlace next(const FrameStamp& as_told);
+
+ private:
+  /// The last frame that had a number.
+  struct Anchor {
+    std::uint64_t number = 0, sequence = 0;
+    std::int64_t device_time_ns = 0, host_time_ns = 0;
+  };
+  /// Frame periods from the anchor to a frame, by each clock; nothing where it does not say.
+  struct Elapsed {
+    std::optional<double> device, host;
+    double period_ns = 0;  ///< of the host's
+    /// Of the two the one to estimate a gap from where numbers began anew: the camera's, unless far more has passed on
+    /// the host's, because then the camera's clock began anew too.
+    [[nodiscard]] std::optional<double> best() const;
+  };
+  /// The usual time of a frame on the clock of the camera: the median of those seen.
+  class DevicePeriod {
+   public:
+    explicit DevicePeriod(double stated_ns) : stated_ns_(stated_ns) {}
+    void learn(double ns);
+    void forget();
+    [[nodiscard]] std::optional<double> ns() const;
+    /// Scatter of the time of a frame, in periods.
+    [[nodiscard]] double scatter() const;
+
+   private:
+    double stated_ns_;
+    std::deque<double> seen_ns_;
+  };
+  /// The same on the clock of the host, where single frames come early and late: the stated one where the mean of those
+  /// seen does not contradict it, else the mean.
+  class HostPeriod {
+   public:
+    explicit HostPeriod(double stated_ns) : stated_ns_(stated_ns) {}
+    void learn(double ns, std::int64_t frames);
+    void forget();
+    [[nodiscard]] std::optional<double> ns() const;
+
+   private:
+    struct Seen {
+      double ns = 0;
+      std::int64_t frames = 1;
+    };
+    double stated_ns_;
+    std::deque<Seen> seen_;
+  };
+  /// A silence on the host's clock that is no loss if the frames behind it come faster than they are exposed.
+  struct Silence {
+    double missing = 0;  ///< periods
+    std::int64_t host_time_ns = 0;
+    int frames = 0;  ///< since then
+  };
+
+  [[nodiscard]] std::int64_t step_to(std::uint64_t number) const;
+  [[nodiscard]] std::uint64_t steps_in(double periods, const FrameStamp& stamp) const;
+  [[nodiscard]] Elapsed elapsed(const FrameStamp& stamp) const;
+  [[nodiscard]] bool is_older(std::int64_t step, const FrameStamp& stamp) const;
+  [[nodiscard]] bool is_new_exposure(std::int64_t step, const FrameStamp& stamp) const;
+  [[nodiscard]] bool claims_too_much(std::int64_t step, const Elapsed& passed, const FrameStamp& stamp) const;
+  [[nodiscard]] bool hides_a_gap(std::int64_t step, const Elapsed& passed, const FrameStamp& stamp);
+  [[nodiscard]] std::uint64_t dropped_on_arrival(std::int64_t step, const Elapsed& passed, const FrameStamp& stamp);
+  void learn(std::int64_t step, const FrameStamp& stamp);
+  FramePlace keep(const FrameStamp& stamp, std::uint64_t sequence, Numbering numbering);
+
+  FrameNumberKind kind_;
+  DevicePeriod device_period_;
+  HostPeriod host_period_;
+  bool started_ = false;
+  std::optional<Anchor> anchor_;
+  std::uint64_t last_ = 0;
+  std::optional<double> last_gap_;  ///< device periods, where the last frame hid a gap
+  std::optional<Silence> silence_;
+};
+
+}  // namespace todbench

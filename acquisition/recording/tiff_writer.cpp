@@ -1,0 +1,119 @@
+#include "acquisition/recording/tiff_writer.h"
+
+#include <array>
+#include <bit>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "acquisition/recording/tiff_stack.h"
+
+namespace todbench {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers are stored as they lie in memory");
+
+/// Little-endian, BigTIFF, eight bytes to an offset; then the offset of the first directory.
+constexpr std::array<std::uint8_t, 16> file_head{'I', 'I', 43, 0, 8, 0, 0, 0};
+constexpr std::uint64_t first_link = 8;
+
+/// Types of values (TIFF 6.0, section 2; BigTIFF).
+constexpr std::uint16_t of_16_bits = 3, of_32_bits = 4, of_64_bits = 16;
+
+struct Entry {
+  std::uint16_t tag = 0, type = 0;
+  std::uint64_t value = 0;
+};
+
+template <typename Number>
+void put(std::vector<std::uint8_t>& to, Number number) {
+  const std::size_t at = to.size();
+  to.resize(at + sizeof number);
+  std::memcpy(to.data() + at, &number, sizeof number);
+}
+
+/// The directory of a page whose pixels are at `offset`, in the order of the tags, with no page behind it.
+std::vector<std::uint8_t> directory_of(const cv::Mat1w& counts, std::uint64_t offset) {
+  const auto width = static_cast<std::uint64_t>(counts.cols), height = static_cast<std::uint64_t>(counts.rows);
+  const std::array entries{Entry{256, of_32_bits, width},
+                           Entry{257, of_32_bits, height},
+                           Entry{258, of_16_bits, 16},      // bits per sample
+                           Entry{259, of_16_bits, 1},       // not compressed
+                           Entry{262, of_16_bits, 1},       // zero is black
+                           Entry{273, of_64_bits, offset},  // of the one strip
+                           Entry{277, of_16_bits, 1},       // samples per pixel
+                           Entry{278, of_32_bits, height},  // rows per strip
+                           Entry{279, of_64_bits, 2 * width * height},
+                           Entry{284, of_16_bits, 1},   // planes follow each other
+                           Entry{339, of_16_bits, 1}};  // unsigned
+  std::vector<std::uint8_t> out;
+  put(out, std::uint64_t{entries.size()});
+  for (const Entry& entry : entries) {
+    put(out, entry.tag);
+    put(out, entry.type);
+    put(out, std::uint64_t{1});
+    put(out, entry.value);
+  }
+  put(out, std::uint64_t{0});
+  return out;
+}
+
+}  // namespace
+
+Result<TiffWriter> TiffWriter::create(const std::filesystem::path& path) {
+  auto file = WrittenFile::create(path);
+  if (!file) return tl::unexpected(file.error());
+  TiffWriter writer(*std::move(file));
+  if (auto written = writer.file_.append(file_head.data(), file_head.size()); !written)
+    return tl::unexpected(written.error());
+  writer.link_offset_ = first_link;
+  return writer;
+}
+
+Result<void> TiffWriter::append_page(const cv::Mat1w& counts) {
+  const std::uint64_t pixels_offset = file_.bytes();
+  if (auto present = file_.check_present(); !present) return present;
+  const cv::Mat1w pixels = counts.isContinuous() ? counts : cv::Mat1w(counts.clone());
+  if (auto written = file_.append(pixels.data, 2 * pixels.total()); !written) return written;
+  // Directories begin at whole words; a filled one also keeps 64-bit numbers aligned.
+  constexpr std::uint64_t alignment = 8;
+  const std::array<std::uint8_t, alignment> filler{};
+  const std::uint64_t missing = (alignment - file_.bytes() % alignment) % alignment;
+  if (auto written = file_.append(filler.data(), missing); !written) return written;
+  const std::uint64_t directory_offset = file_.bytes();
+  const auto directory = directory_of(counts, pixels_offset);
+  if (auto written = file_.append(directory.data(), directory.size()); !written) return written;
+  if (auto linked = file_.overwrite(link_offset_, &directory_offset, sizeof directory_offset); !linked) return linked;
+  link_offset_ = file_.bytes() - sizeof directory_offset;
+  return {};
+}
+
+Result<void> TiffWriter::append(const cv::Mat1w& counts) {
+  if (counts.empty()) return fail(ErrorCode::invalid_input, file_.path().string() + ": a page needs pixels");
+  if (broken_) return fail(ErrorCode::io, file_.path().string() + ": ended where the disk refused to go on");
+  const std::uint64_t before = file_.bytes();
+  auto written = append_page(counts);
+  if (written) {
+    ++pages_;
+    return written;
+  }
+  broken_ = true;
+  const std::uint64_t none = 0;
+  static_cast<void>(file_.overwrite(link_offset_, &none, sizeof none));
+  file_.cut(before);
+  return written;
+}
+
+Result<std::uint64_t> TiffWriter::verified_pages() {
+  if (auto synced = file_.sync(); !synced) return tl::unexpected(synced.error());
+  if (pages_ == 0) return 0;
+  const auto again = open_tiff_stack(file_.path(), {});
+  if (!again) return fail("reading it again", with_code(ErrorCode::io, again.error()));
+  if (again->frame_count != pages_) {
+    return fail(ErrorCode::io, file_.path().string() + ": holds " + std::to_string(again->frame_count) +
+                                   " pages, and " + std::to_string(pages_) + " were written");
+  }
+  return pages_;
+}
+
+}  // namespace todbench
