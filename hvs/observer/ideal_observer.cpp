@@ -1,5 +1,6 @@
 #include "hvs/observer/ideal_observer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -30,6 +31,18 @@ class PreparedIdealObserver final : public PreparedObserver {
     }
     choice.alternative = best;
     return choice;
+  }
+
+  /// This observer adds no noise: the best alternatives share the answer.
+  [[nodiscard]] GradedChoice judge(const Patch& patch, double contrast_k, const RandomStream& noise,
+                                   int /*draws*/) const override {
+    GradedChoice out{.choice = choose(patch, contrast_k, noise), .answers = {}};
+    const auto end = out.choice.scores.begin() + out.choice.alternatives;
+    const double top = *std::max_element(out.choice.scores.begin(), end);
+    const auto best = std::count(out.choice.scores.begin(), end, top);
+    for (std::size_t o = 0; o < static_cast<std::size_t>(out.choice.alternatives); ++o)
+      out.answers.probability[o] = out.choice.scores[o] == top ? 1 / static_cast<double>(best) : 0;
+    return out;
   }
 
  private:

@@ -29,6 +29,19 @@ struct Choice {
   std::array<double, max_alternatives> scores{};  ///< decision variable of each, in units of the contrast
 };
 
+/// How often an observer would give each answer to one patch, over all noise that it adds itself.
+struct AnswerProbabilities {
+  std::array<double, Choice::max_alternatives> probability{};  ///< of each alternative; they sum to 1
+  double standard_error = 0;  ///< of the largest of them, where they come from draws of that noise; 0: exact
+  int draws = 0;              ///< of that noise; 0: none was needed
+};
+
+/// The answer to one patch, and how probable it and the others are for this very patch.
+struct GradedChoice {
+  Choice choice;  ///< one answer, as choose() gives it
+  AnswerProbabilities answers;
+};
+
 /// An observer prepared for one size on one sampling grid. Immutable, thread-safe, shared.
 class PreparedObserver {
  public:
@@ -41,6 +54,10 @@ class PreparedObserver {
   /// `noise`, a stream of this trial alone. The patch has window_samples() on a side. Allocates nothing. Equal scores
   /// are decided by `noise`.
   [[nodiscard]] virtual Choice choose(const Patch& patch, double contrast_k, const RandomStream& noise) const = 0;
+  /// choose(), and the probability of every answer given the patch, averaged over the observer's own noise: exactly
+  /// where that is possible, else over `draws` of it. Allocates nothing after the first call.
+  [[nodiscard]] virtual GradedChoice judge(const Patch& patch, double contrast_k, const RandomStream& noise,
+                                           int draws) const = 0;
 };
 
 /// A model of an observer. Thread-safe.

@@ -5,23 +5,12 @@
 #include <numbers>
 #include <string>
 
-#include "acquisition/core/multiversion.h"
+#include "hvs/observer/block_product.h"
 #include "hvs/observer/template_observer.h"
 #include "hvs/shape/polygon_image.h"
 
 namespace todbench {
 namespace {
-
-TODBENCH_MULTIVERSION
-void project_block(const float* values, const float* patch, std::size_t samples, float* scores) {
-  float sums[TemplateBank::block] = {};
-  for (std::size_t s = 0; s < samples; ++s) {
-    const float signal = patch[s];
-    const float* column = values + s * TemplateBank::block;
-    for (std::size_t t = 0; t < TemplateBank::block; ++t) sums[t] += column[t] * signal;
-  }
-  for (std::size_t t = 0; t < TemplateBank::block; ++t) scores[t] = sums[t];
-}
 
 /// Display (sample and hold over one sample) and blur of display and eye together: sinc(u) sinc(w) exp(-2 pi^2 sigma^2
 /// rho^2).
@@ -116,7 +105,14 @@ void TemplateBank::project(std::span<const float> patch, std::span<float> scores
   const auto count = static_cast<std::size_t>(window_) * static_cast<std::size_t>(window_);
   CV_Assert(patch.size() == count && scores.size() == padded_templates());
   for (std::size_t b = 0; b < blocks_; ++b)
-    project_block(values_.data() + b * block * count, patch.data(), count, scores.data() + b * block);
+    block_product(values_.data() + b * block * count, patch.data(), count, scores.data() + b * block);
+}
+
+void TemplateBank::copy_template(std::size_t index, std::span<float> values) const {
+  const auto count = static_cast<std::size_t>(window_) * static_cast<std::size_t>(window_);
+  CV_Assert(values.size() == count && index < static_cast<std::size_t>(templates()));
+  const float* source = values_.data() + index / block * block * count + index % block;
+  for (std::size_t s = 0; s < count; ++s) values[s] = source[s * block];
 }
 
 void TemplateBank::add_sample(std::size_t sample, float amount, std::span<float> scores) const {
@@ -129,12 +125,8 @@ void TemplateBank::add_sample(std::size_t sample, float amount, std::span<float>
 }
 
 cv::Mat1f TemplateBank::image(int alternative, int place) const {
-  const auto count = static_cast<std::size_t>(window_) * static_cast<std::size_t>(window_);
-  const auto t = static_cast<std::size_t>(alternative * places_ + place);
-  const float* source = values_.data() + t / block * block * count + t % block;
   cv::Mat1f out(window_, window_);
-  for (std::size_t s = 0; s < count; ++s)
-    out(static_cast<int>(s) / window_, static_cast<int>(s) % window_) = source[s * block];
+  copy_template(static_cast<std::size_t>(alternative * places_ + place), std::span(out.ptr<float>(), out.total()));
   return out;
 }
 

@@ -31,10 +31,13 @@ class TemplateBank {
   [[nodiscard]] int templates() const { return alternatives_ * places_; }
   /// templates() rounded up to whole blocks: the length of a score vector. The padding scores are zero.
   [[nodiscard]] std::size_t padded_templates() const { return blocks_ * block; }
+  [[nodiscard]] std::size_t blocks() const { return blocks_; }
 
   /// Scores of all templates for a patch of window_samples()^2 values, row by row. `scores` has padded_templates()
   /// elements. Each score is one sum over samples in a fixed order: the same bits on every instruction set.
   void project(std::span<const float> patch, std::span<float> scores) const;
+  /// The values of one template, sample by sample: window_samples()^2 elements.
+  void copy_template(std::size_t index, std::span<float> values) const;
   /// Adds `amount` times every template's value at one sample of the patch to the scores: the change of project() when
   /// that sample changes by `amount`.
   void add_sample(std::size_t sample, float amount, std::span<float> scores) const;

@@ -4,7 +4,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <mutex>
+#include <optional>
 #include <vector>
+
+#include "hvs/observer/answer_probabilities.h"
 
 namespace todbench {
 namespace {
@@ -15,6 +19,8 @@ constexpr std::size_t stack_templates = 4096;
 
 // Positions in a trial's random stream: pixel noise first, the tie-break far behind it.
 constexpr std::uint64_t tie_break_index = std::uint64_t{1} << 40;
+// The stream below a trial's own of which graded answers draw, apart from the one answer.
+constexpr std::uint64_t graded_sub_stream = 1;
 
 /// Winner among equal scores by lot.
 int winner(const Choice& choice, const RandomStream& noise) {
@@ -50,15 +56,33 @@ class PreparedTemplateObserver final : public PreparedObserver {
     return decide(patch, contrast_k, noise, signal, draws, scores);
   }
 
+  [[nodiscard]] GradedChoice judge(const Patch& patch, double contrast_k, const RandomStream& noise,
+                                   int draws) const override {
+    const Choice choice = choose(patch, contrast_k, noise);
+    const ScoreNoise& own = own_noise_of_scores();
+    const auto side = static_cast<std::size_t>(bank_->window_samples());
+    const std::size_t templates = bank_->padded_templates();
+    if (side * side <= stack_samples && templates <= stack_templates && own.size() <= stack_templates) {
+      std::array<float, stack_samples> signal, numbers, direction;
+      std::array<float, stack_templates> scores, rows, along;
+      return {choice, probabilities(patch, contrast_k, noise, draws, std::span(signal).first(side * side),
+                                    std::span(scores).first(templates),
+                                    {.rows = std::span(rows).first(own.size()),
+                                     .along = std::span(along).first(own.size()),
+                                     .numbers = std::span(numbers).first(own.rank()),
+                                     .direction = std::span(direction).first(own.rank())})};
+    }
+    std::vector<float> signal(side * side), scores(templates);
+    std::vector<float> rows(own.size()), along(own.size()), numbers(own.rank()), direction(own.rank());
+    return {choice, probabilities(patch, contrast_k, noise, draws, signal, scores,
+                                  {.rows = rows, .along = along, .numbers = numbers, .direction = direction})};
+  }
+
  private:
   [[nodiscard]] Choice decide(const Patch& patch, double contrast_k, const RandomStream& noise, std::span<float> signal,
                               std::span<float> draws, std::span<float> scores) const {
     scale_to_contrast(patch, contrast_k, signal);
-    // Internal noise, and the part of the sensor's noise by which this observer sees it enlarged, in units of the
-    // contrast.
-    const double enlarged = spec_.sensor_noise_factor * spec_.sensor_noise_factor - 1;
-    const double seen = patch.noise_k / contrast_k;
-    const auto sd = static_cast<float>(std::sqrt(spec_.internal_noise * spec_.internal_noise + enlarged * seen * seen));
+    const auto sd = static_cast<float>(own_noise(patch, contrast_k));
     if (sd > 0) {
       noise.fill_normal(draws);
       for (std::size_t s = 0; s < signal.size(); ++s) signal[s] += sd * draws[s];
@@ -75,6 +99,29 @@ class PreparedTemplateObserver final : public PreparedObserver {
     return choice;
   }
 
+  [[nodiscard]] AnswerProbabilities probabilities(const Patch& patch, double contrast_k, const RandomStream& noise,
+                                                  int draws, std::span<float> signal, std::span<float> scores,
+                                                  const AnswerRoom& room) const {
+    scale_to_contrast(patch, contrast_k, signal);
+    bank_->project(signal, scores);
+    return answer_probabilities(own_noise_of_scores(), scores, own_noise(patch, contrast_k),
+                                noise.sub(graded_sub_stream), draws, room);
+  }
+
+  /// Made at the first graded answer: it costs as much as the bank, and most observers are only asked to choose.
+  [[nodiscard]] const ScoreNoise& own_noise_of_scores() const {
+    std::call_once(noise_made_, [this] { noise_.emplace(*bank_); });
+    return *noise_;
+  }
+
+  /// Internal noise, and the part of the sensor's noise by which this observer sees it enlarged: sd per sample in units
+  /// of the contrast.
+  [[nodiscard]] double own_noise(const Patch& patch, double contrast_k) const {
+    const double enlarged = spec_.sensor_noise_factor * spec_.sensor_noise_factor - 1;
+    const double seen = patch.noise_k / contrast_k;
+    return std::sqrt(spec_.internal_noise * spec_.internal_noise + enlarged * seen * seen);
+  }
+
   /// The patch without its mean, in units of the contrast. Differences are formed in double precision, so a background
   /// of 300 K leaves no trace.
   static void scale_to_contrast(const Patch& patch, double contrast_k, std::span<float> signal) {
@@ -88,6 +135,8 @@ class PreparedTemplateObserver final : public PreparedObserver {
 
   TemplateObserverSpec spec_;
   std::shared_ptr<const TemplateBank> bank_;
+  mutable std::once_flag noise_made_;
+  mutable std::optional<ScoreNoise> noise_;
 };
 
 }  // namespace
@@ -137,7 +186,10 @@ Result<std::shared_ptr<const TemplateBank>> TemplateObserver::bank(double size_s
 Result<std::shared_ptr<const PreparedObserver>> TemplateObserver::prepare(double size_samples, int samples_per_pitch) {
   auto found = bank(size_samples, samples_per_pitch);
   if (!found) return tl::unexpected(found.error());
-  return std::make_shared<const PreparedTemplateObserver>(spec_, *found);
+  const std::scoped_lock lock(mutex_);
+  auto& slot = prepared_[{size_samples, samples_per_pitch}];
+  if (slot == nullptr) slot = std::make_shared<const PreparedTemplateObserver>(spec_, *found);
+  return slot;
 }
 
 }  // namespace todbench

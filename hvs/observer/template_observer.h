@@ -47,6 +47,7 @@ class TemplateObserver final : public Observer {
   Alternatives alternatives_;
   std::mutex mutex_;
   std::map<std::pair<double, int>, std::shared_ptr<const TemplateBank>> banks_;
+  std::map<std::pair<double, int>, std::shared_ptr<const PreparedObserver>> prepared_;
 };
 
 }  // namespace todbench

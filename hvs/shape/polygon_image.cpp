@@ -3,6 +3,7 @@
 #include <fftw3.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <mutex>
 #include <numbers>
@@ -173,23 +174,35 @@ cv::Mat1d corner_of_inverse(const SplitMatrix& folded, int points, cv::Size size
 }
 
 /// Complex-to-real inverse transform of n x n points in place, of which only the first `columns` columns of each row
-/// are not zero. FFTW_ESTIMATE, so that results repeat bit for bit.
-void inverse_in_place(fftw_complex* data, int n, int columns) {
+/// are not zero. Only the first `rows` and the last `rows` rows of the result are computed. FFTW_ESTIMATE, so that
+/// results repeat bit for bit.
+void inverse_in_place(fftw_complex* data, int n, int columns, int rows) {
   static std::mutex planner;  // FFTW's planner is not thread-safe; executing a plan is
   const int half = n / 2 + 1;
-  fftw_plan down = nullptr, along = nullptr;
+  const auto along_rows = [&](int first, int count) {
+    fftw_complex* begin = data + static_cast<std::ptrdiff_t>(first) * half;
+    return fftw_plan_many_dft_c2r(1, &n, count, begin, nullptr, 1, half, reinterpret_cast<double*>(begin), nullptr, 1,
+                                  2 * half, FFTW_ESTIMATE);
+  };
+  std::array<fftw_plan, 3> plans{};
   {
     const std::scoped_lock lock(planner);
-    down = fftw_plan_many_dft(1, &n, columns, data, nullptr, half, 1, data, nullptr, half, 1, FFTW_BACKWARD,
-                              FFTW_ESTIMATE);
-    along = fftw_plan_many_dft_c2r(1, &n, n, data, nullptr, 1, half, reinterpret_cast<double*>(data), nullptr, 1,
-                                   2 * half, FFTW_ESTIMATE);
+    plans[0] = fftw_plan_many_dft(1, &n, columns, data, nullptr, half, 1, data, nullptr, half, 1, FFTW_BACKWARD,
+                                  FFTW_ESTIMATE);
+    if (2 * rows >= n) {
+      plans[1] = along_rows(0, n);
+    } else {
+      plans[1] = along_rows(0, rows);
+      plans[2] = along_rows(n - rows, rows);
+    }
   }
-  fftw_execute(down);
-  fftw_execute(along);
+  for (fftw_plan plan : plans) {
+    if (plan != nullptr) fftw_execute(plan);
+  }
   const std::scoped_lock lock(planner);
-  fftw_destroy_plan(down);
-  fftw_destroy_plan(along);
+  for (fftw_plan plan : plans) {
+    if (plan != nullptr) fftw_destroy_plan(plan);
+  }
 }
 
 }  // namespace
@@ -265,6 +278,11 @@ cv::Mat1d PolygonImage::sample(cv::Point2d first, double step, cv::Size size) co
 }
 
 cv::Mat1d PolygonImage::fine_image(int per_unit) const {
+  return fine_image(per_unit, lattice_.period);
+}
+
+cv::Mat1d PolygonImage::fine_image(int per_unit, int reach) const {
+  CV_Assert(reach > 0);
   const int n = per_unit * lattice_.period;
   const int band = lattice_.band;
   CV_Assert(n > 2 * band);
@@ -282,10 +300,12 @@ cv::Mat1d PolygonImage::fine_image(int per_unit) const {
       target[2 * m + 1] = im[m];
     }
   }
-  inverse_in_place(reinterpret_cast<fftw_complex*>(data.ptr<double>()), n, band + 1);
+  const int rows = std::min(n, reach * per_unit);
+  inverse_in_place(reinterpret_cast<fftw_complex*>(data.ptr<double>()), n, band + 1, rows);
   cv::Mat1d out = data.colRange(0, n);
   const double scale = 1.0 / (static_cast<double>(lattice_.period) * lattice_.period);
   for (int row = 0; row < n; ++row) {
+    if (row >= rows && row < n - rows) continue;
     double* values = out[row];
     for (int column = 0; column < n; ++column) values[column] *= scale;
   }

@@ -51,6 +51,9 @@ class PolygonImage {
   /// Point (j, i) is at (i, j) / per_unit, periodic (negative positions wrap). Rows are padded: not continuous.
   /// Requires per_unit * period > 2 band.
   [[nodiscard]] cv::Mat1d fine_image(int per_unit) const;
+  /// The same for the rows nearer to the origin than `reach` units, 0 <= y < reach and -reach <= y < 0; those beyond
+  /// hold no image.
+  [[nodiscard]] cv::Mat1d fine_image(int per_unit, int reach) const;
 
   [[nodiscard]] const FrequencyLattice& lattice() const { return lattice_; }
 

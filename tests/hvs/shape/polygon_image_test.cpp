@@ -129,6 +129,22 @@ TEST(PolygonImage, FineImageHoldsEveryPhaseThatSampleComputesSingly) {
   }
 }
 
+TEST(PolygonImage, FineImageNearTheOriginIsThatOfTheWholePeriod) {
+  const FilterTable filter({.period = 20, .band = 75}, gaussian(0.35));
+  const PolygonImage image(triangle(2.6, Apex::right, {0.1, 0.2}), filter);
+
+  const cv::Mat1d whole = image.fine_image(16);
+  for (const int reach : {3, 9, 10, 40}) {
+    const cv::Mat1d near = image.fine_image(16, reach);
+    const int rows = std::min(160, 16 * reach);
+    for (int y = -rows; y < rows; ++y) {
+      const int row = (y + 320) % 320;
+      // Another plan of the transform may round otherwise.
+      for (int x = 0; x < 320; ++x) EXPECT_NEAR(near(row, x), whole(row, x), 1e-15) << reach;
+    }
+  }
+}
+
 TEST(PolygonImage, ConservesTheAreaOfTheShape) {
   const FilterTable filter({.period = 12, .band = 40}, gaussian(0.5));
   const PolygonImage image(triangle(2, Apex::down), filter);
