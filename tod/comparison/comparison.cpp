@@ -1,5 +1,7 @@
 #include "tod/comparison/comparison.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -98,6 +100,34 @@ ComparisonVerdict verdict_of(const ComparisonPoint& point) {
                                                           : ComparisonVerdict::inconclusive;
 }
 
+bool unfit(const TodPoint& point) {
+  return point.adequacy && !point.adequacy->adequate();
+}
+
+// Answers of two runs are never the same row by row.
+bool same_answers(const TodPoint& a, const TodPoint& b) {
+  const auto same = [](const Level& x, const Level& y) {
+    return x.size == y.size && x.correct == y.correct && x.total == y.total;
+  };
+  return !a.levels.empty() && std::equal(a.levels.begin(), a.levels.end(), b.levels.begin(), b.levels.end(), same);
+}
+
+// What makes a point unfit, with the curve and contrast that it is about.
+void add_unfit(Adequacy& adequacy, const TodPoint& point, const char* which) {
+  if (!unfit(point)) return;
+  for (AdequacyFinding finding : point.adequacy->findings) {
+    if (!finding.unfit) continue;
+    finding.sentence = fmt::format("{} curve at {:.4g} K: {}", which, point.set_delta_t_k, finding.sentence);
+    adequacy.findings.push_back(std::move(finding));
+  }
+}
+
+// The point of the other curve at this contrast, where each is the nearest of the other.
+const TodPoint* partner(const TodPoint& point, const TodCurve& own, const TodCurve& other) {
+  const TodPoint* found = point_at(other, point.set_delta_t_k);
+  return found != nullptr && point_at(own, found->set_delta_t_k) == &point ? found : nullptr;
+}
+
 Result<ComparisonPoint> compare_points(const TodPoint& a, const TodPoint& b, const ComparisonOptions& options) {
   ComparisonPoint point;
   point.set_delta_t_k = a.set_delta_t_k;
@@ -115,7 +145,7 @@ Result<ComparisonPoint> compare_points(const TodPoint& a, const TodPoint& b, con
   point.p_difference = std::min(1.0, 2 * upper_tail(std::sqrt(test->lr / spread.inflation), spread.degrees_of_freedom));
   point.p_equivalence =
       equivalence_probability(*tb - *ta, point.ratio_ci90, options.margin_percent, spread.degrees_of_freedom);
-  point.verdict = verdict_of(point);
+  point.verdict = unfit(a) || unfit(b) ? ComparisonVerdict::inconclusive : verdict_of(point);
   return point;
 }
 
@@ -175,17 +205,35 @@ Result<Comparison> compare(const TodCurve& a, const TodCurve& b, const Compariso
     return fail(ErrorCode::invalid_input, "equivalence margin must be positive");
   if (a.observer != b.observer)
     return fail(ErrorCode::invalid_input, "the curves have different observers: " + a.observer + " and " + b.observer);
-  Comparison comparison;
+  Comparison comparison{.points = {}, .verdict = {}, .adequacy = Adequacy{}};
+  bool same = true;
   for (const TodPoint& point : a.points) {
-    const TodPoint* other = point_at(b, point.set_delta_t_k);
+    const TodPoint* other = partner(point, a, b);
     if (other == nullptr) continue;
+    same = same && same_answers(point, *other);
+    add_unfit(*comparison.adequacy, point, "first");
+    add_unfit(*comparison.adequacy, *other, "second");
     auto compared = compare_points(point, *other, options);
     if (!compared) return fail("comparing at " + std::to_string(point.set_delta_t_k) + " K", compared.error());
     comparison.points.push_back(*compared);
   }
   if (comparison.points.empty()) return fail(ErrorCode::invalid_input, "no contrast was measured in both curves");
   comparison.verdict = overall(comparison.points);
+  if (same) {
+    add_finding(comparison, {.kind = FindingKind::identity,
+                             .sentence = "both curves are of the same answers: their agreement shows nothing",
+                             .unfit = true});
+  }
   return comparison;
+}
+
+void add_finding(Comparison& comparison, AdequacyFinding finding) {
+  if (finding.unfit) {
+    for (ComparisonPoint& point : comparison.points) point.verdict = ComparisonVerdict::inconclusive;
+    comparison.verdict = ComparisonVerdict::inconclusive;
+  }
+  if (!comparison.adequacy) comparison.adequacy.emplace();
+  comparison.adequacy->findings.push_back(std::move(finding));
 }
 
 }  // namespace todbench

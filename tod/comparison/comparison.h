@@ -11,7 +11,8 @@
 namespace todbench {
 
 /// equivalent: the 90 % interval of the ratio lies inside the margin. different: it does not, and p_difference < 0.05.
-/// inconclusive: neither, or a threshold or a side of an interval is missing. Equivalent wins where a difference is
+/// inconclusive: neither, or a threshold or a side of an interval is missing, or a number is not fit for a decision.
+/// Equivalent wins where a difference is
 /// both proven and smaller than the margin: many trials make any small difference significant, and the margin says
 /// which ones matter.
 enum class ComparisonVerdict { equivalent, different, inconclusive };
@@ -46,7 +47,14 @@ struct Comparison {
   std::vector<ComparisonPoint> points;
   /// Different if any, else inconclusive if any, else equivalent.
   ComparisonVerdict verdict = ComparisonVerdict::inconclusive;
+  /// What speaks against the comparison: what makes a threshold of either curve unfit, and what keeps the two from
+  /// being compared. Nothing: not examined (records of earlier programs).
+  std::optional<Adequacy> adequacy{};
 };
+
+/// Adds what is known of the two curves beside their points. A finding that makes them unfit leaves every point and the
+/// whole inconclusive.
+void add_finding(Comparison& comparison, AdequacyFinding finding);
 
 /// Likelihood-ratio comparison of two data sets at one contrast, with a common or separate slopes. Trials count as
 /// independent.
@@ -65,8 +73,10 @@ enum class SlopeModel { shared, separate };
                                                     SlopeModel slopes, double margin_percent,
                                                     const FitOptions& options);
 
-/// Pairs the points of two curves by set contrast (0.5 % tolerance). `invalid_input` when no contrast is in both or the
-/// observers differ.
+/// Pairs the points of two curves by set contrast: those that are the same one (0.5 %) and the nearest of each other.
+/// Exchanged arguments give inverse ratios and the same verdicts. A point whose threshold is unfit in either curve is
+/// inconclusive, and so are all where both curves are of the same answers. `invalid_input` when no contrast is in both
+/// or the observers differ.
 [[nodiscard]] Result<Comparison> compare(const TodCurve& a, const TodCurve& b, const ComparisonOptions& options);
 
 }  // namespace todbench

@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "acquisition/core/safe_text.h"
 #include "tod/instruments/descriptor.h"
 
 namespace todbench {
@@ -68,7 +69,7 @@ AskOperator operator_at_terminal(std::ostream& out, std::shared_ptr<LineSource> 
   return [&out, answers = std::move(answers)](const OperatorRequest& request,
                                               const std::stop_token& stop) -> Result<OperatorAnswer> {
     out << "Please:\n";
-    for (const auto& step : request.steps) out << "  - " << sentence(step) << "\n";
+    for (const auto& step : request.steps) out << "  - " << one_line(sentence(step)) << "\n";
     for (;;) {
       out << "Enter when done, q to stop: " << std::flush;
       const auto line = answers->next_line(stop);

@@ -20,6 +20,8 @@ constexpr unsigned settling_bit = 1U << 1;  // SCPI-99 volume 1, 20.1.3: OPERati
 // Below these a set-point counts as the one asked for: half the last digit instruments of this class show.
 constexpr double same_temperature_k = 0.0005;
 constexpr double same_position_mm = 0.0005;
+// No plate or radiator of a bench is hotter.
+constexpr double hottest_k = 5000;
 
 struct MountingName {
   Mounting mounting;
@@ -100,8 +102,11 @@ class Instrument {
  private:
   template <typename T>
   Result<T> named(Result<T> result) {
-    if (!result) return fail(name(), result.error());
-    return result;
+    if (result) return result;
+    // An instrument that refuses what it was asked before, or should know, cannot be measured with: that is no mistake
+    // of the plan, whose states were checked against the limits that the instrument stated.
+    const bool refuses = result.error().code == ErrorCode::invalid_input;
+    return fail(name(), refuses ? with_code(ErrorCode::disconnected, result.error()) : result.error());
   }
 
   std::string role_, endpoint_;
@@ -242,6 +247,11 @@ Result<ScpiTarget::Reading> ScpiTarget::read(const std::stop_token& stop) {
     auto value = black_body_.numbers(queries[i], 1, stop);
     if (!value) return tl::unexpected(value.error());
     temperatures[i] = value->front();
+  }
+  for (const std::size_t i : {1, 2}) {
+    if (temperatures[i] > 0 && temperatures[i] <= hottest_k) continue;
+    return fail(ErrorCode::disconnected, black_body_.name() + ": " + queries[i] + " answered " +
+                                             decimal(temperatures[i], 3) + " K, which no plate can have");
   }
   reading.target.state = {
       scpi_fields(*plate).front(), *mounting_reached, temperatures[0], {(*position)[0], (*position)[1]}};

@@ -39,8 +39,9 @@ struct ScpiTargetOptions {
 /// present() asks each instrument for its set-points and commands only those that differ, so a knob turned by hand is
 /// put right. It returns when both instruments say they are settled *and* what they measure agrees with what was asked.
 /// PresentedTarget::state is what was measured. A state beyond the instruments' limits is `invalid_input` before
-/// anything moves. `timeout` names the instrument, what was asked and what was reached. When an instrument goes away:
-/// `disconnected`; the next present() connects anew and insists on the same *IDN?.
+/// anything moves. `timeout` names the instrument, what was asked and what was reached. When an instrument goes away,
+/// refuses a command or states a temperature that nothing can have (below 0 K, above 5000 K): `disconnected`; the next
+/// present() connects anew and insists on the same *IDN?.
 [[nodiscard]] Result<std::unique_ptr<Target>> open_scpi_target(ScpiTargetOptions options, const std::stop_token& stop);
 
 }  // namespace todbench

@@ -2,13 +2,82 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <numeric>
 #include <utility>
+
+#include "tod/measures/temporal_noise.h"
 
 namespace todbench {
 namespace {
 
 /// The share of rejected frames means nothing before this many.
 constexpr std::uint64_t frames_before_share_counts = 100;
+
+double mean_square(const cv::Mat1d& difference) {
+  cv::Scalar mean, sd;
+  cv::meanStdDev(difference, mean, sd);
+  return sd[0] * sd[0] / 2;
+}
+
+/// Differences between frames of one scene, as they come.
+class FrameDifferences {
+ public:
+  explicit FrameDifferences(int frames) : lag_(static_cast<std::uint64_t>(std::min(8, frames / 4))) {}
+
+  void add(const Frame& frame, const cv::Mat1d& kelvin) {
+    for (const Old& old : old_) {
+      const std::uint64_t apart = frame.sequence - old.sequence;
+      if (apart != 1 && apart != lag_) continue;
+      AtLag& at = apart == 1 ? successive_ : later_;
+      at.squares += mean_square(kelvin - old.kelvin);
+      ++at.pairs;
+    }
+    if (!old_.empty()) {
+      // Where frames are missing between all of them, the next one has to do.
+      neighbours_.squares += mean_square(kelvin - old_.back().kelvin);
+      ++neighbours_.pairs;
+      learn_step(frame.counts);
+    }
+    old_.push_back({frame.sequence, kelvin});
+    // A copy: a frame may lend one of the few buffers that its camera has.
+    frame.counts.copyTo(last_counts_);
+    if (old_.size() > std::max<std::size_t>(1, lag_)) old_.pop_front();
+  }
+
+  [[nodiscard]] double noise() const { return std::sqrt((successive_.pairs > 0 ? successive_ : neighbours_).mean()); }
+
+  [[nodiscard]] std::optional<double> lag1_correlation() const {
+    if (lag_ < 2 || later_.pairs == 0 || !(successive_.mean() > 0)) return std::nullopt;
+    return first_order_correlation(later_.mean() / successive_.mean(), static_cast<int>(lag_));
+  }
+
+  [[nodiscard]] int step() const { return step_; }
+
+ private:
+  struct Old {
+    std::uint64_t sequence = 0;
+    cv::Mat1d kelvin;
+  };
+  struct AtLag {
+    double squares = 0;
+    int pairs = 0;
+    [[nodiscard]] double mean() const { return pairs > 0 ? squares / pairs : 0; }
+  };
+
+  void learn_step(const cv::Mat1w& counts) {
+    for (int row = 0; row < counts.rows && step_ != 1; ++row) {
+      for (int column = 0; column < counts.cols && step_ != 1; ++column)
+        step_ = std::gcd(step_, std::abs(int{counts(row, column)} - int{last_counts_(row, column)}));
+    }
+  }
+
+  std::uint64_t lag_;
+  std::deque<Old> old_;
+  cv::Mat1w last_counts_;
+  AtLag successive_, later_, neighbours_;
+  int step_ = 0;
+};
 
 }  // namespace
 
@@ -151,25 +220,27 @@ Result<void> FrameTaker::discard(std::stop_token stop) {
 
 Result<AveragedPicture> FrameTaker::average(int count, std::stop_token stop) {
   AveragedPicture out;
-  cv::Mat1d previous;
-  double squares = 0;
+  FrameDifferences differences(count);
   for (int i = 0; i < count; ++i) {
     auto frame = next(stop);
     if (!frame) return tl::unexpected(frame.error());
     auto kelvin = to_kelvin(*frame);
     if (!kelvin) return tl::unexpected(kelvin.error());
-    if (out.kelvin.empty()) out.kelvin = cv::Mat1d::zeros(kelvin->size());
-    out.kelvin += *kelvin;
-    if (!previous.empty()) {
-      const cv::Mat1d difference = *kelvin - previous;
-      cv::Scalar mean, sd;
-      cv::meanStdDev(difference, mean, sd);
-      squares += sd[0] * sd[0] / 2;
+    if (out.kelvin.empty()) {
+      out.kelvin = cv::Mat1d::zeros(kelvin->size());
+      out.lowest = frame->counts.clone();
+      out.highest = frame->counts.clone();
+      out.significant_bits = frame->significant_bits;
     }
-    previous = *kelvin;
+    out.kelvin += *kelvin;
+    out.lowest = cv::min(out.lowest, frame->counts);
+    out.highest = cv::max(out.highest, frame->counts);
+    differences.add(*frame, *kelvin);
   }
   out.kelvin /= count;
-  if (count > 1) out.temporal_noise_k = std::sqrt(squares / (count - 1));
+  if (count > 1) out.temporal_noise_k = differences.noise();
+  out.lag1_correlation = differences.lag1_correlation();
+  out.count_step = differences.step();
   return out;
 }
 

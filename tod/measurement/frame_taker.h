@@ -30,10 +30,19 @@ struct FrameTakerOptions {
   std::function<void(const RejectedFrame&)> on_rejected{};  ///< told of every one; may be empty
 };
 
-/// An average of successive frames in kelvin, with the temporal noise seen in it.
+/// An average of good frames in kelvin, with what their differences say of a pixel's noise.
 struct AveragedPicture {
   cv::Mat1d kelvin;
-  double temporal_noise_k = 0;  ///< sd per pixel and frame, from differences of successive frames; 0 for a single frame
+  cv::Mat1w lowest, highest;  ///< counts of each pixel over the frames
+  int significant_bits = 16;
+  /// sd per pixel and frame, sqrt(mean d^2 / 2) over successive frames, changes of the whole frame left out; 0 for a
+  /// single frame.
+  double temporal_noise_k = 0;
+  /// Of a pixel in successive frames (first_order_correlation()); nothing: fewer than eight frames, or no noise.
+  std::optional<double> lag1_correlation;
+  /// Largest number of which all differences between frames are multiples: above 1 where a format leaves bits empty or
+  /// a camera rounds more coarsely than it counts; 0: no differences.
+  int count_step = 0;
 };
 
 /// Takes frames from a started source. One thread at a time.
@@ -63,6 +72,7 @@ class FrameTaker {
 
   [[nodiscard]] std::uint64_t used() const { return used_; }
   [[nodiscard]] std::uint64_t lost() const { return gate_.lost(); }
+  [[nodiscard]] const NumberingFaults& numbering() const { return gate_.numbering(); }
   [[nodiscard]] std::map<std::string, std::uint64_t> rejected() const;
   /// Whether a frame said if it was exposed during a correction.
   [[nodiscard]] bool camera_tells_of_corrections() const { return told_of_corrections_; }

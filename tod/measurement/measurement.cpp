@@ -10,11 +10,23 @@
 #include "tod/measurement/frame_taker.h"
 #include "tod/measurement/geometry.h"
 #include "tod/measurement/prepared_plate.h"
+#include "tod/measurement/saturation_watch.h"
 #include "tod/measurement/target_change.h"
 #include "tod/registration/patch_windows.h"
 
 namespace todbench {
 namespace {
+
+/// Below this correlation successive frames understate the noise of one by less than 3 %.
+constexpr double noticeable_correlation = 0.05;
+
+/// Noise of a pixel in one frame. Noise that remembers shows only sqrt(1 - rho) of itself in successive frames.
+double frame_noise_k(const AveragedPicture& picture) {
+  const double rho = picture.lag1_correlation.value_or(0);
+  // Beyond 0.99 it changes so slowly that so few frames do not tell it from drift.
+  if (rho < noticeable_correlation) return picture.temporal_noise_k;
+  return picture.temporal_noise_k / std::sqrt(1 - std::min(rho, 0.99));
+}
 
 class Run {
  public:
@@ -69,6 +81,7 @@ class Run {
     result_.frames_used = taker_.used();
     result_.frames_rejected = taker_.rejected();
     result_.frames_lost = taker_.lost();
+    if (const std::string faults = describe(taker_.numbering()); !faults.empty()) note(faults);
     return std::move(result_);
   }
 
@@ -258,7 +271,7 @@ class Run {
     const std::string where = "plate " + state.plate + " mounted " + std::string(to_string(state.mounting));
     auto picture = taker_.average(options_.registration_frames, stop_);
     if (!picture) return tl::unexpected(picture.error());
-    if (result_.temporal_noise_k == 0) result_.temporal_noise_k = picture->temporal_noise_k;
+    if (result_.temporal_noise_k == 0) keep_noise(*picture);
     const cv::Point2d shift_mm = target_.capabilities().sets_shift ? state.shift_mm : cv::Point2d(0, 0);
     const auto known = registered_.find({state.plate, state.mounting});
     if (known != registered_.end()) {
@@ -286,6 +299,22 @@ class Run {
     return {};
   }
 
+  /// Of the first frames that showed any noise.
+  void keep_noise(const AveragedPicture& picture) {
+    result_.temporal_noise_k = picture.temporal_noise_k;
+    result_.lag1_correlation = picture.lag1_correlation;
+    const auto per_count = kelvin_per_count(picture);
+    if (per_count && picture.temporal_noise_k > 0)
+      result_.temporal_noise_counts = picture.temporal_noise_k / *per_count / std::max(1, picture.count_step);
+    noise_of_frame_k_ = frame_noise_k(picture);
+  }
+
+  /// Of the scale at the surround.
+  [[nodiscard]] std::optional<double> kelvin_per_count(const AveragedPicture& picture) const {
+    const auto surround = source_.info().scale.counts(cv::mean(picture.kelvin)[0]);
+    return surround ? source_.info().scale.kelvin_per_count(*surround) : std::nullopt;
+  }
+
   /// A hand moved the plate: where is it now?
   Result<void> follow(const TargetPlate& mounted_plate) {
     auto picture = taker_.average(options_.contrast_frames, stop_);
@@ -302,6 +331,13 @@ class Run {
     if (!picture) return tl::unexpected(picture.error());
     auto contrast = effective_contrast(picture->kelvin, mounted_plate, registration, options_.min_reference_px);
     if (!contrast) return fail("measuring the effective contrast", contrast.error());
+    const int cut_off = saturation_.learn(*picture, source_.info().scale, mounted_plate, registration, contrast->value);
+    if (cut_off > 0) {
+      note(
+          fmt::format("plate {}, mounting {}: {} pixels of the triangles are at an end of the camera's counts: the "
+                      "contrast of {:+.3f} K that was set is cut off there",
+                      state.plate, to_string(state.mounting), cut_off, state.delta_t_k));
+    }
     if (!(contrast->value * state.delta_t_k > 0)) {
       return fail(ErrorCode::calibration,
                   fmt::format("the target was set to {:+.3f} K but the camera sees {:+.3f} K +- {:.3f} K",
@@ -326,7 +362,7 @@ class Run {
       const auto window = patch_window(registration.pixel(t.position_mm), plate.observers[i]->window_samples());
       auto kelvin = window_kelvin(frame, window.pixels);
       if (!kelvin) return tl::unexpected(kelvin.error());
-      const Patch patch{.kelvin = *kelvin, .phase = window.phase, .noise_k = result_.temporal_noise_k};
+      const Patch patch{.kelvin = *kelvin, .phase = window.phase, .noise_k = noise_of_frame_k_};
       const Choice choice = plate.observers[i]->choose(patch, contrast_k_, presentation_noise.sub(i));
       Trial trial;
       trial.presentation = presentation_;
@@ -347,6 +383,7 @@ class Run {
       trial.device_time_ns = frame.device_time_ns;
       trial.host_time_ns = frame.host_time_ns;
       trial.since_nuc_s = taker_.since_nuc_s(frame);
+      trial.saturated_pixels = saturation_.saturated_pixels(frame, window.pixels);
       result_.trials.push_back(trial);
       if (listener_.on_trial) listener_.on_trial(trial);
       if (listener_.on_patch) listener_.on_patch(trial, patch);
@@ -365,6 +402,7 @@ class Run {
   const MeasurementListener& listener_;
   std::stop_token stop_;
   FrameTaker taker_;
+  SaturationWatch saturation_;
   RandomStream answers_;
   std::vector<PreparedPlate> plates_;
   std::map<SetUp, Registration> registered_;  ///< at shift 0
@@ -372,6 +410,7 @@ class Run {
   std::optional<double> current_contrast_;
   Registration base_;                        ///< of the current set-up, at shift 0
   double contrast_k_ = 0;                    ///< of the current set-up and set-point
+  double noise_of_frame_k_ = 0;              ///< of a pixel, as the observer suffers it
   double scale_px_per_mm_ = 0;               ///< of the first registration: one scale for the whole run
   std::optional<std::int64_t> last_nuc_ns_;  ///< when the last one was commanded
   std::int64_t presentation_ = 0;

@@ -92,6 +92,8 @@ struct MeasurementResult {
   std::uint64_t frames_lost = 0;                         ///< gaps in the sequence
   double temporal_noise_k =
       0;  ///< per pixel, from differences of successive frames of the same presentation; 0: not measured
+  std::optional<double> temporal_noise_counts;  ///< the same in steps of the counts, near the surround
+  std::optional<double> lag1_correlation;       ///< of a pixel's noise in the same frames
   std::vector<std::string> notes;
   std::vector<Interruption> interruptions;
   std::optional<Error> ended_by;  ///< why it stopped early; the trials so far are valid

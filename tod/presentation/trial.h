@@ -26,7 +26,8 @@ struct Trial {
   std::uint64_t frame = 0;                ///< sequence number
   std::int64_t device_time_ns = 0;
   std::int64_t host_time_ns = 0;
-  double since_nuc_s = -1;  ///< since the last non-uniformity correction that the program knows of; < 0: none known
+  double since_nuc_s = -1;   ///< since the last non-uniformity correction that the program knows of; < 0: none known
+  int saturated_pixels = 0;  ///< of the window, at either end of the counts; those that always read so are left out
 
   [[nodiscard]] bool correct() const { return truth == answer; }
 };

@@ -123,7 +123,7 @@ void join_steps(const Surface& s, double drop, Interval& sizes) {
   sizes.high = upper(sizes.high, steps.high ? s.counts.size_at(*steps.high) : std::nullopt);
 }
 
-// The maximum with every size as it is, after a search in groups; what was found moves with it.
+// The maximum with every size as it is, after a search in groups; intervals move with it.
 void refine(const PooledCounts& counts, const Surface& s, PsychometricFit& fit) {
   fit.degrees_of_freedom += static_cast<int>(counts.levels.size()) - static_cast<int>(s.counts.levels.size());
   if (!fit.threshold) return;
@@ -137,6 +137,8 @@ void refine(const PooledCounts& counts, const Surface& s, PsychometricFit& fit) 
   fit.deviance = deviance(counts, s.form, exact.place);
   for (std::optional<double>* side : {&fit.ci95.low, &fit.ci95.high, &fit.ci90.low, &fit.ci90.high})
     if (*side) **side *= moved;
+  if (!fit.posterior) return;
+  for (double* quantile : {&fit.posterior->median, &fit.posterior->low, &fit.posterior->high}) *quantile *= moved;
 }
 
 Surface survey(PooledCounts counts, const FitOptions& options) {
@@ -259,11 +261,12 @@ Result<PsychometricFit> fit_psychometric(std::span<const Level> levels, const Fi
   fit.ci95 = interval95(s.counts, crossings);
   fit.ci90 = interval(s.counts, crossings.below.narrow, crossings.above.narrow);
   if (fit.verdict == FitVerdict::step) {
-    join_steps(s, confidence_drop({}, 0.95), fit.ci95);
-    join_steps(s, confidence_drop({}, 0.90), fit.ci90);
+    const ClusterEffect effect{fit.clusters, fit.variance_inflation};
+    join_steps(s, confidence_drop(effect, 0.95), fit.ci95);
+    join_steps(s, confidence_drop(effect, 0.90), fit.ci90);
   }
-  if (in_groups) refine(counts, s, fit);
   if (options.with_posterior) fit.posterior = grid_posterior(s.counts, s.form, s.scan.nodes, s.lapse);
+  if (in_groups) refine(counts, s, fit);
   return fit;
 }
 

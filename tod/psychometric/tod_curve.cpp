@@ -94,6 +94,8 @@ Result<TodPoint> tod_point(double set_delta_t_k, const TrialGroup& trials, const
   TodPoint point;
   point.set_delta_t_k = set_delta_t_k;
   add_contrast(point, trials);
+  const auto saturated = std::ranges::count_if(trials, [](const Trial* t) { return t->saturated_pixels > 0; });
+  point.saturated_share = static_cast<double>(saturated) / static_cast<double>(trials.size());
   auto chosen = widest(trials, options);
   if (!chosen) return tl::unexpected(chosen.error());
   point.levels = std::move(chosen->levels);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tod/presentation/trial.h"
+#include "tod/psychometric/finding.h"
 #include "tod/psychometric/psychometric_fit.h"
 
 namespace todbench {
@@ -20,8 +21,14 @@ struct TodPoint {
   PsychometricFit fit;                            ///< in mrad
   std::optional<PsychometricFit> free_lapse_fit;  ///< the same with a free lapse, as a check
   bool lapse_warning = false;             ///< the free lapse explains the data significantly better (2 ln LR > 2.71)
+  std::optional<Adequacy> adequacy;       ///< what speaks against the threshold; nothing: not examined
   std::optional<double> direct_s75_mrad;  ///< simulated sensors only: no psychometric form assumed
   std::optional<double> direct_s75_se_mrad;
+  double saturated_share =
+      0;  ///< of the point's trials: those with saturated pixels inside the window of their triangle
+  std::optional<double>
+      noise_counts;  ///< temporal noise of a pixel in counts; nothing: not known or not counted in whole numbers
+  std::optional<double> lag1_correlation;  ///< of a pixel's noise between successive frames
 };
 
 /// A measured or simulated TOD curve. Acuity is 1 / S75.

@@ -219,9 +219,26 @@ ThresholdSelection thresholds_of(const TodCurve& curve, double target_delta_t_k)
       selection.notes.push_back(fmt::format("the point at {:g} K was left out: it has no threshold", point.delta_t_k));
       continue;
     }
-    selection.thresholds.push_back({std::abs(point.delta_t_k), *point.fit.threshold, point.fit.ci95});
+    selection.thresholds.push_back(
+        {std::abs(point.delta_t_k), *point.fit.threshold, point.fit.ci95, std::abs(point.set_delta_t_k)});
   }
   return selection;
+}
+
+double contrast_on_curve(std::span<const TodThreshold> thresholds, double delta_t_k) {
+  const double asked = std::abs(delta_t_k);
+  const auto nearest = [&](auto contrast_of) -> const TodThreshold* {
+    const TodThreshold* found = nullptr;
+    for (const TodThreshold& threshold : thresholds) {
+      if (!(threshold.set_delta_t_k > 0) || !same_contrast(contrast_of(threshold), asked)) continue;
+      if (found == nullptr || std::abs(contrast_of(threshold) - asked) < std::abs(contrast_of(*found) - asked))
+        found = &threshold;
+    }
+    return found;
+  };
+  const TodThreshold* point = nearest([](const TodThreshold& t) { return t.set_delta_t_k; });
+  if (point == nullptr) point = nearest([](const TodThreshold& t) { return t.delta_t_k; });
+  return point != nullptr ? point->delta_t_k : asked;
 }
 
 std::optional<double> interpolated_acuity_per_mrad(std::span<const TodThreshold> sorted, double delta_t_k) {
@@ -230,7 +247,9 @@ std::optional<double> interpolated_acuity_per_mrad(std::span<const TodThreshold>
   return std::exp(found->value);
 }
 
-Result<RangePrediction> predict_range(std::span<const TodThreshold> thresholds, const RangeTask& task) {
+Result<RangePrediction> predict_range(std::span<const TodThreshold> thresholds, const RangeTask& asked) {
+  RangeTask task = asked;
+  task.delta_t_k = contrast_on_curve(thresholds, asked.delta_t_k);
   std::vector<TodThreshold> sorted(thresholds.begin(), thresholds.end());
   std::sort(sorted.begin(), sorted.end(),
             [](const TodThreshold& a, const TodThreshold& b) { return a.delta_t_k < b.delta_t_k; });
@@ -238,6 +257,12 @@ Result<RangePrediction> predict_range(std::span<const TodThreshold> thresholds, 
   const std::vector<Node> nodes = nodes_of(sorted);
   const TargetLine line(nodes, task);
   RangePrediction prediction;
+  if (!same_contrast(task.delta_t_k, std::abs(asked.delta_t_k))) {
+    prediction.notes.push_back(
+        fmt::format("the target has the set contrast {:g} K of a point of the TOD curve: the "
+                    "camera saw {:g} K there, which is taken",
+                    std::abs(asked.delta_t_k), task.delta_t_k));
+  }
   prediction.r75_m = line.crossing(Side::estimate);
   if (prediction.r75_m) {
     prediction.r75_ci95_m = {line.crossing(Side::low), line.crossing(Side::high)};

@@ -18,6 +18,8 @@ struct TodThreshold {
   double delta_t_k = 0;    ///< magnitude, > 0
   double s75_mrad = 0;     ///< > 0
   Interval s75_ci95_mrad;  ///< a side without a value is open
+  /// What the target was told when `delta_t_k` was seen, as a magnitude: the name of this point; 0: not known.
+  double set_delta_t_k = 0;
 };
 
 /// What is to be identified, through what air. Signal and criterion as in Bijl, Hogervorst and Vos (EO-VISTA), 4.2.3.
@@ -65,8 +67,14 @@ struct ThresholdSelection {
 [[nodiscard]] std::optional<double> interpolated_acuity_per_mrad(std::span<const TodThreshold> sorted,
                                                                  double delta_t_k);
 
+/// The contrast at which the curve answers for a target. A target that has the set contrast of a point, or that which
+/// the camera saw of it, has that point (same_contrast(), as in a comparison of curves), the nearest of several; any
+/// other is what it is. Points without a set contrast name nothing.
+[[nodiscard]] double contrast_on_curve(std::span<const TodThreshold> thresholds, double delta_t_k);
+
 /// Solves M(R) = (size / R) acuity(contrast exp(-extinction R)) = M75 for the smallest R. The interval holds the R at
-/// which M75 is within the 95 % interval of M(R), the errors of neighbouring thresholds taken as independent.
+/// which M75 is within the 95 % interval of M(R), the errors of neighbouring thresholds taken as independent. The
+/// target's contrast is that of contrast_on_curve().
 /// `invalid_input`: a parameter out of its range, no thresholds, thresholds that are not positive and finite, or two at
 /// one contrast.
 [[nodiscard]] Result<RangePrediction> predict_range(std::span<const TodThreshold> thresholds, const RangeTask& task);

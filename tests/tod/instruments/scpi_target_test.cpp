@@ -206,6 +206,45 @@ TEST_F(ScpiTargetTest, AnInstrumentThatComesBackIsUsedAgainAndAnotherInItsPlaceI
   EXPECT_THAT(bench->present(state, {}).error().message, HasSubstr("serial BB-0001, is now todbench"));
 }
 
+TEST_F(ScpiTargetTest, ARefusalInMidRunIsTheInstrumentsAndNoMistakeOfThePlan) {
+  const auto bench = target();
+  ASSERT_TRUE(bench->present({"coarse", Mounting::identity, 1, {0, 0}}, {}));
+  const auto endpoint = black_body_->endpoint();
+  black_body_.reset();
+  BlackBodyOptions weaker;
+  weaker.now = clock_.now();
+  weaker.max_delta_t_k = 1.5;
+  weaker.server.port = static_cast<std::uint16_t>(std::stoi(endpoint.substr(endpoint.find(':') + 1)));
+  black_body_ = BlackBody::start(weaker).value();
+  const TargetState state{"coarse", Mounting::identity, 2, {0, 0}};
+  ASSERT_FALSE(bench->present(state, {}));  // the old connection
+
+  const auto refused = bench->present(state, {});
+
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::disconnected);
+  EXPECT_THAT(refused.error().message, HasSubstr("SOUR:TEMP:DIFF 2.0000: the instrument refuses: '-222"));
+}
+
+TEST_F(ScpiTargetTest, ATemperatureThatNothingCanHaveIsRefused) {
+  for (const double plate_k : {-500.0, -1.0, 1e6}) {
+    BlackBodyOptions options;
+    options.now = clock_.now();
+    options.time_constant_s = 1;
+    options.plate_coupling = plate_k - options.ambient_k;
+    black_body_ = BlackBody::start(options).value();
+    options_.black_body = black_body_->endpoint();
+    const auto bench = target();
+
+    const auto presented = bench->present({"coarse", Mounting::identity, 1, {0, 0}}, {});
+
+    ASSERT_FALSE(presented) << plate_k;
+    EXPECT_EQ(presented.error().code, ErrorCode::disconnected);
+    EXPECT_THAT(presented.error().message, HasSubstr("MEAS:TEMP:PLAT? answered"));
+    EXPECT_THAT(presented.error().message, HasSubstr("K, which no plate can have"));
+  }
+}
+
 TEST_F(ScpiTargetTest, InstrumentsAtEachOthersAddressAreNotFound) {
   std::swap(options_.black_body, options_.stage);
 

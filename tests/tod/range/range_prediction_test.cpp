@@ -87,6 +87,32 @@ TEST(RangePrediction, ATargetFainterThanTheLowestContrastHasNoRange) {
   for (const auto& point : found->curve) EXPECT_FALSE(point.probability.has_value());
 }
 
+TEST(RangePrediction, ATargetOfASetContrastHasItsPointWhateverTheCameraSawOfIt) {
+  TodCurve curve;
+  curve.points.resize(2);
+  // What the camera saw lies above and below what was set, by more and by less than two contrasts may differ.
+  const double set[] = {16.9, 1.93}, seen[] = {16.2, 1.93161}, s75[] = {2, 4};
+  for (std::size_t i = 0; i < 2; ++i) {
+    curve.points[i].set_delta_t_k = set[i];
+    curve.points[i].delta_t_k = seen[i];
+    curve.points[i].fit.verdict = FitVerdict::ok;
+    curve.points[i].fit.threshold = s75[i];
+    curve.points[i].fit.ci95 = {s75[i], s75[i]};
+  }
+  const ThresholdSelection selection = thresholds_of(curve, 1);
+
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (const double asked : {set[i], seen[i], -set[i], 0.9999 * seen[i]}) {
+      const auto found = predict_range(selection.thresholds, {.size_m = 4, .delta_t_k = asked, .m75 = 5});
+
+      ASSERT_TRUE(found && found->r75_m) << asked;
+      EXPECT_NEAR(*found->r75_m, 4000 / s75[i] / 5, 1e-9) << asked;
+      EXPECT_EQ(found->notes.empty(), i == 1 || std::abs(asked) != 16.9) << asked;
+    }
+  }
+  EXPECT_FALSE(predict_range(selection.thresholds, {.size_m = 4, .delta_t_k = 1.9})->r75_m);
+}
+
 TEST(RangePrediction, TheIntervalOfASinglePointIsThatOfItsThreshold) {
   const auto found = predict_range(std::vector{threshold(10, 2, 0.05)}, {.size_m = 4, .delta_t_k = 10, .m75 = 5});
 

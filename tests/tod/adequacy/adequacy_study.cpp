@@ -1,0 +1,80 @@
+// False alarms and power of every statistical finding, with enough replicates to see half a per cent. Long form of
+// adequacy_test.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+
+#include "tests/tod/adequacy/adequacy_support.h"
+
+namespace todbench {
+namespace {
+
+using testing::AdequacyDesign;
+using testing::finding_shares;
+using testing::FindingShares;
+
+void print(const AdequacyDesign& design, const FindingShares& shares) {
+  std::cout << design.name << ": unfit " << shares.unfit << ", no threshold " << shares.not_identified;
+  for (const auto& [kind, share] : shares.found) std::cout << ", " << to_string(kind) << ' ' << share;
+  std::cout << std::endl;
+}
+
+TEST(AdequacyStudy, RightModelsGiveNoMoreThanOnePerCentOfEachFinding) {
+  constexpr int replicates = 2000;
+  for (const AdequacyDesign& design : testing::right_designs()) {
+    const FindingShares shares = finding_shares(design, replicates, 11);
+
+    print(design, shares);
+    // Three standard errors of a share of 1 %.
+    for (const auto& [kind, share] : shares.found)
+      EXPECT_LE(share, 0.01 + 3 * std::sqrt(0.01 * 0.99 / replicates)) << design.name << ": " << to_string(kind);
+  }
+}
+
+TEST(AdequacyStudy, WrongModelsAreFoundAsOftenAsTheDocumentSays) {
+  struct Row {
+    AdequacyDesign design;
+    FindingKind kind;
+    double at_least;
+  };
+  const auto acuity = PsychometricForm::acuity;
+  const std::vector<Row> rows{
+      {{.name = "5 % lapses, 160", .trials_per_size = 20, .lapse = 0.05}, FindingKind::lapse, 0},
+      {{.name = "5 % lapses, 640", .lapse = 0.05}, FindingKind::lapse, 0.7},
+      {{.name = "2 % lapses, 640", .lapse = 0.02}, FindingKind::lapse, 0},
+      {{.name = "2 % lapses, 6400", .trials_per_size = 800, .lapse = 0.02}, FindingKind::lapse, 0.9},
+      {{.name = "acuity as size, slope 2, 640", .slope = 2, .truth = acuity}, FindingKind::deviance, 0},
+      {{.name = "acuity as size, slope 2, 6400", .trials_per_size = 800, .slope = 2, .truth = acuity},
+       FindingKind::deviance,
+       0.9},
+      {{.name = "acuity as size, slope 3.5, 640", .truth = acuity}, FindingKind::deviance, 0},
+      {{.name = "acuity as size, slope 3.5, 6400", .trials_per_size = 800, .truth = acuity},
+       FindingKind::deviance,
+       0.9},
+      {{.name = "size as acuity, slope 3.5, 640", .fitted = acuity}, FindingKind::deviance, 0},
+      {{.name = "size as acuity, slope 3.5, 6400", .trials_per_size = 800, .fitted = acuity},
+       FindingKind::deviance,
+       0.9},
+      {{.name = "variance x 2, 8 x 80", .overdispersion = 2}, FindingKind::overdispersion, 0},
+      {{.name = "variance x 2, 20 x 96", .sizes = 20, .trials_per_size = 96, .overdispersion = 2},
+       FindingKind::overdispersion,
+       0},
+      {{.name = "variance x 2, 8 x 10 rows of 16", .trials_per_size = 16, .overdispersion = 2, .rows = 10},
+       FindingKind::overdispersion,
+       0.9},
+      {{.name = "variance x 4, 8 x 80", .overdispersion = 4}, FindingKind::overdispersion, 0},
+  };
+  constexpr int replicates = 500;
+  for (const Row& row : rows) {
+    const FindingShares shares = finding_shares(row.design, replicates, 13);
+
+    print(row.design, shares);
+    const auto found = shares.found.find(row.kind);
+    EXPECT_GE(found == shares.found.end() ? 0 : found->second, row.at_least) << row.design.name;
+  }
+}
+
+}  // namespace
+}  // namespace todbench

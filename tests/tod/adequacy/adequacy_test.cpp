@@ -1,0 +1,208 @@
+// What speaks against a threshold: found where a model is wrong, not found where it is right.
+#include "tod/adequacy/adequacy.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/tod/adequacy/adequacy_support.h"
+#include "tod/adequacy/dispersion.h"
+
+namespace todbench {
+namespace {
+
+using testing::AdequacyDesign;
+using ::testing::AllOf;
+using ::testing::Contains;
+using testing::drawn;
+using ::testing::Field;
+using testing::finding_shares;
+using testing::geometric;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+auto of_kind(FindingKind kind) {
+  return Contains(Field(&AdequacyFinding::kind, kind));
+}
+auto unfit_of_kind(FindingKind kind) {
+  return Contains(AllOf(Field(&AdequacyFinding::kind, kind), Field(&AdequacyFinding::unfit, true)));
+}
+
+// Counts rounded from their expectation, so that nothing depends on chance.
+std::vector<Level> expected_counts(PsychometricForm form, double slope, double lapse, int sizes, double trials) {
+  std::vector<Level> levels;
+  for (const double size : geometric(0.5, 2.0, sizes))
+    levels.push_back({size, std::round(trials * psychometric(form, size, 1, slope, lapse)), trials, -1});
+  return levels;
+}
+
+Adequacy adequacy_of(const std::vector<Level>& levels, const FitOptions& options) {
+  return adequacy(levels, fit_psychometric(levels, options).value(), options);
+}
+
+TEST(Adequacy, AnswersOfOneFormFittedInTheOtherAreUnfit) {
+  for (const auto& [truth, fitted] : {std::pair(PsychometricForm::acuity, PsychometricForm::size),
+                                      std::pair(PsychometricForm::size, PsychometricForm::acuity)}) {
+    const std::vector<Level> levels = expected_counts(truth, 2, 0, 10, 2000);
+
+    const Adequacy wrong = adequacy_of(levels, {fitted, 0.0, false});
+    const Adequacy right = adequacy_of(levels, {truth, 0.0, false});
+
+    EXPECT_THAT(wrong.findings, unfit_of_kind(FindingKind::deviance)) << to_string(fitted);
+    EXPECT_FALSE(wrong.adequate());
+    EXPECT_TRUE(right.adequate()) << reasons_unfit(right);
+  }
+}
+
+TEST(Adequacy, LapsesThatAFitDoesNotAllowForAreUnfit) {
+  const std::vector<Level> levels = expected_counts(PsychometricForm::size, 3.5, 0.05, 8, 80);
+
+  EXPECT_THAT(adequacy_of(levels, {PsychometricForm::size, 0.0, false}).findings, unfit_of_kind(FindingKind::lapse));
+  EXPECT_THAT(adequacy_of(levels, {PsychometricForm::size, std::nullopt, false}).findings,
+              Not(of_kind(FindingKind::lapse)));
+}
+
+TEST(Adequacy, AMisfitThatDoesNotMoveTheThresholdIsFoundAndDoesNotWithholdIt) {
+  // One wrong answer in three thousand at the largest sizes: significant beyond doubt, worth a tenth of a per cent.
+  std::vector<Level> levels = expected_counts(PsychometricForm::size, 3.5, 0, 8, 100000);
+  levels.back().correct -= 30;
+
+  const Adequacy found = adequacy_of(levels, {PsychometricForm::size, 0.0, false});
+
+  EXPECT_THAT(found.findings, of_kind(FindingKind::lapse));
+  EXPECT_TRUE(found.adequate()) << reasons_unfit(found);
+}
+
+TEST(Adequacy, ScatterBetweenClustersIsAllowedForWhereClustersAreNamed) {
+  // Each presentation shifts its threshold by 30 %.
+  std::vector<Level> levels =
+      drawn({.sizes = 8, .trials_per_size = 8, .clusters = 48, .cluster_sd = 0.3}, RandomStream(3, "clusters"));
+
+  const Adequacy named = adequacy_of(levels, {PsychometricForm::size, 0.0, false});
+  for (Level& level : levels) level.cluster = -1;
+  const Adequacy unnamed = adequacy_of(levels, {PsychometricForm::size, 0.0, false});
+
+  EXPECT_THAT(named.findings, Not(of_kind(FindingKind::overdispersion)));
+  EXPECT_THAT(unnamed.findings, unfit_of_kind(FindingKind::overdispersion));
+}
+
+TEST(Adequacy, CountsThatFollowTheFunctionTooCloselyAreUnderdispersedAndFit) {
+  const Adequacy found =
+      adequacy_of(expected_counts(PsychometricForm::size, 3.5, 0, 20, 1000), {PsychometricForm::size, 0.0, false});
+
+  EXPECT_THAT(found.findings, of_kind(FindingKind::underdispersion));
+  EXPECT_TRUE(found.adequate());
+}
+
+TEST(Adequacy, AThresholdOutsideTheTestedSizesIsUnfit) {
+  std::vector<Level> levels = expected_counts(PsychometricForm::size, 2, 0, 10, 300);
+  std::erase_if(levels, [](const Level& level) { return level.size > 0.9; });
+
+  const Adequacy found = adequacy_of(levels, {PsychometricForm::size, 0.0, false});
+
+  EXPECT_THAT(found.findings, unfit_of_kind(FindingKind::extrapolation));
+}
+
+TEST(Adequacy, AFunctionThatDoesNotRiseIsUnfitAndAPerfectStepOfFewTrialsIsNot) {
+  const std::vector<Level> falling{{1, 80, 100, -1}, {2, 70, 100, -1}, {3, 60, 100, -1}};
+  const std::vector<Level> step{{0.8, 1, 4, -1}, {0.9, 1, 4, -1}, {1.0, 3, 4, -1}, {1.1, 4, 4, -1}, {1.2, 4, 4, -1}};
+  const std::vector<Level> steep{{0.9, 1000, 4000, -1}, {1.0, 3000, 4000, -1}, {1.02, 4000, 4000, -1}};
+
+  EXPECT_THAT(adequacy_of(falling, {}).findings, unfit_of_kind(FindingKind::slope));
+  EXPECT_THAT(adequacy_of(step, {}).findings, IsEmpty());
+  EXPECT_THAT(adequacy_of(steep, {}).findings, of_kind(FindingKind::slope));
+}
+
+TodPoint good_point() {
+  TodPoint point;
+  point.set_delta_t_k = 1;
+  point.levels = drawn({}, RandomStream(1, "point"));
+  point.fit = fit_psychometric(point.levels, {.with_posterior = false}).value();
+  return point;
+}
+
+TEST(Adequacy, TrialsAndDirectEstimateHaveToAgreeWithinTheErrorsOfBoth) {
+  TodPoint point = good_point();
+  point.direct_s75_se_mrad = 0.005 * *point.fit.threshold;
+  const double half = std::log(*point.fit.ci95.high / *point.fit.ci95.low) / 2;
+  // Two per cent for the form and three standard errors, of which one is half the interval over 1.96.
+  const double allowed = 0.02 + 3 * std::hypot(half / 1.96, 0.005);
+
+  point.direct_s75_mrad = *point.fit.threshold * std::exp(0.8 * allowed);
+  EXPECT_THAT(adequacy(point, {}).findings, Not(of_kind(FindingKind::direct_estimate)));
+  point.direct_s75_mrad = *point.fit.threshold * std::exp(1.3 * allowed);
+  EXPECT_THAT(adequacy(point, {}).findings, unfit_of_kind(FindingKind::direct_estimate));
+}
+
+TEST(Adequacy, WhatFramesSayIsFoundEvenWithoutAThreshold) {
+  TodPoint point;
+  EXPECT_THAT(adequacy(point, {}).findings, IsEmpty());
+
+  point.saturated_share = 0.01;
+  point.noise_counts = 0.3;
+  point.lag1_correlation = 0.8;
+  const Adequacy found = adequacy(point, {});
+
+  EXPECT_THAT(found.findings, unfit_of_kind(FindingKind::clipping));
+  EXPECT_THAT(found.findings, of_kind(FindingKind::rounding));
+  EXPECT_THAT(found.findings, of_kind(FindingKind::temporal_correlation));
+  EXPECT_EQ(found.findings.size(), 3u);
+}
+
+TEST(Adequacy, GivesTheSameFindingsWhateverTheUnitAndOrderOfTheRows) {
+  std::vector<Level> levels =
+      drawn({.trials_per_size = 800, .truth = PsychometricForm::acuity, .lapse = 0.02}, RandomStream(2, "unit"));
+  const Adequacy before = adequacy_of(levels, {PsychometricForm::size, 0.0, false});
+  std::reverse(levels.begin(), levels.end());
+  for (Level& level : levels) level.size *= 1000;
+  const Adequacy after = adequacy_of(levels, {PsychometricForm::size, 0.0, false});
+
+  ASSERT_EQ(before.findings.size(), after.findings.size());
+  ASSERT_FALSE(before.findings.empty());
+  for (std::size_t i = 0; i < before.findings.size(); ++i) {
+    EXPECT_EQ(before.findings[i].kind, after.findings[i].kind);
+    EXPECT_NEAR(*before.findings[i].value, *after.findings[i].value, 1e-6 * *before.findings[i].value);
+  }
+}
+
+// A statistic of n draws of 1 +- sqrt(2 / nu) has a standard error of its mean of that over sqrt(n).
+TEST(Dispersion, OfRowsOfOneSizeHasTheMeanAndVarianceOfChance) {
+  double sum = 0, squares = 0;
+  constexpr int replicates = 2000;
+  double freedom = 0;
+  for (int r = 0; r < replicates; ++r) {
+    const auto levels = drawn({.sizes = 5, .trials_per_size = 3, .rows = 12},
+                              RandomStream(5, "rows").sub(static_cast<std::uint64_t>(r)));
+    const auto fit = fit_psychometric(levels, {.with_posterior = false});
+    if (fit->verdict != FitVerdict::ok) continue;
+    const PooledCounts counts = pool(levels);
+    const Dispersion found =
+        dispersions(model_residuals(counts, PsychometricForm::size,
+                                    {counts.relative(*fit->threshold), std::log(*fit->slope), 0}, {true, true, false}),
+                    levels, {}, 0)
+            .more;
+    sum += found.ratio;
+    squares += found.ratio * found.ratio;
+    freedom += found.degrees_of_freedom / replicates;
+  }
+  const double mean = sum / replicates, variance = squares / replicates - mean * mean;
+
+  EXPECT_GT(freedom, 45);  // 55 rows beyond one for each size, sizes with hardly a wrong answer count for little
+  EXPECT_NEAR(mean, 1, 4 * std::sqrt(2 / freedom / replicates) + 0.01);
+  EXPECT_NEAR(variance, 2 / freedom, 0.25 * 2 / freedom);
+}
+
+// Short form of the study: with 150 replicates a rate of 1 % gives more than 7 findings once in five thousand.
+TEST(Adequacy, RightModelsAreAdequate) {
+  constexpr int replicates = 150;
+  for (const AdequacyDesign& design : std::vector<AdequacyDesign>{
+           {.name = "8 x 80"}, {.name = "24 clusters", .trials_per_size = 4, .clusters = 24, .cluster_sd = 0.08}}) {
+    const auto shares = finding_shares(design, replicates, 12);
+    for (const auto& [kind, share] : shares.found)
+      EXPECT_LE(share * replicates, 7) << design.name << ": " << to_string(kind);
+  }
+}
+
+}  // namespace
+}  // namespace todbench

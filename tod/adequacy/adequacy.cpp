@@ -1,0 +1,210 @@
+#include "tod/adequacy/adequacy.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "tod/adequacy/alternatives.h"
+#include "tod/adequacy/model_test.h"
+#include "tod/psychometric/psychometric_model.h"
+
+namespace todbench {
+namespace {
+
+// "8.1 %"
+std::string percent(double share) {
+  return fmt::format("{:.2g} %", 100 * share);
+}
+
+// Half the 95 % interval in ln threshold on the side of a shift; nothing where it is open.
+std::optional<double> half_width(const PsychometricFit& fit, double ln_shift) {
+  const std::optional<double>& side = ln_shift < 0 ? fit.ci95.low : fit.ci95.high;
+  if (!side || !fit.threshold || !(*side > 0)) return std::nullopt;
+  return std::abs(std::log(*side / *fit.threshold));
+}
+
+// Half the interval where both sides are there.
+std::optional<double> half_width(const PsychometricFit& fit) {
+  const auto low = half_width(fit, -1), high = half_width(fit, 1);
+  return low && high ? std::optional((*low + *high) / 2) : std::nullopt;
+}
+
+// What another description of the answers does to the threshold.
+struct Consequence {
+  std::string words;
+  bool unfit = false;
+};
+
+Consequence consequence(const PsychometricFit& fit, double ln_shift, const std::string& description) {
+  const auto half = half_width(fit, ln_shift);
+  // An open side allows for everything.
+  const double allowed = half ? std::max(immaterial_shift, immaterial_share_of_half_width * *half) : INFINITY;
+  const bool unfit = std::abs(ln_shift) > allowed;
+  const std::string moved = fmt::format("{} puts the threshold {} {}", description,
+                                        percent(std::abs(std::expm1(ln_shift))), ln_shift < 0 ? "lower" : "higher");
+  if (!half) return {moved + ", where the interval is open", false};
+  return {moved + (unfit ? ", more than " : ", within ") + percent(allowed) + ", which the interval allows for", unfit};
+}
+
+class Examination {
+ public:
+  Examination(const TodPoint& point, const FitOptions& options) : point_(point), fit_(point.fit), options_(options) {}
+
+  Adequacy made() {
+    if (fit_.threshold) {
+      examine_slope();
+      examine_extrapolation();
+      if (fit_.verdict == FitVerdict::ok || fit_.verdict == FitVerdict::extrapolated) examine_model();
+      examine_direct_estimate();
+    }
+    examine_frames();
+    return {std::move(findings_)};
+  }
+
+ private:
+  void add(FindingKind kind, double value, double limit, std::string sentence, bool unfit) {
+    findings_.push_back({kind, value, limit, std::move(sentence), unfit});
+  }
+
+  void examine_slope() {
+    if (asks_for_steeper(point_.levels, fit_, options_, false_alarms.departure)) {
+      add(FindingKind::slope, *fit_.slope, max_slope,
+          "the answers ask for a steeper slope than any in the model: the threshold is that of a step", false);
+    } else if (fit_.verdict == FitVerdict::flat_or_decreasing) {
+      add(FindingKind::slope, *fit_.slope, min_slope, "the answers do not rise with size: the threshold has no meaning",
+          true);
+    }
+  }
+
+  void examine_extrapolation() {
+    double smallest = INFINITY, largest = 0;
+    for (const Level& level : point_.levels) {
+      if (level.total <= 0 || level.size <= 0) continue;
+      smallest = std::min(smallest, level.size);
+      largest = std::max(largest, level.size);
+    }
+    if (!(largest > 0) || (*fit_.threshold >= smallest && *fit_.threshold <= largest)) return;
+    const bool below = *fit_.threshold < smallest;
+    add(FindingKind::extrapolation, *fit_.threshold, below ? smallest : largest,
+        fmt::format("the threshold lies {} every size that was shown: it rests on the form of the function alone",
+                    below ? "below" : "above"),
+        true);
+  }
+
+  void examine_model() {
+    std::optional<PsychometricFit> free_fit = point_.free_lapse_fit;
+    if (!free_fit && options_.fixed_lapse) {
+      if (auto made = fit_psychometric(point_.levels, {options_.form, std::nullopt, false})) free_fit = *made;
+    }
+    const ModelTest test = test_model(point_.levels, fit_, free_fit, options_, false_alarms);
+    if (test.departure && test.departure->score > test.departure->limit) add_departure(*test.departure);
+    if (test.lapse && test.lapse->statistic > test.lapse->limit) add_lapse(*test.lapse, *free_fit);
+    add_scatter(test.scatter);
+  }
+
+  void add_departure(const Departure& departure) {
+    const auto other = best_alternative(point_.levels, fit_, options_);
+    const Consequence of = other ? consequence(fit_, other->ln_shift, other->name)
+                                 : Consequence{"no other function describes them either", true};
+    add(FindingKind::deviance, departure.score, departure.limit,
+        fmt::format("the answers depart from the fitted function {} by {:.2g} standard deviations (chance: {:.2g}); {}",
+                    departure.towards, departure.score, departure.limit, of.words),
+        of.unfit);
+  }
+
+  void add_lapse(const LapseTest& test, const PsychometricFit& free_fit) {
+    const std::string description = fmt::format("a free lapse of {:.2g}", test.lapse);
+    const Consequence of = free_fit.threshold
+                               ? consequence(fit_, std::log(*free_fit.threshold / *fit_.threshold), description)
+                               : Consequence{description + " leaves no threshold", true};
+    add(FindingKind::lapse, test.statistic, test.limit,
+        fmt::format("the answers have lapses that the fit does not allow for ({:.2g} assumed): {}",
+                    *options_.fixed_lapse, of.words),
+        of.unfit);
+  }
+
+  void add_scatter(const Dispersions& scatter) {
+    if (scatter.more.p_more() < false_alarms.scatter) {
+      const double widening = half_width(fit_).value_or(0) * (std::sqrt(scatter.more.ratio) - 1);
+      add(FindingKind::overdispersion, scatter.more.ratio, scatter.more.upper_limit(false_alarms.scatter),
+          fmt::format("the answers scatter about the fitted function with {:.3g} times the variance that {} gives: the "
+                      "interval is {:.2g} times too short",
+                      scatter.more.ratio, fit_.clusters > 0 ? "the clusters" : "chance", std::sqrt(scatter.more.ratio)),
+          scatter.more.ratio > immaterial_dispersion && widening > immaterial_widening);
+    } else if (scatter.less.p_less() < false_alarms.scatter) {
+      add(FindingKind::underdispersion, scatter.less.ratio, scatter.less.lower_limit(false_alarms.scatter),
+          fmt::format("the answers scatter about the fitted function with {:.2g} of the variance of independent "
+                      "answers: the interval is longer than it need be",
+                      scatter.less.ratio),
+          false);
+    }
+  }
+
+  void examine_direct_estimate() {
+    if (!point_.direct_s75_mrad || !(*point_.direct_s75_mrad > 0) || !fit_.threshold) return;
+    const double difference = std::log(*fit_.threshold / *point_.direct_s75_mrad);
+    const auto half = half_width(fit_, -difference);
+    if (!half) return;
+    constexpr double interval_quantile = 1.96, claimed_errors = 3;
+    const double standard_error =
+        std::hypot(*half / interval_quantile, point_.direct_s75_se_mrad.value_or(0) / *point_.direct_s75_mrad);
+    const double allowed = direct_estimate_tolerance + claimed_errors * standard_error;
+    if (std::abs(difference) <= allowed) return;
+    add(FindingKind::direct_estimate, 100 * std::expm1(difference), 100 * allowed,
+        fmt::format("trials and direct estimate of the same sensor differ by {}, more than the {} that the errors of "
+                    "both allow: one of them is wrong",
+                    percent(std::abs(std::expm1(difference))), percent(allowed)),
+        true);
+  }
+
+  void examine_frames() {
+    if (point_.saturated_share > 0) {
+      add(FindingKind::clipping, point_.saturated_share, 0,
+          fmt::format("pixels are saturated inside the window of the triangle in {} of the trials: the contrast that "
+                      "was judged is not the one that was shown",
+                      percent(point_.saturated_share)),
+          true);
+    }
+    if (point_.noise_counts && *point_.noise_counts < least_noise_counts) {
+      add(FindingKind::rounding, *point_.noise_counts, least_noise_counts,
+          fmt::format(
+              "the noise of a pixel is {:.2g} counts: rounding to whole counts is no white noise and belongs to "
+              "the answers of this camera",
+              *point_.noise_counts),
+          false);
+    }
+    if (point_.lag1_correlation && std::abs(*point_.lag1_correlation) > most_lag1_correlation) {
+      add(FindingKind::temporal_correlation, *point_.lag1_correlation, most_lag1_correlation,
+          fmt::format("the noise of successive frames is correlated ({:.2g}): their trials are not independent, and a "
+                      "noise figure of single frames does not describe the camera",
+                      *point_.lag1_correlation),
+          false);
+    }
+  }
+
+  const TodPoint& point_;
+  const PsychometricFit& fit_;
+  const FitOptions& options_;
+  std::vector<AdequacyFinding> findings_;
+};
+
+}  // namespace
+
+Adequacy adequacy(const TodPoint& point, const FitOptions& options) {
+  return Examination(point, options).made();
+}
+
+Adequacy adequacy(std::span<const Level> levels, const PsychometricFit& fit, const FitOptions& options) {
+  TodPoint point;
+  point.levels.assign(levels.begin(), levels.end());
+  point.fit = fit;
+  return adequacy(point, options);
+}
+
+void examine(TodCurve& curve, const FitOptions& options) {
+  for (TodPoint& point : curve.points) point.adequacy = adequacy(point, options);
+}
+
+}  // namespace todbench

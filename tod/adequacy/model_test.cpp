@@ -1,0 +1,184 @@
+#include "tod/adequacy/model_test.h"
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <vector>
+
+namespace todbench {
+namespace {
+
+namespace bm = boost::math;
+
+// Exceeded with `probability` on one side, by a normal variable or Student's t of clusters.
+double limit_of(double probability, double clusters) {
+  if (clusters > 1) return bm::quantile(bm::complement(bm::students_t(clusters - 1), probability));
+  return bm::quantile(bm::complement(bm::normal(), probability));
+}
+
+// The member of another family nearest to the fitted function: fitted to the answers that the fit expects, so that it
+// does not depend on the answers' scatter.
+PsychometricPlace nearest_of(const ModelResiduals& model, PsychometricForm form, double lapse) {
+  PooledCounts expected = model.counts;
+  for (std::size_t i = 0; i < expected.levels.size(); ++i) {
+    expected.levels[i].right = model.levels[i].trials * model.levels[i].right;
+    expected.levels[i].wrong = model.levels[i].trials * model.levels[i].wrong;
+  }
+  Box<3> box = search_box(lapse);
+  const auto likelihood = [&](const PsychometricPlace& place) { return expand_likelihood(expected, form, place); };
+  return climb<3>(likelihood, {model.place[place_t], model.place[place_q], lapse}, box).place;
+}
+
+std::vector<double> difference(const std::vector<double>& a, const ModelResiduals& model) {
+  std::vector<double> d;
+  for (std::size_t i = 0; i < a.size(); ++i) d.push_back(a[i] - model.levels[i].logit);
+  return d;
+}
+
+// Log odds towards another chance level at the same threshold.
+std::vector<double> towards_chance(const ModelResiduals& model, double chance) {
+  std::vector<double> weights;
+  for (const LevelResidual& level : model.levels) {
+    const double share = level.wrong / (1 - chance_level);
+    const double wrong = (1 - chance) * share;
+    weights.push_back(level.wrong > 1e-12 ? std::log((1 - wrong) / wrong) - level.logit : 0);
+  }
+  return weights;
+}
+
+// The square of the distance from the threshold in widths of the function, cut where the function has no slope left.
+std::vector<double> towards_bend(const ModelResiduals& model) {
+  std::vector<double> weights;
+  const double slope = std::exp(model.place[place_q]);
+  for (const LevelResidual& level : model.levels) {
+    const double y = std::clamp(slope * (level.ln_size - model.place[place_t]), -3.0, 1.5);
+    weights.push_back(level.catch_trials ? 0 : y * y);
+  }
+  return weights;
+}
+
+// The best threshold (and lapse) at one slope, from starts over one width of the function about t.
+Maximum<3> profile_maximum_over_t(const PooledCounts& counts, const FitOptions& options, double t, double q) {
+  Box<3> box = search_box(options.fixed_lapse);
+  box.lower[place_q] = box.upper[place_q] = q;
+  const auto likelihood = [&](const PsychometricPlace& place) {
+    return expand_likelihood(counts, options.form, place);
+  };
+  const double width = std::exp(-q), lapse = options.fixed_lapse.value_or(0.01);
+  Maximum<3> best = climb<3>(likelihood, {t, q, lapse}, box);
+  for (const double aside : {-2.0, -1.0, 1.0, 2.0}) {
+    const Maximum<3> m = climb<3>(likelihood, {t + aside * width, q, lapse}, box);
+    if (m.expansion.value > best.expansion.value) best = m;
+  }
+  return best;
+}
+
+enum class Sides { one, both };
+
+struct Test {
+  std::string towards, away;
+  Sides sides = Sides::one;
+  double share = 1;  // of the probability of a false alarm
+  Direction direction;
+};
+
+class Tester {
+ public:
+  Tester(const ModelResiduals& model, std::span<const Level> levels, double clusters)
+      : model_(model), levels_(levels), clusters_(clusters), make_(model) {}
+
+  void add(std::string towards, std::string away, Sides sides, double share, std::vector<double> weights) {
+    if (auto direction = make_.direction(std::move(weights)))
+      tests_.push_back({std::move(towards), std::move(away), sides, share, *std::move(direction)});
+  }
+
+  // Variance of a score over clusters, at least 1.
+  [[nodiscard]] double variance(const Direction& direction) const {
+    if (clusters_ < 2) return 1;
+    return std::max(1.0, cluster_covariance(model_, levels_, {&direction, 1}, clusters_).front());
+  }
+
+  [[nodiscard]] std::optional<Departure> strongest(double probability) const {
+    std::optional<Departure> found;
+    for (const Test& test : tests_) {
+      const double limit = limit_for(test, probability);
+      double score = test.direction.score / std::sqrt(variance(test.direction));
+      const bool away = score < 0 && test.sides == Sides::both;
+      if (away) score = -score;
+      if (!found || score / limit > found->score / found->limit)
+        found = Departure{away ? test.away : test.towards, score, limit};
+    }
+    return found;
+  }
+
+  // Directions that the answers have left significantly.
+  [[nodiscard]] std::vector<Direction> left(double probability) const {
+    std::vector<Direction> directions;
+    for (const Test& test : tests_) {
+      const double score = std::abs(test.direction.score) / std::sqrt(variance(test.direction));
+      if (score < limit_for(test, probability)) continue;
+      if (auto rest = make_.direction(test.direction.weights, directions)) directions.push_back(*std::move(rest));
+    }
+    return directions;
+  }
+
+ private:
+  [[nodiscard]] double limit_for(const Test& test, double probability) const {
+    return limit_of(probability * test.share / (test.sides == Sides::both ? 2 : 1), clusters_);
+  }
+
+  const ModelResiduals& model_;
+  std::span<const Level> levels_;
+  double clusters_;
+  Directions make_;
+  std::vector<Test> tests_;
+};
+
+}  // namespace
+
+bool asks_for_steeper(std::span<const Level> levels, const PsychometricFit& fit, const FitOptions& options,
+                      double probability) {
+  if (!fit.slope_at_cap || !fit.threshold || !fit.log_likelihood || fit.clusters == 1) return false;
+  const PooledCounts counts = pool(levels);
+  const double q = std::log(max_slope / 2);
+  const Maximum<3> half = profile_maximum_over_t(counts, options, counts.relative(*fit.threshold), q);
+  const double limit = limit_of(probability, fit.clusters);
+  return 2 * (*fit.log_likelihood - half.expansion.value) > fit.variance_inflation * limit * limit;
+}
+
+ModelTest test_model(std::span<const Level> levels, const PsychometricFit& fit,
+                     const std::optional<PsychometricFit>& free_fit, const FitOptions& options,
+                     const FalseAlarms& probability) {
+  ModelTest result;
+  if (fit.clusters == 1 || !fit.threshold || !fit.slope) return result;
+  const PooledCounts counts = pool(levels);
+  // A free lapse at the end of its range is a fixed one.
+  const bool lapse_fitted = !options.fixed_lapse && fit.lapse > 0 && fit.lapse < max_free_lapse;
+  const PsychometricPlace place{counts.relative(*fit.threshold), std::log(*fit.slope), fit.lapse};
+  const ModelResiduals model = model_residuals(counts, options.form, place, {true, true, lapse_fitted});
+  Tester tester(model, levels, fit.clusters);
+  const bool size = options.form == PsychometricForm::size;
+  const PsychometricForm other = size ? PsychometricForm::acuity : PsychometricForm::size;
+  tester.add(std::string("towards the ") + (size ? "acuity" : "size") + " form", "", Sides::one, 0.5,
+             difference(logits_at(model, other, nearest_of(model, other, fit.lapse)), model));
+  tester.add("towards more right answers at small sizes than chance gives",
+             "towards fewer right answers at small sizes than chance gives", Sides::both, 0.25,
+             towards_chance(model, 0.3));
+  tester.add("towards a bend upwards", "towards a bend downwards", Sides::both, 0.25, towards_bend(model));
+  result.departure = tester.strongest(probability.departure);
+
+  if (options.fixed_lapse && free_fit && free_fit->log_likelihood && fit.log_likelihood) {
+    const double alternative = std::min(*options.fixed_lapse + 0.03, max_free_lapse);
+    const auto direction = Directions(model).direction(
+        difference(logits_at(model, options.form, nearest_of(model, options.form, alternative)), model));
+    const double gain = 2 * (*free_fit->log_likelihood - *fit.log_likelihood);
+    const double limit = limit_of(probability.lapse, fit.clusters);
+    if (direction && free_fit->lapse > *options.fixed_lapse)
+      result.lapse = LapseTest{free_fit->lapse, std::max(0.0, gain) / tester.variance(*direction), limit * limit};
+  }
+  result.scatter = dispersions(model, levels, tester.left(probability.departure), fit.clusters);
+  return result;
+}
+
+}  // namespace todbench

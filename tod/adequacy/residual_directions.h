@@ -1,0 +1,68 @@
+// Answers minus what a fitted function expects, and how far they lie in given directions of departure.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tod/psychometric/psychometric_likelihood.h"
+
+namespace todbench {
+
+/// One size under a fitted function.
+struct LevelResidual {
+  double ln_size = 0;  ///< relative; meaningless for catch trials
+  double trials = 0;
+  double right = 0, wrong = 0;  ///< probabilities of the function
+  double logit = 0;             ///< ln(right / wrong), cut to +-50
+  double residual = 0;          ///< right answers minus their expectation
+  bool catch_trials = false;
+
+  /// Of the number of right answers.
+  [[nodiscard]] double variance() const { return trials * right * wrong; }
+};
+
+/// A fitted function and its residuals.
+struct ModelResiduals {
+  PooledCounts counts;
+  PsychometricForm form = PsychometricForm::size;
+  PsychometricPlace place{};
+  std::array<bool, 3> fitted{};       ///< parameters that follow the answers
+  std::vector<LevelResidual> levels;  ///< sizes increasing, catch trials last
+};
+/// At a place of maximum likelihood; `fitted` says which parameters were searched.
+[[nodiscard]] ModelResiduals model_residuals(const PooledCounts& counts, PsychometricForm form,
+                                             const PsychometricPlace& place, const std::array<bool, 3>& fitted);
+
+/// ln(psi / (1 - psi)) of a function at every level of the residuals, cut to +-50; catch trials as they are.
+[[nodiscard]] std::vector<double> logits_at(const ModelResiduals& model, PsychometricForm form,
+                                            const PsychometricPlace& place);
+
+/// A departure from the fitted function, made orthogonal to its fitted parameters (the efficient score), with unit
+/// variance where trials are independent.
+struct Direction {
+  std::vector<double> weights;  ///< one for each level
+  double score = 0;             ///< standard normal under the model
+};
+
+/// Makes directions of weights for residuals: nothing where the parameters, or the directions `besides`, leave less
+/// than a hundredth of the variance of one.
+class Directions {
+ public:
+  explicit Directions(const ModelResiduals& model);
+  [[nodiscard]] std::optional<Direction> direction(std::vector<double> weights,
+                                                   std::span<const Direction> besides = {}) const;
+
+ private:
+  [[nodiscard]] double product(const std::vector<double>& a, const std::vector<double>& b) const;
+
+  const ModelResiduals& model_;
+  std::vector<std::vector<double>> parameters_;  ///< orthonormal
+};
+
+/// Covariance of the scores of directions over clusters (Liang and Zeger 1986), times G / (G - 1); row by row. Rows
+/// without a cluster are one cluster per trial. `clusters` > 1.
+[[nodiscard]] std::vector<double> cluster_covariance(const ModelResiduals& model, std::span<const Level> levels,
+                                                     std::span<const Direction> directions, double clusters);
+
+}  // namespace todbench

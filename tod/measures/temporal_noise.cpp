@@ -1,0 +1,156 @@
+#include "tod/measures/temporal_noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace todbench {
+namespace {
+
+using Pair = std::pair<std::size_t, std::size_t>;
+
+constexpr std::size_t most_pairs = 128;    // of a lag: 76800 pixels know their variance to 0.05 % with a few already
+constexpr std::size_t pairs_of_mask = 10;  // a pixel's own variance, for a limit that white noise exceeds in 5 of 10^5
+constexpr int correlation_lag = 8;
+
+/// Pictures so many exposures apart, evenly thinned.
+std::vector<Pair> pairs_at(std::span<const TimedPicture> pictures, int lag) {
+  std::vector<Pair> all;
+  std::size_t later = 0;
+  for (std::size_t first = 0; first < pictures.size(); ++first) {
+    const std::uint64_t wanted = pictures[first].sequence + static_cast<std::uint64_t>(lag);
+    while (later < pictures.size() && pictures[later].sequence < wanted) ++later;
+    if (later == pictures.size()) break;
+    if (pictures[later].sequence == wanted && pictures[later].segment == pictures[first].segment)
+      all.emplace_back(first, later);
+  }
+  if (all.size() <= most_pairs) return all;
+  std::vector<Pair> some;
+  for (std::size_t k = 0; k < most_pairs; ++k) some.push_back(all[k * all.size() / most_pairs]);
+  return some;
+}
+
+/// Half the mean square of the difference, per pixel.
+cv::Mat1d half_squares(std::span<const TimedPicture> pictures, const std::vector<Pair>& pairs) {
+  cv::Mat1d sum(pictures[0].picture.size(), 0.0);
+  for (const auto& [first, later] : pairs) {
+    cv::Mat1d difference;
+    cv::Mat1f(pictures[later].picture - pictures[first].picture).convertTo(difference, CV_64F);
+    sum += difference.mul(difference);
+  }
+  return sum / (2.0 * static_cast<double>(pairs.size()));
+}
+
+double median_of(const cv::Mat1d& picture) {
+  std::vector<double> values(picture.begin(), picture.end());
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Half mean squares at one lag, over usable pixels.
+struct AtLag {
+  double all = 0;     ///< as they are
+  double pixels = 0;  ///< without the change of the whole frame
+};
+
+AtLag at_lag(std::span<const TimedPicture> pictures, const std::vector<Pair>& pairs, const cv::Mat1b& usable) {
+  AtLag out;
+  for (const auto& [first, later] : pairs) {
+    const cv::Mat1f difference = pictures[later].picture - pictures[first].picture;
+    cv::Scalar mean, sd;
+    cv::meanStdDev(difference, mean, sd, usable);
+    out.all += (mean[0] * mean[0] + sd[0] * sd[0]) / 2;
+    out.pixels += sd[0] * sd[0] / 2;
+  }
+  const auto count = static_cast<double>(pairs.size());
+  return {out.all / count, out.pixels / count};
+}
+
+/// Pixels whose noise is above twice the median pixel's at a short or at a longer lag see moving scene; one that never
+/// changes is dead.
+cv::Mat1b usable_pixels(std::span<const TimedPicture> pictures, const std::map<int, std::vector<Pair>>& pairs) {
+  const int base = pairs.begin()->first;
+  cv::Mat1b usable(pictures[0].picture.size(), 255);
+  for (const auto& [lag, of_lag] : pairs) {
+    const bool longer = lag == correlation_lag * base;
+    // Pairs that overlap are not independent.
+    if (lag != base && !longer) continue;
+    if (of_lag.size() < pairs_of_mask * (longer ? 4 : 1)) continue;
+    const cv::Mat1d own = half_squares(pictures, of_lag);
+    const double median = median_of(own);
+    if (!(median > 0)) continue;
+    usable &= own <= 4 * median;
+    if (lag == base) usable &= own > 0;
+  }
+  return usable;
+}
+
+}  // namespace
+
+double first_order_correlation(double ratio, int lag) {
+  const auto sum = [&](double rho) {
+    double total = 0, power = 1;
+    for (int j = 0; j < lag; ++j, power *= rho) total += power;
+    return total;
+  };
+  double low = -1, high = 1;  // of an even lag the sum rises from 0, of an odd one from 1
+  if (ratio >= sum(high)) return high;
+  if (lag % 2 == 1) {
+    // It falls below 1 between -1 and 0, and rises from its lowest on.
+    for (double rho = -1; rho < 0; rho += 1e-3) {
+      if (sum(rho) < sum(low)) low = rho;
+    }
+  }
+  if (ratio <= sum(low)) return low;
+  while (high - low > 1e-12) {
+    const double middle = 0.5 * (low + high);
+    (sum(middle) < ratio ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+Result<TemporalNoise> temporal_noise(std::span<const TimedPicture> pictures) {
+  for (const TimedPicture& picture : pictures) {
+    if (picture.picture.size() != pictures[0].picture.size())
+      return fail(ErrorCode::invalid_input, "frames of different sizes");
+  }
+  std::map<int, std::vector<Pair>> pairs;
+  for (int lag = 1; lag <= longest_lag; ++lag) {
+    if (auto found = pairs_at(pictures, lag); !found.empty()) pairs[lag] = std::move(found);
+  }
+  if (pairs.empty())
+    return fail(ErrorCode::invalid_input, "temporal noise needs two frames with no correction between them");
+  TemporalNoise noise;
+  noise.usable = usable_pixels(pictures, pairs);
+  noise.usable_share = cv::countNonZero(noise.usable) / static_cast<double>(noise.usable.total());
+  const int base = pairs.begin()->first;
+  std::map<int, AtLag> at;
+  for (const auto& [lag, of_lag] : pairs) {
+    at[lag] = at_lag(pictures, of_lag, noise.usable);
+    noise.lags.push_back(lag);
+    noise.structure.push_back(std::sqrt(at[lag].all));
+  }
+  noise.successive = noise.structure.front();
+  if (!(noise.successive > 0))
+    return fail(ErrorCode::invalid_input, "there is no noise: successive frames are the same");
+  if (at[base].pixels > 0) {
+    // The longest lag that a third of the frames have still in common.
+    int longest = base;
+    for (const auto& [lag, of_lag] : pairs) {
+      if (3 * of_lag.size() >= std::min(pairs.at(base).size(), most_pairs)) longest = lag;
+    }
+    noise.whole_to_successive = std::sqrt(at[longest].pixels / at[base].pixels);
+    for (int steps = correlation_lag; steps >= 2 && !noise.lag1_correlation; --steps) {
+      const auto found = pairs.find(steps * base);
+      if (found == pairs.end() || 3 * found->second.size() < 2 * pairs.at(base).size()) continue;
+      const double of_base = first_order_correlation(at[steps * base].all / at[base].all, steps);
+      // Where only every so many exposures are there, theirs is the power of that.
+      noise.lag1_correlation = base == 1 || of_base < 0 ? of_base : std::pow(of_base, 1.0 / base);
+    }
+  }
+  return noise;
+}
+
+}  // namespace todbench

@@ -1,0 +1,43 @@
+#include "tod/psychometric/finding.h"
+
+namespace todbench {
+
+std::string_view to_string(FindingKind kind) {
+  switch (kind) {
+    case FindingKind::deviance:
+      return "deviance";
+    case FindingKind::lapse:
+      return "lapse";
+    case FindingKind::overdispersion:
+      return "overdispersion";
+    case FindingKind::underdispersion:
+      return "underdispersion";
+    case FindingKind::extrapolation:
+      return "extrapolation";
+    case FindingKind::slope:
+      return "slope";
+    case FindingKind::direct_estimate:
+      return "direct_estimate";
+    case FindingKind::clipping:
+      return "clipping";
+    case FindingKind::rounding:
+      return "rounding";
+    case FindingKind::temporal_correlation:
+      return "temporal_correlation";
+    case FindingKind::identity:
+      return "identity";
+  }
+  return "unknown";
+}
+
+std::string reasons_unfit(const Adequacy& adequacy) {
+  std::string reasons;
+  for (const AdequacyFinding& finding : adequacy.findings) {
+    if (!finding.unfit) continue;
+    if (!reasons.empty()) reasons += "; ";
+    reasons += finding.sentence;
+  }
+  return reasons;
+}
+
+}  // namespace todbench
