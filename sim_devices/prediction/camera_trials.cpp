@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "sim_devices/sensor/super_resolution.h"
 #include "tod/registration/patch_windows.h"
@@ -194,6 +195,9 @@ Result<CameraTrialRecord> camera_trials(const SensorSpec& sensor, const std::vec
   if (auto checked = check(options); !checked) return tl::unexpected(checked.error());
   if (sensor.microscan != 1)
     return fail(ErrorCode::invalid_input, "super-resolution is for a camera without microscan");
+  if (reaches_an_end(sensor, options.delta_t_k, PlateScene{}.background_k))
+    return fail(ErrorCode::invalid_input, "a contrast of " + std::to_string(options.delta_t_k) +
+                                              " K reaches an end of the camera's counts: frames of it are clipped");
   const TargetPlate plate = plate_of(options, sensor.ifov_mrad());
   const SensorSpec camera = cropped(sensor, plate);
   const SensorModel model(camera, full_plan(camera, {}, {}), options.accuracy, options.seed);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <Eigen/Dense>
 #include <algorithm>
+#include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -11,6 +12,8 @@
 #include <optional>
 
 #include "sim_devices/prediction/size_trial.h"
+#include "sim_devices/sensor/effect_display.h"
+#include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "tod/plate/test_pattern.h"
 
@@ -71,6 +74,13 @@ std::optional<Crossing> crossing(const std::vector<double>& xs, const std::vecto
   return Crossing{x, spread / (c(1) + 2 * c(2) * x)};
 }
 
+/// How a contrast is judged.
+struct AskedContrast {
+  double delta_t_k = 0;
+  WhiteNoise white;                     ///< rounding among it
+  std::optional<PixelContrast> pixels;  ///< where rounding is no noise, or something is clipped
+};
+
 /// Sizes on demand for one sensor and observer.
 class SizeLadder {
  public:
@@ -82,7 +92,7 @@ class SizeLadder {
         options_(options),
         stream_(options.seed, "direct_estimate") {}
 
-  [[nodiscard]] Result<Proportion> proportion(int index, const WhiteNoise& white, double contrast_k, int draws) {
+  [[nodiscard]] Result<Proportion> proportion(int index, const AskedContrast& asked, int draws) {
     if (options_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
     auto& slot = sizes_[index];
     if (slot == nullptr) {
@@ -92,7 +102,8 @@ class SizeLadder {
       slot = std::make_unique<SizeTrial>(chain_, *bank, size, conditions_,
                                          stream_.sub(static_cast<std::uint64_t>(index - smallest_index)));
     }
-    return slot->proportion(white, contrast_k, draws);
+    if (asked.pixels) return slot->pixel_proportion(*asked.pixels, draws);
+    return slot->proportion(asked.white, std::abs(asked.delta_t_k), draws);
   }
 
  private:
@@ -105,20 +116,20 @@ class SizeLadder {
 };
 
 /// The largest index whose proportion is below 75 % while that of the next is not: the first crossing from above.
-Result<int> bracket(SizeLadder& ladder, const WhiteNoise& white, double contrast) {
+Result<int> bracket(SizeLadder& ladder, const AskedContrast& asked) {
   int index = 9;  // 2 pitches
   for (;; index += 4) {
     if (index > largest_index) {
       return fail(ErrorCode::invalid_input,
-                  fmt::format("at a contrast of {:g} K no size up to {:.0f} pitches is judged 75 % correct", contrast,
-                              size_of(largest_index)));
+                  fmt::format("at a contrast of {:g} K no size up to {:.0f} pitches is judged 75 % correct",
+                              asked.delta_t_k, size_of(largest_index)));
     }
-    const auto p = ladder.proportion(index, white, std::abs(contrast), scout_draws);
+    const auto p = ladder.proportion(index, asked, scout_draws);
     if (!p) return tl::unexpected(p.error());
     if (p->mean > 0.8) break;
   }
   for (--index; index >= smallest_index; --index) {
-    const auto p = ladder.proportion(index, white, std::abs(contrast), scout_draws);
+    const auto p = ladder.proportion(index, asked, scout_draws);
     if (!p) return tl::unexpected(p.error());
     if (p->mean < 0.75) return index;
   }
@@ -132,18 +143,18 @@ struct Pass {
   int centre = 0;
 };
 
-Result<Pass> one_pass(SizeLadder& ladder, double contrast, const WhiteNoise& white, const Accuracy& accuracy,
-                      int centre, int draws) {
+Result<Pass> one_pass(SizeLadder& ladder, const AskedContrast& asked, const Accuracy& accuracy, int centre, int draws) {
   const double resolution = 0.25 / (draws * accuracy.phases_per_axis);
   for (int attempt = 0; attempt < 4; ++attempt) {
     centre = std::clamp(centre, smallest_index + 2, largest_index - 2);
     DirectPoint point;
-    point.delta_t_k = contrast;
+    point.delta_t_k = asked.delta_t_k;
+    point.seen_delta_t_k = asked.pixels ? asked.pixels->seen_k : asked.delta_t_k;
     point.noise_draws = draws;
     std::vector<double> xs;
     std::vector<Proportion> ps;
     for (int k = centre - 2; k <= centre + 2; ++k) {
-      const auto p = ladder.proportion(k, white, std::abs(contrast), draws);
+      const auto p = ladder.proportion(k, asked, draws);
       if (!p) return tl::unexpected(p.error());
       xs.push_back((k - centre) * std::log(size_step));
       ps.push_back(*p);
@@ -174,13 +185,13 @@ std::string out_of_reach(double contrast, double asked_percent, double needed_dr
       2 * asked_percent, contrast, needed_draws, Accuracy::max_noise_draws, 2 * reachable_percent, seconds);
 }
 
-Result<DirectPoint> estimate_contrast(SizeLadder& ladder, double contrast, const WhiteNoise& white,
-                                      const Accuracy& accuracy, const std::function<double(double)>& seconds_at) {
-  const auto below = bracket(ladder, white, contrast);
+Result<DirectPoint> estimate_contrast(SizeLadder& ladder, const AskedContrast& asked_contrast, const Accuracy& accuracy,
+                                      const std::function<double(double)>& seconds_at) {
+  const auto below = bracket(ladder, asked_contrast);
   if (!below) return tl::unexpected(below.error());
   int centre = *below, draws = accuracy.noise_draws;
   for (;;) {
-    auto pass = one_pass(ladder, contrast, white, accuracy, centre, draws);
+    auto pass = one_pass(ladder, asked_contrast, accuracy, centre, draws);
     if (!pass) return tl::unexpected(pass.error());
     const double reached = 100 * pass->point.standard_error_pitch / pass->point.s75_pitch;
     const double asked = accuracy.standard_error_percent;
@@ -190,11 +201,61 @@ Result<DirectPoint> estimate_contrast(SizeLadder& ladder, double contrast, const
     if (needed > 2 * Accuracy::max_noise_draws || draws == Accuracy::max_noise_draws) {
       const double reachable = 1.05 * reached * std::sqrt(draws / double{Accuracy::max_noise_draws});
       return fail(ErrorCode::invalid_input,
-                  out_of_reach(contrast, asked, needed, reachable, seconds_at(pass->point.s75_pitch)));
+                  out_of_reach(asked_contrast.delta_t_k, asked, needed, reachable, seconds_at(pass->point.s75_pitch)));
     }
     centre = pass->centre;
     draws = std::min(static_cast<int>(needed) + 1, Accuracy::max_noise_draws);
   }
+}
+
+/// Standard deviation in time of a pixel that sees the surround, as frames show it: rounded, and averaged over where
+/// the fixed pattern puts the pixels within a count.
+double noise_of_frames_k(const SensorSpec& sensor, const Quantiser& quantiser, double noise_k) {
+  constexpr int places = 41;
+  double variance = 0;
+  for (int i = 0; i < places; ++i) {
+    const double z = std::numbers::sqrt2 * boost::math::erf_inv(2 * (i + 0.5) / places - 1);
+    variance += std::pow(quantiser.reading(sensor.fixed_pattern_k * z, noise_k).sd_k, 2) / places;
+  }
+  return std::sqrt(variance);
+}
+
+/// The contrast of a camera whose counts are too coarse or too few for it.
+Result<PixelContrast> pixel_contrast(const SensorSpec& sensor, const SensorPlan& plan,
+                                     const TemplateObserverSpec& observer, double delta_t_k,
+                                     const DirectEstimateOptions& options) {
+  PixelContrast out;
+  const double rounding_k2 = plan.simulates(Effect::quantisation) ? std::pow(sensor.kelvin_per_count, 2) / 12 : 0;
+  out.noise_k = std::sqrt(std::max(0.0, white_variance_k2(sensor, plan, 1) - rounding_k2));
+  out.background_k = options.background_k.value_or(sensor.scene_temperature_k);
+  const Quantiser quantiser(sensor, out.background_k);
+  const double displayed_k = out.noise_k * display_noise_gain(sensor);
+  if (const auto scene = options.scene_delta_t_k.find(delta_t_k); scene != options.scene_delta_t_k.end()) {
+    out.scene_k = scene->second;
+    out.seen_k = delta_t_k;
+  } else {
+    out.scene_k = delta_t_k;
+    const double sd_k = std::hypot(displayed_k, sensor.fixed_pattern_k);
+    out.seen_k = quantiser.reading(delta_t_k, sd_k).mean_k - quantiser.reading(0, sd_k).mean_k;
+  }
+  if (!(out.seen_k / delta_t_k > 1e-6)) {
+    return fail(ErrorCode::invalid_input,
+                fmt::format("a contrast of {:g} K disappears in counts of {:g} K", delta_t_k, sensor.kelvin_per_count));
+  }
+  // An observer of limited efficiency adds white noise in proportion to what frames show.
+  const double factor = observer.sensor_noise_factor;
+  out.internal_k =
+      std::hypot(observer.internal_noise * out.seen_k,
+                 std::sqrt(std::max(0.0, factor * factor - 1)) * noise_of_frames_k(sensor, quantiser, displayed_k));
+  return out;
+}
+
+bool needs_pixels(const SensorSpec& sensor, const SensorPlan& plan, double delta_t_k,
+                  const DirectEstimateOptions& options) {
+  const auto scene = options.scene_delta_t_k.find(delta_t_k);
+  const double scene_k = scene == options.scene_delta_t_k.end() ? delta_t_k : scene->second;
+  return (plan.simulates(Effect::quantisation) && rounds_coarsely(sensor)) ||
+         reaches_an_end(sensor, scene_k, options.background_k.value_or(sensor.scene_temperature_k));
 }
 
 }  // namespace
@@ -212,14 +273,24 @@ Result<std::vector<DirectPoint>> direct_estimate(const SensorSpec& spec, const S
   if (options.samples_per_pitch == 0) conditions.samples_per_pitch = conditions.sensor.samples_per_pitch();
   if (conditions.sensor.super_resolution_frames == 0) conditions.sensor.microscan = conditions.samples_per_pitch;
   const SensorSpec sensor = conditions.sensor;
-  SizeLadder ladder(chain, observer, std::move(conditions), options);
+  const auto by_pixels = [&](double contrast) { return needs_pixels(sensor, plan, contrast, options); };
+  SizeLadder ladder(chain, observer, conditions, options);
+  conditions.by_pixels = true;
+  SizeLadder pixel_ladder(chain, observer, std::move(conditions), options);
   const double white_k = std::sqrt(white_variance_k2(sensor, plan, observer.spec().sensor_noise_factor));
   std::vector<DirectPoint> points;
   for (const double contrast : delta_t_k) {
     const double magnitude = std::abs(contrast);
     if (!(magnitude > 0)) return fail(ErrorCode::invalid_input, "a contrast of 0 K has no threshold");
-    const WhiteNoise white{.sensor = white_k / magnitude, .internal = observer.spec().internal_noise};
-    auto point = estimate_contrast(ladder, contrast, white, options.accuracy, [&](double s75) {
+    AskedContrast asked{.delta_t_k = contrast,
+                        .white = {.sensor = white_k / magnitude, .internal = observer.spec().internal_noise},
+                        .pixels = std::nullopt};
+    if (by_pixels(contrast)) {
+      const auto pixels = pixel_contrast(sensor, plan, observer.spec(), contrast, options);
+      if (!pixels) return tl::unexpected(pixels.error());
+      asked.pixels = *pixels;
+    }
+    auto point = estimate_contrast(asked.pixels ? pixel_ladder : ladder, asked, options.accuracy, [&](double s75) {
       return predicted_direct_seconds(observer.spec(), sensor, s75, Accuracy::max_noise_draws,
                                       options.accuracy.phases_per_axis);
     });
@@ -237,8 +308,10 @@ double predicted_direct_seconds(const TemplateObserverSpec& observer, const Sens
   const double half = std::ceil(observer.window_size_factor * s75_pitch + observer.window_margin_pitch);
   const double samples = std::pow(2 * half * n, 2);
   const double phases = std::pow(phases_per_axis / n, 2);
-  // Building a bank costs as much as sixty of its projections. A draw is projected, and compared at every phase.
-  const double per_size = (noise_draws + 60.0) * templates * samples + noise_draws * templates * phases;
+  // Building a bank costs as much as sixty of its projections. A draw is projected, and compared at every phase; where
+  // every pixel is rounded it is projected at as many phases as an axis has.
+  const double projections = rounds_coarsely(sensor) ? 2 * phases_per_axis / n : 1;
+  const double per_size = (noise_draws * projections + 60.0) * templates * samples + noise_draws * templates * phases;
   return 5 * per_size * 5e-11;
 }
 

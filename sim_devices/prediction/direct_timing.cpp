@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sim_devices/prediction/size_trial.h"
+#include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "tod/plate/test_pattern.h"
 
@@ -37,11 +38,13 @@ Result<double> measured_direct_seconds(const SensorSpec& spec, const SensorPlan&
                                        double noise_draws, const Accuracy& accuracy, SceneMotion motion) {
   const SensorSpec sensor = as_planned(spec, plan);
   const int samples_per_pitch = sensor.samples_per_pitch();
+  const bool by_pixels = plan.simulates(Effect::quantisation) && rounds_coarsely(sensor);
   const TrialConditions conditions{.sensor = sensor,
                                    .motion = motion,
                                    .samples_per_pitch = samples_per_pitch,
                                    .phases_per_axis = accuracy.phases_per_axis,
-                                   .search_step_samples = observer_spec.search_step_samples};
+                                   .search_step_samples = observer_spec.search_step_samples,
+                                   .by_pixels = by_pixels};
   TemplateObserver observer(observer_spec, triangle_alternatives());
   const ImageChain chain(spec, plan, accuracy, motion);
   const double white_k = std::sqrt(white_variance_k2(sensor, plan, observer_spec.sensor_noise_factor));
@@ -51,10 +54,19 @@ Result<double> measured_direct_seconds(const SensorSpec& spec, const SensorPlan&
   auto bank = observer.bank(s75_pitch * samples_per_pitch, samples_per_pitch);
   if (!bank) return tl::unexpected(bank.error());
   SizeTrial trial(chain, *bank, s75_pitch, conditions, RandomStream(1, "direct_timing"));
+  const auto judge = [&] {
+    if (!by_pixels) return trial.proportion(white, std::abs(delta_t_k), timed_draws);
+    return trial.pixel_proportion({.scene_k = delta_t_k,
+                                   .seen_k = delta_t_k,
+                                   .noise_k = white_k,
+                                   .internal_k = observer_spec.internal_noise * std::abs(delta_t_k),
+                                   .background_k = sensor.scene_temperature_k},
+                                  timed_draws);
+  };
   const double t1 = thread_seconds();
-  (void)trial.proportion(white, std::abs(delta_t_k), timed_draws);
+  (void)judge();
   const double t2 = thread_seconds();
-  (void)trial.proportion(white, std::abs(delta_t_k), timed_draws);
+  (void)judge();
   const double t3 = thread_seconds();
   const double build = t1 - t0;
   const double compare = (t3 - t2) / timed_draws;

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "sim_devices/prediction/cued_estimate.h"
+#include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/effect_row.h"
 #include "tod/plate/test_pattern.h"
 
@@ -181,11 +182,30 @@ void obey(const EffectPlannerOptions& options, EffectPlan& out) {
   }
 }
 
+/// Bounds take noise as normal and pictures as linear.
+std::string why_none_holds(const SensorSpec& sensor, const EffectScene& scene) {
+  if (rounds_coarsely(sensor)) {
+    return fmt::format(
+        "simulated: the noise is {:.2g} counts, so rounding depends on the signal and no criterion holds",
+        noise_in_counts(sensor));
+  }
+  for (const double delta_t_k : scene.delta_t_k) {
+    if (reaches_an_end(sensor, delta_t_k, sensor.scene_temperature_k)) {
+      return fmt::format("simulated: a contrast of {:g} K reaches an end of the counts, so no criterion holds",
+                         delta_t_k);
+    }
+  }
+  return "";
+}
+
 }  // namespace
 
 SceneSurvey survey_scene(const SensorSpec& sensor, TemplateObserver& observer, const EffectScene& scene) {
-  SceneSurvey out{
-      .everything = full_plan(sensor, {}, {}, scene.motion), .change_percent = {}, .outlooks = {}, .warnings = {}};
+  SceneSurvey out{.everything = full_plan(sensor, {}, {}, scene.motion),
+                  .change_percent = {},
+                  .outlooks = {},
+                  .warnings = {},
+                  .no_criterion = {}};
   CuedEstimate cued(sensor, out.everything, observer, scene.motion);
   std::vector<Contrast> contrasts;
   for (const double delta_t_k : scene.delta_t_k) {
@@ -197,9 +217,10 @@ SceneSurvey survey_scene(const SensorSpec& sensor, TemplateObserver& observer, c
       out.warnings.push_back(fmt::format("at {:g} K: ", delta_t_k) + contrast.error().message);
     }
   }
+  out.no_criterion = why_none_holds(as_planned(sensor, out.everything), scene);
   for (const auto& decision : out.everything.decisions) {
     std::optional<double> largest;
-    if (decision.decision != Decision::skip && out.warnings.empty()) {
+    if (decision.decision != Decision::skip && out.warnings.empty() && out.no_criterion.empty()) {
       largest = 0.0;
       for (const auto& c : contrasts) {
         const auto change = bound(decision.effect, c, sensor, out.everything, scene.motion);
@@ -231,6 +252,10 @@ Result<EffectPlan> plan_effects(const SceneSurvey& survey, const EffectPlannerOp
     if (one_without_threshold) {
       // Noise may be why there is none: without it the simulation would find one.
       decision.reason = "simulated: a contrast of the scene has no threshold, so no criterion holds for it";
+      continue;
+    }
+    if (!survey.no_criterion.empty()) {
+      decision.reason = survey.no_criterion;
       continue;
     }
     decision.predicted_change_percent = survey.change_percent[i];

@@ -50,6 +50,7 @@ struct SceneSurvey {
   std::vector<std::optional<double>> change_percent;  ///< per decision: bound on the change; nothing: no criterion
   std::vector<ContrastOutlook> outlooks;              ///< per contrast that has a threshold
   std::vector<std::string> warnings;                  ///< contrasts without, a sentence each
+  std::string no_criterion;                           ///< why none holds in this scene; empty: they do
 };
 
 /// Deterministic; a tenth of a second for three contrasts, most of it for images and for template banks, which the
@@ -60,8 +61,8 @@ struct SceneSurvey {
 /// bounded at every contrast and the largest is taken. The effects with the smallest bounds are skipped as long as
 /// their sum stays within four fifths of the tolerance; the rest is for numerical errors. Detector footprint,
 /// microscan, super-resolution and motion by half a pitch and more per time constant have no criterion and are always
-/// simulated, and so is everything where a contrast of the scene has no threshold. Microseconds. `invalid_input`: no
-/// contrast has a threshold.
+/// simulated, and so is everything where a contrast of the scene has no threshold, and where counts are too coarse or
+/// too few for the scene. Microseconds. `invalid_input`: no contrast has a threshold.
 [[nodiscard]] Result<EffectPlan> plan_effects(const SceneSurvey& survey, const EffectPlannerOptions& options);
 /// Survey and decisions together.
 [[nodiscard]] Result<EffectPlan> plan_effects(const SensorSpec& sensor, TemplateObserver& observer,

@@ -10,6 +10,7 @@
 #include "hvs/observer/score_maxima.h"
 #include "sim_devices/sensor/effect_dead_pixels.h"
 #include "sim_devices/sensor/effect_display.h"
+#include "sim_devices/sensor/effect_quantisation.h"
 #include "tod/plate/test_pattern.h"
 
 namespace todbench {
@@ -25,6 +26,11 @@ std::uint64_t pattern_part(std::uint64_t draw) {
 /// For dead detectors and for lines, three a draw.
 std::uint64_t rare_part(std::uint64_t draw, std::uint64_t part) {
   return (std::uint64_t{1} << 40) + 3 * draw + part;
+}
+
+/// Of the observer, for trials of pixels.
+std::uint64_t observer_part(std::uint64_t trial) {
+  return (std::uint64_t{1} << 42) + trial;
 }
 
 /// The stream of that name of one draw.
@@ -53,17 +59,26 @@ SizeTrial::SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank
   if (has_display(sensor)) display_taps_ = taps_of([&](double f) { return display_response(sensor, f); });
   // The sampling grid and most effects look the same from all four sides.
   const bool alike = conditions_.orientations == ShownOrientations::as_needed && turns_alike;
-  const int per_axis = std::max(1, conditions_.phases_per_axis / conditions_.samples_per_pitch);
+  const int per_axis = phases_per_sample();
+  const int per_pitch = chain.points_per_pitch() * (conditions_.by_pixels ? 2 : 1);
+  // Pitches from the middle within which samples of the window and of the display's filter lie.
+  const int margin = static_cast<int>(display_taps_.size()) / 2;
+  const int reach = (bank_->window_samples() / 2 + margin) / conditions_.samples_per_pitch + 2;
   for (int truth = 0; truth < (alike ? 1 : bank_->alternatives()); ++truth) {
-    const cv::Mat1d fine = chain.image(triangle(size_pitch, all_apexes[static_cast<std::size_t>(truth)]))
-                               .fine_image(chain.points_per_pitch());
+    const cv::Mat1d fine =
+        chain.image(triangle(size_pitch, all_apexes[static_cast<std::size_t>(truth)])).fine_image(per_pitch, reach);
     for (int j = 0; j < per_axis; ++j) {
       for (int i = 0; i < per_axis; ++i) {
-        responses_.push_back(response(fine, chain.points_per_pitch(), {i, j}, per_axis));
+        responses_.push_back(response(fine, per_pitch, {i, j}, per_axis));
         responses_.back().truth = truth;
       }
     }
   }
+}
+
+/// Without noise a rounded picture changes in steps of the phase: twice as many.
+int SizeTrial::phases_per_sample() const {
+  return std::max(1, conditions_.phases_per_axis / conditions_.samples_per_pitch) * (conditions_.by_pixels ? 2 : 1);
 }
 
 SizeTrial::Response SizeTrial::response(const cv::Mat1d& fine, int per_pitch, cv::Point phase, int per_axis) const {
@@ -81,8 +96,9 @@ SizeTrial::Response SizeTrial::response(const cv::Mat1d& fine, int per_pitch, cv
       samples(row, column) = static_cast<float>(fine(y, x));
     }
   }
-  if (margin > 0) samples = filtered(samples, display_taps_)(cv::Rect(margin, margin, window, window)).clone();
   Response out;
+  if (conditions_.by_pixels) out.before_display = samples.clone();
+  if (margin > 0) samples = filtered(samples, display_taps_)(cv::Rect(margin, margin, window, window)).clone();
   out.scores = projected(samples);
   const int side = static_cast<int>(std::lround(std::sqrt(bank_->places())));
   const auto step = [&](int p) {
@@ -168,17 +184,16 @@ void SizeTrial::shape_white(const WhiteNoise& white) {
   });
 }
 
-cv::Mat1b SizeTrial::dead(std::uint64_t index) const {
+cv::Mat1b SizeTrial::dead(std::uint64_t index, int window) const {
   const double share = conditions_.sensor.dead_pixel_share;
   if (share == 0) return {};
-  const int detectors = bank_->window_samples() / conditions_.samples_per_pitch;
+  const int detectors = window / conditions_.samples_per_pitch;
   cv::Mat1b map = dead_detectors({detectors, detectors}, share, named(stream_, index, "dead"));
   return cv::countNonZero(map) > 0 ? map : cv::Mat1b();
 }
 
 /// Noise that is not white, of one draw, in kelvin.
-cv::Mat1f SizeTrial::coloured(std::uint64_t index) const {
-  const int window = bank_->window_samples();
+cv::Mat1f SizeTrial::coloured(std::uint64_t index, int window) const {
   const double averaged = 1 / std::sqrt(static_cast<double>(conditions_.sensor.exposures_per_sample()));
   const NoiseStreams streams = [&](std::string_view name, std::uint64_t ago) {
     const RandomStream now = named(stream_, index, name);
@@ -194,7 +209,7 @@ cv::Mat1f SizeTrial::coloured(std::uint64_t index) const {
 
 void SizeTrial::draw(std::uint64_t index) {
   const int window = bank_->window_samples();
-  const cv::Mat1b defects = dead(index);
+  const cv::Mat1b defects = dead(index, window);
   const auto add = [&](std::vector<std::vector<float>>& to, cv::Mat1f samples, const std::vector<double>& taps) {
     if (!defects.empty()) replace_dead(samples, defects, conditions_.samples_per_pitch);
     to.push_back(projected(taps.empty() ? samples : filtered(samples, taps)));
@@ -202,7 +217,7 @@ void SizeTrial::draw(std::uint64_t index) {
   cv::Mat1f white(window, window);
   stream_.sub(white_part(index)).fill_normal(std::span(white.ptr<float>(), white.total()));
   add(noise_, white, white_taps_);
-  if (!coloured_stages_.empty()) add(coloured_, coloured(index), display_taps_);
+  if (!coloured_stages_.empty()) add(coloured_, coloured(index, window), display_taps_);
 }
 
 Proportion SizeTrial::proportion(const WhiteNoise& white, double contrast_k, int draws) {
@@ -223,9 +238,69 @@ Proportion SizeTrial::proportion(const WhiteNoise& white, double contrast_k, int
         mixed[t] = own * noise_[d][t] + (has_coloured ? ratio * coloured_[d][t] : 0.0F);
       noise = mixed;
     }
-    const double p = correct_share(noise, scale, dead(d));
+    const double p = correct_share(noise, scale, dead(d, bank_->window_samples()));
     sum += p;
     squares += p * p;
+  }
+  const double mean = sum / draws;
+  return {mean, std::max(0.0, squares / draws - mean * mean) / std::max(1, draws - 1)};
+}
+
+double SizeTrial::pixel_trial(const Response& response, const PixelContrast& contrast, std::uint64_t index) const {
+  const int window = bank_->window_samples();
+  const int margin = (response.before_display.cols - window) / 2;
+  // A whole number of detectors, so that what they share is shared.
+  const int n = conditions_.samples_per_pitch;
+  const int side = (response.before_display.cols + n - 1) / n * n;
+  const cv::Rect signal({0, 0}, response.before_display.size());
+  cv::Mat1f noise(side, side);
+  stream_.sub(white_part(index)).fill_normal(std::span(noise.ptr<float>(), noise.total()));
+  noise *= contrast.noise_k;
+  if (!coloured_stages_.empty()) noise += coloured(index, side);
+  noise(signal) += response.before_display * contrast.scene_k;
+  if (const cv::Mat1b defects = dead(index, side); !defects.empty()) replace_dead(noise, defects, n);
+  const cv::Mat1f analog = display_taps_.empty() ? noise : filtered(noise, display_taps_);
+  const Quantiser quantiser(conditions_.sensor, contrast.background_k);
+  cv::Mat1f seen(window, window);
+  stream_.sub(observer_part(index)).fill_normal(std::span(seen.ptr<float>(), seen.total()));
+  // In units of the contrast, which the scores of the templates are in too.
+  const auto internal = static_cast<float>(contrast.internal_k / std::abs(contrast.seen_k));
+  const auto per_kelvin = static_cast<float>(1 / contrast.seen_k);
+  for (int row = 0; row < window; ++row) {
+    for (int column = 0; column < window; ++column) {
+      seen(row, column) =
+          internal * seen(row, column) + per_kelvin * quantiser.shown(analog(margin + row, margin + column));
+    }
+  }
+  const std::vector<float> scores = projected(seen);
+  const std::vector<float> nothing(scores.size(), 0.0F);
+  float maxima[Choice::max_alternatives];
+  const std::span<float> tops(maxima, static_cast<std::size_t>(bank_->alternatives()));
+  score_maxima(scores, nothing, 1.0F, bank_->places(), tops);
+  const float best = *std::max_element(tops.begin(), tops.end());
+  if (tops[static_cast<std::size_t>(response.truth)] != best) return 0;
+  return 1.0 / static_cast<double>(std::count(tops.begin(), tops.end(), best));
+}
+
+Proportion SizeTrial::pixel_proportion(const PixelContrast& contrast, int draws) {
+  CV_Assert(conditions_.by_pixels);
+  // Phases along a diagonal: every row and column of phases once in a draw, all of them in turn.
+  const int per_axis = phases_per_sample();
+  const auto phases = static_cast<std::size_t>(per_axis * per_axis), some = static_cast<std::size_t>(per_axis);
+  const std::size_t truths = responses_.size() / phases;
+  auto& known = pixel_draws_[contrast.scene_k];
+  for (std::size_t d = known.size(); d < static_cast<std::size_t>(draws); ++d) {
+    double correct = 0;
+    for (std::size_t k = 0; k < truths * some; ++k) {
+      const std::size_t phase = ((k % some) * (some + 1) + d) % phases;
+      correct += pixel_trial(responses_[k / some * phases + phase], contrast, d * truths * some + k);
+    }
+    known.push_back(correct / static_cast<double>(truths * some));
+  }
+  double sum = 0, squares = 0;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(draws); ++d) {
+    sum += known[d];
+    squares += known[d] * known[d];
   }
   const double mean = sum / draws;
   return {mean, std::max(0.0, squares / draws - mean * mean) / std::max(1, draws - 1)};

@@ -1,6 +1,7 @@
 // One target size before a simulated sensor and a searching observer: proportion correct without frames.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <span>
 #include <vector>
@@ -31,6 +32,16 @@ struct TrialConditions {
   int phases_per_axis = 8;  ///< per pitch
   double search_step_samples = 0.125;
   ShownOrientations orientations = ShownOrientations::as_needed;
+  bool by_pixels = false;  ///< pixel_proportion() will be asked for
+};
+
+/// One contrast of a camera whose counts are too coarse or too few for it.
+struct PixelContrast {
+  double scene_k = 0;     ///< triangle minus surround, as it is
+  double seen_k = 0;      ///< as the camera reads it: what the observer divides by
+  double noise_k = 0;     ///< white noise of a sample before display and rounding, exposures averaged
+  double internal_k = 0;  ///< white noise of the observer
+  double background_k = 300;
 };
 
 /// Noise of the white kind per sample, relative to the contrast.
@@ -49,6 +60,11 @@ class SizeTrial {
   /// At a contrast of `contrast_k` > 0, to which `white` is relative.
   [[nodiscard]] Proportion proportion(const WhiteNoise& white, double contrast_k, int draws);
 
+  /// The same with counts as the sensor makes them: every pixel of every trial is rounded and clipped. Each draw is
+  /// seen in as many sampling phases as an axis has, all phases in turn; twice as many phases as without rounding.
+  /// Precondition: conditions.by_pixels.
+  [[nodiscard]] Proportion pixel_proportion(const PixelContrast& contrast, int draws);
+
   /// The proportion of an observer that knows the position (to half a search step) in white noise of sd `noise`
   /// relative to the contrast: exact, without draws (known_position.h).
   [[nodiscard]] double known_position_proportion(double noise, int nodes) const;
@@ -61,13 +77,17 @@ class SizeTrial {
   struct Response {
     int truth = 0;              ///< the alternative that is shown
     int place = 0;              ///< search place next to the true position
-    std::vector<float> patch;   ///< samples; only where detectors are dead
+    std::vector<float> patch;   ///< samples; only where detectors are dead or pixels are asked for
     std::vector<float> scores;  ///< of all templates
+    cv::Mat1f before_display;   ///< samples with a margin of the display's taps; only where pixels are asked for
   };
+  /// What one trial of pixel_proportion() comes to: 1, 0, or the fair part of a tie.
+  [[nodiscard]] double pixel_trial(const Response& response, const PixelContrast& contrast, std::uint64_t index) const;
   [[nodiscard]] Response response(const cv::Mat1d& fine, int per_pitch, cv::Point phase, int per_axis) const;
+  [[nodiscard]] int phases_per_sample() const;  ///< per axis
   void draw(std::uint64_t index);
-  [[nodiscard]] cv::Mat1f coloured(std::uint64_t index) const;
-  [[nodiscard]] cv::Mat1b dead(std::uint64_t index) const;
+  [[nodiscard]] cv::Mat1f coloured(std::uint64_t index, int window) const;
+  [[nodiscard]] cv::Mat1b dead(std::uint64_t index, int window) const;
   [[nodiscard]] std::vector<float> projected(const cv::Mat1f& samples) const;
   void shape_white(const WhiteNoise& white);
   /// Share of the phases at which the true alternative wins; a tie counts its fair part.
@@ -83,6 +103,7 @@ class SizeTrial {
   std::vector<Response> responses_;           ///< per orientation that counts and phase
   std::vector<std::vector<float>> noise_;     ///< per draw, unit white noise projected
   std::vector<std::vector<float>> coloured_;  ///< per draw, noise that is not white, in kelvin projected
+  std::map<double, std::vector<double>> pixel_draws_;  ///< by contrast of the scene, proportion of each draw
 };
 
 }  // namespace todbench

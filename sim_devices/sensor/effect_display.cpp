@@ -41,6 +41,13 @@ bool has_display(const SensorSpec& spec) {
   return spec.display != DisplayReconstruction::sample_and_hold || spec.display_blur_samples > 0;
 }
 
+double display_noise_gain(const SensorSpec& spec) {
+  if (!has_display(spec)) return 1;
+  double squares = 0;
+  for (const double tap : taps_of([&](double f) { return display_response(spec, f); })) squares += tap * tap;
+  return squares;  // per axis its root
+}
+
 cv::Mat1f filtered(const cv::Mat1f& picture, const std::vector<double>& taps) {
   cv::Mat1f out;
   cv::sepFilter2D(picture, out, CV_32F, taps, taps, {-1, -1}, 0, cv::BORDER_REFLECT_101);

@@ -19,6 +19,9 @@ namespace todbench {
 /// Whether the display differs from sample and hold.
 [[nodiscard]] bool has_display(const SensorSpec& spec);
 
+/// Standard deviation of white noise of one after the display.
+[[nodiscard]] double display_noise_gain(const SensorSpec& spec);
+
 /// Filters rows and columns with the taps; beyond its edges a picture is mirrored. The middle of a larger picture is
 /// what it would be alone within half the taps of it.
 [[nodiscard]] cv::Mat1f filtered(const cv::Mat1f& picture, const std::vector<double>& taps);

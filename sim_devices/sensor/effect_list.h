@@ -14,6 +14,7 @@
   EFFECT(motion)                 \
   EFFECT(microscan)              \
   EFFECT(temporal_noise)         \
+  EFFECT(correlated_noise)       \
   EFFECT(fixed_pattern)          \
   EFFECT(row_column_noise)       \
   EFFECT(dead_pixels)            \

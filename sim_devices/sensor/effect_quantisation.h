@@ -9,6 +9,15 @@
 
 namespace todbench {
 
+/// Temporal noise of a displayed sample before it is rounded, in counts.
+[[nodiscard]] double noise_in_counts(const SensorSpec& spec);
+/// Whether a count is more than a standard deviation of the noise. Below it rounding errors are noise of variance 1/12,
+/// to 3e-9 of a count; above, they depend on the signal.
+[[nodiscard]] bool rounds_coarsely(const SensorSpec& spec);
+/// Whether surround or targets of this contrast come within six standard deviations of the noise to an end of the
+/// counts.
+[[nodiscard]] bool reaches_an_end(const SensorSpec& spec, double delta_t_k, double background_k);
+
 /// Rounds kelvin above the surround to the counts of a sensor, halves upwards. A count has the same limits for every
 /// pixel, wherever the surround lies between two of them. A value, any thread.
 class Quantiser {
@@ -28,6 +37,15 @@ class Quantiser {
   [[nodiscard]] float rounded(float kelvin) const {
     return static_cast<float>((std::floor(level(kelvin)) - background_) * step_k_);
   }
+  /// The same of the clipped count: what a frame says.
+  [[nodiscard]] float shown(float kelvin) const {
+    return static_cast<float>((std::floor(std::clamp(level(kelvin), 0.0, full_scale_)) - background_) * step_k_);
+  }
+  /// Mean and standard deviation of shown(), for normal noise of `sd_k` about `kelvin`.
+  struct Reading {
+    double mean_k = 0, sd_k = 0;
+  };
+  [[nodiscard]] Reading reading(double kelvin, double sd_k) const;
 
  private:
   /// Its whole part is the count.

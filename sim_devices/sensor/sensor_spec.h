@@ -29,6 +29,7 @@ struct SensorSpec {
   double optics_transmission = 0.8;   ///< normalised out of the signal: NETD is referred to the scene
   double aberration_sigma_pitch = 0;  ///< Gaussian blur of the lens beyond diffraction, per axis, in detector pitches
   double netd_k = 0.07;               ///< temporal noise per sample
+  double noise_correlation = 0;       ///< of a sample's temporal noise in successive exposures
   double fixed_pattern_k = 0;         ///< sd of the fixed offset per detector
   double time_constant_ms = 0;        ///< of the bolometer; 0: a detector without memory
   double row_noise_k = 0;             ///< sd of an offset per detector row, new in every exposure

@@ -129,7 +129,9 @@ std::string feature_node(const CameraFeature& f) {
       return opening("Command", f) + value_node(f) + tag("CommandValue", std::to_string(f.initial)) + "  </Command>\n";
     case FeatureKind::scaled:
     case FeatureKind::chunk_scaled:
-      return converter(f, "FROM / " + factor, "TO * " + factor);
+      if (f.offset == 0) return converter(f, "FROM / " + factor, "TO * " + factor);
+      return converter(f, "(FROM - " + shortest(f.offset) + ") / " + factor,
+                       "TO * " + factor + " + " + shortest(f.offset));
     case FeatureKind::rate:
       return rate(f);
     case FeatureKind::ieee_float:

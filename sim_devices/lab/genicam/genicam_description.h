@@ -13,7 +13,7 @@ enum class FeatureKind {
   integer,
   enumeration,
   command,
-  scaled,      ///< a float: raw value of the register times `per_raw`
+  scaled,      ///< a float: raw value of the register times `per_raw`, and `offset`
   rate,        ///< a float: 10^6 over the raw value, 0.1 ... 1000 Hz
   ieee_float,  ///< a float in eight bytes, `real` at power-up
   formula,     ///< a float: `formula` of VALUE, as ieee_float, and of CHOICE, the register of the feature `choice`
@@ -36,7 +36,7 @@ struct CameraFeature {
   FeatureAccess access = FeatureAccess::read_write;
   std::uint32_t initial = 0;  ///< raw value at power-up; of a command: the value that executes it
   std::vector<std::pair<std::string, std::uint32_t>> entries = {};  ///< of an enumeration
-  double per_raw = 1, real = 0;
+  double per_raw = 1, offset = 0, real = 0;
   std::int64_t least = 0, most = 0;  ///< of an integer; least == most: no bounds
   std::uint32_t bytes = 4;
   unsigned bit = 0;

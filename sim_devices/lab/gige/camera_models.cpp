@@ -80,6 +80,21 @@ Features image_control(const ThermalCameraOptions& o, const ModelRegisters& r,
           command("AcquisitionStop", r.acquisition_stop, 1)};
 }
 
+/// What the Ax5 takes the scene for: factors in steps of 1/8192, temperatures of hundredths above 273 K. Neutral.
+Features ax5_object_parameters() {
+  const auto factor = [](const char* name, std::uint32_t address) {
+    return CameraFeature{
+        .name = name, .kind = Kind::scaled, .address = address, .initial = 8192, .per_raw = 0.000122070312};
+  };
+  const auto kelvin = [](const char* name, std::uint32_t address) {
+    return CameraFeature{
+        .name = name, .kind = Kind::scaled, .address = address, .initial = 2000, .per_raw = 0.01, .offset = 273};
+  };
+  return {factor("ObjectEmissivity", 0xEA1C),        kelvin("ReflectedTemperature", 0xEA20),
+          factor("WindowTransmission", 0xEA24),      kelvin("WindowTemperature", 0xEA28),
+          factor("AtmosphericTransmission", 0xEA2C), kelvin("AtmosphericTemperature", 0xEA30)};
+}
+
 /// At power-up as a camera as shipped: automatic corrections, counts instead of temperatures, eight bits, sharpening.
 Features ax5_thermal(const ThermalCameraOptions& o, const ModelRegisters& r) {
   std::vector<std::pair<std::string, std::uint32_t>> standards;
@@ -158,8 +173,10 @@ ModelDescription ax5(ThermalCameraOptions o) {
   r.video_standard = 0xEA5C;
   r.sensor_temperature = 0xEA90;
   r.chunk_mode = 0xD400;
-  return composed(o, r, "todbench_ax5.xml", {PixelFormat::mono8, PixelFormat::mono14, PixelFormat::mono16},
-                  ax5_thermal(o, r));
+  auto camera = composed(o, r, "todbench_ax5.xml", {PixelFormat::mono8, PixelFormat::mono14, PixelFormat::mono16},
+                         ax5_thermal(o, r));
+  more_of(camera.genicam, "ObjectParameters") = ax5_object_parameters();
+  return camera;
 }
 
 /// Registers of the models that have no published ones: any addresses will do.

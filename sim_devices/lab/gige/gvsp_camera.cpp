@@ -17,6 +17,10 @@ Result<void> validate(const GvspCameraConfig& c) {
   if (c.vendor.size() > 31 || c.model_name.size() > 31 || c.firmware.size() > 31) {
     return bad("vendor, model and firmware must have at most 31 characters");
   }
+  if (c.row_padding_bytes < 0 || c.row_padding_bytes > 65535 || c.image_padding_bytes < 0 ||
+      c.image_padding_bytes > 65535) {
+    return bad("padding must be 0 ... 65535 bytes");
+  }
   if (c.first_block_id == 0) return bad("block id 0 does not exist");
   return {};
 }
@@ -42,13 +46,17 @@ GvspCamera::State::State(GvspCameraConfig c, Exposure e, ControlSockets control_
       interface(where),
       control(std::move(control_sockets)),
       stream(std::move(stream_socket)),
-      registers(description.genicam, genicam_xml(description.genicam)),
+      registers(description.genicam, description_served()),
       device(registers, {.on_write = [this](std::uint32_t a, std::uint32_t v) { on_write(a, v); },
                          .on_resend = [this](const ResendRequest& r) { resend(r); },
                          .on_control_lost = [this] { on_control_lost(); }}),
       encoder(config.kelvin_per_count, config.offset_k, config.radiometric),
       random(config.seed, "gvsp.faults") {
   power_up();
+}
+
+std::string GvspCamera::State::description_served() const {
+  return config.description.empty() ? genicam_xml(description.genicam) : config.description;
 }
 
 GvspCamera::GvspCamera(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -98,6 +106,12 @@ std::uint32_t GvspCamera::register_value(std::uint32_t address) const {
 void GvspCamera::set_faults(const GvspFaults& faults) {
   const std::lock_guard lock(state_->mutex);
   state_->faults = faults;
+}
+
+void GvspCamera::restart_numbers(std::uint16_t block_id, ClockRestart clock) {
+  const std::lock_guard lock(state_->mutex);
+  state_->next_block_id = block_id;
+  if (clock == ClockRestart::begins_anew) state_->clock_ns = 0;
 }
 
 void GvspCamera::freeze(unsigned frames) {

@@ -23,6 +23,9 @@ enum class ResendPolicy {
   ignore,
 };
 
+/// Whether the clock of a camera goes on when its frame numbers begin anew.
+enum class ClockRestart { goes_on, begins_anew };
+
 struct GvspCameraConfig {
   std::string interface_address = "127.0.0.1";  ///< IPv4 address of an interface that is up; one camera per address
   CameraModel model = CameraModel::ax5;
@@ -39,8 +42,14 @@ struct GvspCameraConfig {
   unsigned automatic_nuc_frames = 3600;           ///< between corrections while the camera decides
   std::chrono::milliseconds heartbeat_timeout{3000};  ///< at power-up
   std::uint16_t first_block_id = 65400;               ///< the 16-bit id wraps from 65535 to 1
+  int row_padding_bytes = 0;                          ///< sent behind every row, counted in the payload size
+  int image_padding_bytes = 0;                        ///< the same behind the last row
+  bool states_padding = true;                         ///< in the leader
   ResendPolicy resend = ResendPolicy::answer;
-  std::uint64_t seed = 1;  ///< of the faults
+  std::string description = {};      ///< what is served for it, a text or a ZIP archive; empty: that of the model
+  std::string description_url = {};  ///< where the camera says that it is; empty: where it is
+  std::chrono::milliseconds memory_delay{0};  ///< before every answer to a READMEM
+  std::uint64_t seed = 1;                     ///< of the faults
 };
 
 /// What has happened since power-up.
@@ -85,6 +94,8 @@ class GvspCamera {
 
   /// Faults from the next exposure on; {} ends them.
   void set_faults(const GvspFaults& faults);
+  /// The next frame has this block id; the clock begins at 0 again with it, or goes on.
+  void restart_numbers(std::uint16_t block_id, ClockRestart clock);
   /// Repeats the last picture in the next `frames` frames, as a shutter does.
   void freeze(unsigned frames);
   /// The cable is out for this long: nothing arrives, nothing is sent; the camera goes on.

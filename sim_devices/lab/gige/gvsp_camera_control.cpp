@@ -17,6 +17,11 @@ constexpr auto control_patience = 50ms;
 constexpr std::uint32_t chunk_bytes = 4 * 8 + 8 + 4 + 4;
 constexpr std::uint32_t default_packet_bytes = 1400;
 
+bool asks_for_memory(std::span<const std::uint8_t> datagram) {
+  const auto request = parse_gvcp_request(datagram);
+  return request && request->command == static_cast<std::uint16_t>(GvcpCommand::read_memory);
+}
+
 }  // namespace
 
 std::uint64_t gvsp_period_ns(double rate_hz) {
@@ -41,8 +46,8 @@ void GvspCamera::State::power_up() {
   registers.set_text(gev::manufacturer_info, "emulation", 48);
   registers.set_text(gev::serial_number, config.serial, 16);
   const std::string url = fmt::format("Local:{};{:X};{:X}", description.genicam.file_name, RegisterMap::xml_address,
-                                      genicam_xml(description.genicam).size());
-  registers.set_text(gev::first_url, url, 512);
+                                      description_served().size());
+  registers.set_text(gev::first_url, config.description_url.empty() ? url : config.description_url, 512);
   set(gev::network_interfaces, 1);
   set(gev::stream_channels, 1);
   set(gev::gvcp_capability, gev::capabilities);
@@ -55,6 +60,7 @@ void GvspCamera::State::power_up() {
   set(gev::stream_packet_delay, 0);
   set(gev::stream_source_port, stream.port());
   next_block_id = config.first_block_id;
+  update_payload_size();
   // Until the client chooses a video standard, the rate may be one that no standard has.
   period_ns = gvsp_period_ns(config.frame_rate_hz);
 }
@@ -65,8 +71,11 @@ void GvspCamera::State::serve_control(const std::stop_token& stop) {
     device.check_heartbeat(Clock::now());
     if (!request) continue;
     {
-      const std::lock_guard lock(mutex);
+      std::unique_lock lock(mutex);
       if (Clock::now() < link_down_until || Clock::now() < control_down_until) continue;
+      // Slow, and still to be switched off at any moment.
+      if (config.memory_delay > 0ms && asks_for_memory(request->content))
+        changed.wait_for(lock, stop, config.memory_delay, [] { return false; });
     }
     if (const auto answer = device.answer(request->content, request->from, Clock::now())) {
       control.send(*answer, request->from);
@@ -103,7 +112,9 @@ void GvspCamera::State::update_payload_size() {
   const ModelRegisters& r = description.registers;
   const auto format = pixel_format_of_pfnc(registers.get(r.pixel_format)).value_or(PixelFormat::mono16);
   const auto image = static_cast<std::uint32_t>(facts_of(format).bytes_per_pixel * config.width * config.height);
-  registers.set(r.payload_size, image + (registers.get(r.chunk_mode) != 0 ? chunk_bytes : 0));
+  const auto padding =
+      static_cast<std::uint32_t>(config.row_padding_bytes * config.height + config.image_padding_bytes);
+  registers.set(r.payload_size, image + padding + (registers.get(r.chunk_mode) != 0 ? chunk_bytes : 0));
 }
 
 void GvspCamera::State::on_control_lost() {

@@ -58,6 +58,7 @@ struct GvspCamera::State {
 
   std::jthread control_thread, stream_thread;  ///< last members: they stop before anything that they use goes
 
+  [[nodiscard]] std::string description_served() const;
   void power_up();
   void serve_control(const std::stop_token& stop);
   void serve_stream(const std::stop_token& stop);

@@ -15,6 +15,21 @@ using namespace std::chrono_literals;
 constexpr std::size_t kept_frames = 16;
 /// A camera that fell behind by more than this goes on from now instead of catching up.
 constexpr auto most_lag = 250ms;
+/// What padding and surplus are made of: as pixels they would be near full scale.
+constexpr std::uint8_t surplus_byte = 0x3E;
+
+/// A picture with the padding of the camera behind its rows and behind all of it.
+Bytes padded(Bytes picture, const GvspCameraConfig& config) {
+  if (config.row_padding_bytes == 0 && config.image_padding_bytes == 0) return picture;
+  const std::size_t row_bytes = picture.size() / static_cast<std::size_t>(config.height);
+  Bytes out;
+  for (auto row = picture.begin(); row != picture.end(); row += static_cast<std::ptrdiff_t>(row_bytes)) {
+    out.insert(out.end(), row, row + static_cast<std::ptrdiff_t>(row_bytes));
+    out.insert(out.end(), static_cast<std::size_t>(config.row_padding_bytes), surplus_byte);
+  }
+  out.insert(out.end(), static_cast<std::size_t>(config.image_padding_bytes), surplus_byte);
+  return out;
+}
 
 }  // namespace
 
@@ -95,6 +110,7 @@ GvspCamera::State::Exposed GvspCamera::State::begin_exposure() {
   counts.faults.frames_frozen += out.planned.frozen ? 1 : 0;
   counts.faults.frames_swapped += out.planned.swapped_bytes ? 1 : 0;
   counts.faults.frames_wrong_size += out.planned.wrong_size ? 1 : 0;
+  counts.faults.frames_too_long += out.planned.surplus_bytes > 0 ? 1 : 0;
   counts.faults.late_leaders += out.planned.late_leader ? 1 : 0;
   return out;
 }
@@ -131,11 +147,17 @@ std::shared_ptr<const GvspFrame> GvspCamera::State::frame_of(const Exposed& expo
   frame->bytes_per_packet = packet_bytes - gvsp_overhead_bytes;
   frame->data = picture_of(exposed, settings);
   if (exposed.planned.swapped_bytes && settings.format != PixelFormat::mono8) swap_bytes(frame->data);
+  frame->data = padded(std::move(frame->data), config);
+  if (config.states_padding) {
+    frame->x_padding = static_cast<std::uint16_t>(config.row_padding_bytes);
+    frame->y_padding = static_cast<std::uint16_t>(config.image_padding_bytes);
+  }
   if (exposed.planned.wrong_size) {
     const std::size_t row_bytes = frame->data.size() / frame->height;
     frame->height /= 2;
     frame->data.resize(row_bytes * frame->height);
   }
+  frame->data.resize(frame->data.size() + exposed.planned.surplus_bytes, surplus_byte);
   if (registers.get(description.registers.chunk_mode) == 0) return frame;
   frame->payload_type = 0x4001;
   const Bytes image = std::move(frame->data);

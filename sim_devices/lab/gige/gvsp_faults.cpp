@@ -6,13 +6,26 @@ namespace todbench {
 namespace {
 
 /// Positions of the draws of a frame as a whole, each with its own so that one probability never shifts another's.
-enum FrameDraw : std::uint64_t { draw_lost, draw_frozen, draw_swapped, draw_wrong_size, draw_late_leader };
+enum FrameDraw : std::uint64_t {
+  draw_lost,
+  draw_frozen,
+  draw_swapped,
+  draw_wrong_size,
+  draw_late_leader,
+  draw_too_long,
+  draw_surplus
+};
 /// Draws per packet, behind those of the frame.
 enum PacketDraw : std::uint64_t { draw_loss, draw_duplicate, draw_reorder, draws_per_packet };
 constexpr std::uint64_t first_packet_draw = 16;
 
 bool happens(double probability, const RandomStream& random, std::uint64_t position) {
   return probability > 0 && random.uniform(position) < probability;
+}
+
+/// From one byte to more than a packet.
+std::size_t surplus_of(const RandomStream& random) {
+  return static_cast<std::size_t>(1) << static_cast<unsigned>(random.uniform(draw_surplus) * 15);
 }
 
 }  // namespace
@@ -23,7 +36,8 @@ FrameFaults draw_frame_faults(const GvspFaults& faults, const RandomStream& rand
           .frozen = exposure > 0 && happens(faults.frozen, frame, draw_frozen),
           .swapped_bytes = happens(faults.swapped_bytes, frame, draw_swapped),
           .wrong_size = happens(faults.wrong_size, frame, draw_wrong_size),
-          .late_leader = happens(faults.late_leader, frame, draw_late_leader)};
+          .late_leader = happens(faults.late_leader, frame, draw_late_leader),
+          .surplus_bytes = happens(faults.too_long, frame, draw_too_long) ? surplus_of(frame) : 0};
 }
 
 PacketSchedule schedule_packets(std::uint32_t packets, const FrameFaults& planned, const GvspFaults& faults,

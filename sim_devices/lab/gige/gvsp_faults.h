@@ -1,6 +1,7 @@
 // What goes wrong on the way from a camera to its client, decided in advance.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct GvspFaults {
   double frozen = 0;         ///< per frame: carries the picture of the frame before it
   double swapped_bytes = 0;  ///< per frame: both bytes of every pixel change places
   double wrong_size = 0;     ///< per frame: has half its rows, and says so
+  double too_long = 0;       ///< per frame: has bytes behind the payload that nothing speaks of
   bool operator==(const GvspFaults&) const = default;
 };
 
@@ -25,12 +27,14 @@ struct GvspFaults {
 struct GvspFaultCounts {
   std::uint64_t packets_lost = 0, packets_duplicated = 0, packets_reordered = 0;
   std::uint64_t late_leaders = 0, frames_lost = 0, frames_frozen = 0, frames_swapped = 0, frames_wrong_size = 0;
+  std::uint64_t frames_too_long = 0;
   std::uint64_t frames_with_holes = 0;  ///< frames that lost at least one packet when first sent
 };
 
 /// The faults of one exposure as a whole.
 struct FrameFaults {
   bool lost = false, frozen = false, swapped_bytes = false, wrong_size = false, late_leader = false;
+  std::size_t surplus_bytes = 0;
 };
 
 /// A function of (random, exposure) alone: the same for the same seed whatever happened before.

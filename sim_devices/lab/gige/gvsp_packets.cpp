@@ -25,7 +25,9 @@ void append_leader(Bytes& out, const GvspFrame& frame) {
   append_big_endian(out, frame.pixel_format, 4);
   append_big_endian(out, frame.width, 4);
   append_big_endian(out, frame.height, 4);
-  for (int i = 0; i < 3; ++i) append_big_endian(out, 0, 4);  // offsets x and y, padding x and y
+  for (int i = 0; i < 2; ++i) append_big_endian(out, 0, 4);  // offsets x and y
+  append_big_endian(out, frame.x_padding, 2);
+  append_big_endian(out, frame.y_padding, 2);
 }
 
 GvspPacket packet_of(const Bytes& head, std::span<const std::uint8_t> data) {

@@ -23,10 +23,11 @@ struct GvspFrame {
   std::uint64_t exposure = 0;
   std::uint64_t timestamp_ns = 0;
   std::uint32_t pixel_format = 0;
-  std::uint32_t width = 0, height = 0;  ///< as the leader states them
-  std::uint16_t payload_type = 0x0001;  ///< 0x4001 with chunks behind the image
-  std::size_t bytes_per_packet = 0;     ///< of data
-  Bytes data;                           ///< image, and chunks behind it
+  std::uint32_t width = 0, height = 0;         ///< as the leader states them
+  std::uint16_t x_padding = 0, y_padding = 0;  ///< the same, in bytes
+  std::uint16_t payload_type = 0x0001;         ///< 0x4001 with chunks behind the image
+  std::size_t bytes_per_packet = 0;            ///< of data
+  Bytes data;                                  ///< image, and chunks behind it
 
   /// Leader, data packets and trailer: packet ids 0 ... packets() - 1.
   [[nodiscard]] std::uint32_t packets() const;

@@ -24,6 +24,8 @@ using Clock = std::chrono::steady_clock;
 
 /// Answers that nobody fetched: a client that only asks does not make the camera grow.
 constexpr std::size_t most_answers = 8;
+/// What padding and surplus are made of: as pixels they would be near full scale.
+constexpr std::uint8_t surplus_byte = 0x3E;
 
 constexpr std::uint32_t own(std::uint64_t offset) {
   return static_cast<std::uint32_t>(camera_registers + offset);
@@ -55,6 +57,13 @@ CameraDescription described(const U3vCameraConfig& c) {
   auto camera = thermal_camera(registers_of_this, options_of(c));
   camera.name_space = "U3V";
   camera.order = std::endian::little;
+  feature_named(camera, "PayloadSize").initial += static_cast<std::uint32_t>(c.row_padding_bytes * c.height);
+  if (c.identity_nodes == U3vIdentityNodes::absent) {
+    for (const char* name : {"DeviceVendorName", "DeviceModelName", "DeviceFirmwareVersion", "DeviceSerialNumber"}) {
+      auto& members = more_of(camera, "DeviceControl");
+      std::erase_if(members, [name](const CameraFeature& f) { return f.name == name; });
+    }
+  }
   return camera;
 }
 
@@ -85,6 +94,14 @@ class Camera final : public U3vCamera {
     const std::lock_guard lock(mutex_);
     truncated_ = bytes;
   }
+  void lengthen_next_frame(std::size_t bytes) override {
+    const std::lock_guard lock(mutex_);
+    surplus_ = bytes;
+  }
+  void restart_numbers(std::uint64_t block_id) override {
+    const std::lock_guard lock(mutex_);
+    next_block_id_ = block_id;
+  }
 
  private:
   enum class Phase { idle, leader, payload, trailer };
@@ -104,6 +121,7 @@ class Camera final : public U3vCamera {
                                                const std::stop_token& stop);
   [[nodiscard]] bool begin_frame(std::unique_lock<std::mutex>& lock, const std::stop_token& stop);
   [[nodiscard]] UsbBytes next_picture(std::unique_lock<std::mutex>& lock, std::uint64_t index);
+  [[nodiscard]] UsbBytes padded(UsbBytes picture) const;
   [[nodiscard]] UsbBytes leader();
   [[nodiscard]] UsbBytes trailer() const;
 
@@ -123,8 +141,11 @@ class Camera final : public U3vCamera {
   unsigned to_lose_ = 0;
   int frozen_frames_ = 0;
   std::optional<std::size_t> truncated_;
-  PictureEncoder encoder_;  ///< of the thread of the stream endpoint
-  UsbBytes payload_;        ///< as sent last
+  std::size_t surplus_ = 0;                     ///< of the next frame
+  std::optional<std::uint64_t> next_block_id_;  ///< where the numbers begin anew
+  PictureEncoder encoder_;                      ///< of the thread of the stream endpoint
+  UsbBytes picture_;                            ///< the last one, without padding
+  UsbBytes payload_;                            ///< as sent last
   std::size_t sent_ = 0;
   Clock::time_point next_exposure_ = Clock::now();
 };
@@ -135,7 +156,7 @@ Camera::Camera(U3vCameraConfig config, Exposure exposure)
       descriptors_(descriptors_of(config_)),
       encoder_(config_.kelvin_per_count, config_.offset_k, {}) {
   const CameraDescription description = described(config_);
-  const std::string xml = genicam_xml(description);
+  const std::string xml = config_.description_text.empty() ? genicam_xml(description) : config_.description_text;
   description_ =
       config_.description == U3vDescription::zipped ? zipped("camera.xml", xml) : UsbBytes(xml.begin(), xml.end());
   fill_bootstrap();
@@ -147,6 +168,10 @@ Camera::Camera(U3vCameraConfig config, Exposure exposure)
 
 void Camera::fill_bootstrap() {
   bootstrap_.set(0, std::uint32_t{0x00010000});
+  bootstrap_.set(abrm_vendor, config_.vendor);
+  bootstrap_.set(abrm_model, config_.model);
+  bootstrap_.set(abrm_version, config_.firmware);
+  bootstrap_.set(abrm_serial, config_.serial);
   bootstrap_.set(abrm_family, std::string("thermal"));
   bootstrap_.set(abrm_capability, std::uint64_t{0});
   bootstrap_.set(abrm_response_time, std::uint32_t{500});
@@ -163,16 +188,19 @@ void Camera::fill_bootstrap() {
   bootstrap_.set(sbrm + 0x34, std::uint32_t{0x0C});
   bootstrap_.set(sbrm + 0x40, std::uint32_t{0x04});  // high speed
   bootstrap_.set(sirm + si_info, std::uint32_t{0});  // payload transfers of any length
-  bootstrap_.set(sirm + si_payload, std::uint64_t{2} * static_cast<std::uint64_t>(config_.width * config_.height));
+  const int row_bytes = 2 * config_.width + config_.row_padding_bytes;
+  bootstrap_.set(sirm + si_payload, static_cast<std::uint64_t>(row_bytes * config_.height));
   bootstrap_.set(sirm + si_leader, static_cast<std::uint32_t>(leader_size));
   bootstrap_.set(sirm + si_trailer, static_cast<std::uint32_t>(trailer_size));
+  for (const auto& [address, value] : config_.false_registers) bootstrap_.set(address, value);
   bootstrap_.set(manifest, std::uint64_t{1});
   bootstrap_.set(manifest + 8, std::uint32_t{0x01000000});  // version of the file
   // Schema 1.1; bit 10: zipped.
   const bool zip = config_.description == U3vDescription::zipped;
   bootstrap_.set(manifest + 12, std::uint32_t{0x01010000} | (zip ? std::uint32_t{1} << 10U : 0U));
   bootstrap_.set(manifest + 16, description_address);
-  bootstrap_.set(manifest + 24, static_cast<std::uint64_t>(description_.size()));
+  bootstrap_.set(manifest + 24, config_.stated_description_bytes != 0 ? config_.stated_description_bytes
+                                                                      : std::uint64_t{description_.size()});
 }
 
 // --- control ----------------------------------------------------------------------------------------------------
@@ -262,9 +290,9 @@ std::uint16_t Camera::write(std::uint64_t address, std::span<const std::uint8_t>
 // --- stream -----------------------------------------------------------------------------------------------------
 
 UsbBytes Camera::next_picture(std::unique_lock<std::mutex>& lock, std::uint64_t index) {
-  if (frozen_frames_ > 0 && !payload_.empty()) {
+  if (frozen_frames_ > 0 && !picture_.empty()) {
     --frozen_frames_;
-    return payload_;
+    return picture_;
   }
   EncoderSettings settings;
   if (register_of_this(reg_ir_format) == ir_format_100mk) settings.signal = SignalKind::tenths;
@@ -274,6 +302,7 @@ UsbBytes Camera::next_picture(std::unique_lock<std::mutex>& lock, std::uint64_t 
   CV_Assert(counts.rows == config_.height && counts.cols == config_.width);
   auto bytes = encoder_.encode(counts, settings);
   lock.lock();
+  picture_ = bytes;
   return bytes;
 }
 
@@ -295,11 +324,24 @@ bool Camera::begin_frame(std::unique_lock<std::mutex>& lock, const std::stop_tok
     clock_ns_ += static_cast<std::uint64_t>(std::chrono::nanoseconds(period()).count());
     auto picture = next_picture(lock, index);
     if (stream_number_ != number) continue;  // stopped meanwhile: the exposure is lost
-    payload_ = std::move(picture);
+    payload_ = padded(std::move(picture));
+    payload_.resize(payload_.size() + std::exchange(surplus_, 0), surplus_byte);
+    if (next_block_id_) block_id_ = *std::exchange(next_block_id_, std::nullopt);
     sent_ = 0;
     phase_ = Phase::leader;
     return true;
   }
+}
+
+UsbBytes Camera::padded(UsbBytes picture) const {
+  if (config_.row_padding_bytes == 0) return picture;
+  const auto row_bytes = static_cast<std::ptrdiff_t>(picture.size()) / config_.height;
+  UsbBytes out;
+  for (auto row = picture.begin(); row != picture.end(); row += row_bytes) {
+    out.insert(out.end(), row, row + row_bytes);
+    out.insert(out.end(), static_cast<std::size_t>(config_.row_padding_bytes), surplus_byte);
+  }
+  return out;
 }
 
 UsbBytes Camera::leader() {
@@ -316,7 +358,8 @@ UsbBytes Camera::leader() {
   put(bytes, static_cast<std::uint32_t>(config_.height));
   put(bytes, std::uint32_t{0});
   put(bytes, std::uint32_t{0});
-  put(bytes, std::uint32_t{0});
+  put(bytes, static_cast<std::uint16_t>(config_.states_padding ? config_.row_padding_bytes : 0));
+  put(bytes, std::uint16_t{0});
   return bytes;
 }
 

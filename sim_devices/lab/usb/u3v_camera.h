@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 
 #include "acquisition/core/frame.h"
@@ -17,6 +19,12 @@ namespace todbench {
 /// How the camera keeps its GenICam description; clients have to cope with both.
 enum class U3vDescription { plain, zipped };
 
+/// Where the camera says who it is.
+enum class U3vIdentityNodes {
+  present,  ///< in its bootstrap registers and in its description
+  absent,   ///< in its bootstrap registers only
+};
+
 struct U3vCameraConfig {
   std::string vendor = "todbench", model = "Emulated U3V", serial = "TB0001", firmware = "1.0";
   int width = 320, height = 240;
@@ -25,6 +33,14 @@ struct U3vCameraConfig {
   double kelvin_per_count = 0.01, offset_k = 0;
   int nuc_freeze_frames = 0;  ///< how long the last picture is repeated after a correction
   U3vDescription description = U3vDescription::plain;
+  std::string description_text = {};           ///< what it is; empty: that of the camera
+  std::uint64_t stated_description_bytes = 0;  ///< 0: as many as it has
+  U3vIdentityNodes identity_nodes = U3vIdentityNodes::present;
+  std::optional<std::string> usb_serial{};  ///< of the USB descriptors, where it is not `serial`
+  int row_padding_bytes = 0;                ///< sent behind every row, counted in the payload size
+  bool states_padding = true;               ///< in the leader
+  /// What the stream registers say at power-up instead of the truth: address of a register of 32 bits, value.
+  std::map<std::uint64_t, std::uint32_t> false_registers{};
 };
 
 /// The camera. It exposes only when the host asks for data, never sooner than a frame period after the exposure before:
@@ -45,6 +61,10 @@ class U3vCamera : public UsbDevice {
   virtual void lose_exposures(unsigned count) = 0;
   /// Of the next frame only the first `bytes` of the picture are sent.
   virtual void truncate_next_frame(std::size_t bytes) = 0;
+  /// The next frame has this many bytes behind its payload that nothing speaks of.
+  virtual void lengthen_next_frame(std::size_t bytes) = 0;
+  /// The next frame has this block id; the clock goes on.
+  virtual void restart_numbers(std::uint64_t block_id) = 0;
 };
 
 }  // namespace todbench

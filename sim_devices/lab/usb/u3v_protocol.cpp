@@ -46,7 +46,8 @@ UsbDescriptors descriptors_of(const U3vCameraConfig& config) {
                      7,  5,    stream_in,  2, 0x00, 0x02, 0};
   d.configuration[2] = static_cast<std::uint8_t>(d.configuration.size());
   // The GUID is the vendor's number and the serial number (USB3 Vision 1.0, section 4.3.1).
-  d.strings = {config.vendor, config.model, config.serial, "1209" + config.serial, config.firmware};
+  d.strings = {config.vendor, config.model, config.usb_serial.value_or(config.serial), "1209" + config.serial,
+               config.firmware};
   d.speed = UsbSpeed::high;
   return d;
 }

@@ -48,6 +48,18 @@ std::string description(const VideoCameraConfig& config, int number) {
          "\nA: index=0\\n\nA: name=" + config.model + "\\n\n";
 }
 
+/// Rows with something behind each that would be near full scale if it were pixels.
+std::vector<std::uint8_t> padded(std::vector<std::uint8_t> frame, std::size_t rows, std::size_t padding) {
+  if (padding == 0) return frame;
+  const auto row_bytes = static_cast<std::ptrdiff_t>(frame.size() / rows);
+  std::vector<std::uint8_t> out;
+  for (auto row = frame.begin(); row != frame.end(); row += row_bytes) {
+    out.insert(out.end(), row, row + row_bytes);
+    out.insert(out.end(), padding, std::uint8_t{0x3E});
+  }
+  return out;
+}
+
 }  // namespace
 
 EmulatedV4l2Camera::State::~State() {
@@ -83,9 +95,11 @@ void EmulatedV4l2Camera::State::deliver(const cv::Mat1w& counts, std::uint64_t i
   v4l2_buffer buffer{};
   buffer.index = queued.front();
   queued.pop_front();
-  const auto bytes = wire_frame(
-      config, counts, size,
-      {.exposure = index, .correcting = frozen_frames > 0, .last_correction = corrections > 0 ? last_correction : 0});
+  const auto bytes = padded(wire_frame(config, counts, size,
+                                       {.exposure = index,
+                                        .correcting = frozen_frames > 0,
+                                        .last_correction = corrections > 0 ? last_correction : 0}),
+                            static_cast<std::size_t>(size.height), static_cast<std::size_t>(quirks.row_padding_bytes));
   static_cast<void>(!::pwrite(file, bytes.data(), bytes.size(), static_cast<off_t>(buffer.index) * buffer_bytes));
   const auto time_us = static_cast<std::int64_t>(std::llround(static_cast<double>(index + 1) * 1e6 / frame_rate_hz));
   buffer.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
@@ -104,6 +118,8 @@ void EmulatedV4l2Camera::State::deliver(const cv::Mat1w& counts, std::uint64_t i
     buffer.flags |= V4L2_BUF_FLAG_ERROR;
     truncated.reset();
   }
+  buffer.bytesused = std::exchange(misstated, std::nullopt).value_or(buffer.bytesused);
+  buffer.index = std::exchange(misplaced, std::nullopt).value_or(buffer.index);
   done.push_back(buffer);
 }
 
@@ -147,13 +163,15 @@ EmulatedV4l2Camera::~EmulatedV4l2Camera() {
 }
 
 Result<std::unique_ptr<EmulatedV4l2Camera>> EmulatedV4l2Camera::start(std::shared_ptr<MockSystem> system,
-                                                                      VideoCameraConfig config, Exposure exposure) {
+                                                                      VideoCameraConfig config, Exposure exposure,
+                                                                      VideoDriverQuirks quirks) {
   if (const auto valid = validate(config); !valid) return tl::unexpected(valid.error());
   if (!exposure) return fail(ErrorCode::invalid_input, "emulated video camera: there is nothing to expose");
   auto state = std::make_unique<State>();
   state->config = std::move(config);
   state->exposure = std::move(exposure);
   state->format = wire_format(state->config);
+  state->quirks = std::move(quirks);
   state->size = state->format.sizes.front();
   state->frame_rate_hz = state->config.frame_rate_hz;
   state->number = next_node_number++;
@@ -223,6 +241,21 @@ void EmulatedV4l2Camera::truncate_next_frame(std::uint32_t bytes) {
 void EmulatedV4l2Camera::shorten_next_frame(std::uint32_t bytes) {
   const std::lock_guard lock(state_->mutex);
   state_->shortened = bytes;
+}
+
+void EmulatedV4l2Camera::misstate_next_frame(std::uint32_t bytes) {
+  const std::lock_guard lock(state_->mutex);
+  state_->misstated = bytes;
+}
+
+void EmulatedV4l2Camera::misplace_next_frame(std::uint32_t index) {
+  const std::lock_guard lock(state_->mutex);
+  state_->misplaced = index;
+}
+
+void EmulatedV4l2Camera::restart_sequence(std::uint32_t number) {
+  const std::lock_guard lock(state_->mutex);
+  state_->sequence = number;
 }
 
 }  // namespace todbench

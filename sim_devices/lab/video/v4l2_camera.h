@@ -14,6 +14,17 @@
 
 namespace todbench {
 
+/// What a driver does otherwise than uvcvideo, or wrong.
+struct VideoDriverQuirks {
+  enum class Sizes { listed, stepwise, continuous, unlisted };
+  Sizes sizes = Sizes::listed;   ///< unlisted: VIDIOC_ENUM_FRAMESIZES is ENOTTY
+  bool has_try_format = true;    ///< VIDIOC_TRY_FMT
+  bool has_parameters = true;    ///< VIDIOC_G_PARM and VIDIOC_S_PARM
+  int row_padding_bytes = 0;     ///< behind every row, counted in sizeimage and bytesused
+  bool states_row_bytes = true;  ///< bytesperline counts the padding
+  std::string driver = "uvcvideo";
+};
+
 /// Serves frames while it lives. The node is a regular file, so that buffers can be mapped: poll() on it is always
 /// ready, and a DQBUF without a frame waits for up to 10 ms before it says EAGAIN. Everything else is as with a driver:
 /// buffers are filled in the order in which they were queued, an exposure without a free buffer is lost and leaves a
@@ -32,7 +43,8 @@ class EmulatedV4l2Camera {
 
   /// Plugs the camera in. Errors: `invalid_input` (configuration).
   [[nodiscard]] static Result<std::unique_ptr<EmulatedV4l2Camera>> start(std::shared_ptr<MockSystem> system,
-                                                                         VideoCameraConfig config, Exposure exposure);
+                                                                         VideoCameraConfig config, Exposure exposure,
+                                                                         VideoDriverQuirks quirks = {});
   /// Unplugs it.
   ~EmulatedV4l2Camera();
   EmulatedV4l2Camera(const EmulatedV4l2Camera&) = delete;
@@ -55,6 +67,12 @@ class EmulatedV4l2Camera {
   /// The next frame is sent with only this many bytes, as if that were all of it: drivers do so when a transfer ended
   /// early and nothing was missing on the bus.
   void shorten_next_frame(std::uint32_t bytes);
+  /// The next frame is said to have this many bytes, whatever it has.
+  void misstate_next_frame(std::uint32_t bytes);
+  /// The next frame is returned in a buffer of this index, whatever was queued.
+  void misplace_next_frame(std::uint32_t index);
+  /// The next frame has this sequence number.
+  void restart_sequence(std::uint32_t number);
 
  private:
   struct State;

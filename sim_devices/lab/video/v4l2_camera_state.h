@@ -29,6 +29,7 @@ struct EmulatedV4l2Camera::State {
   VideoCameraConfig config;
   Exposure exposure;
   VideoWireFormat format;
+  VideoDriverQuirks quirks;
   int number = 0;
   int file = -1;  ///< the node, which holds the buffers
   std::shared_ptr<MockSystem> system;
@@ -49,14 +50,14 @@ struct EmulatedV4l2Camera::State {
   std::uint64_t exposures = 0, failed = 0, corrections = 0, last_correction = 0;
   int frozen_frames = 0;
   unsigned to_lose = 0;
-  std::optional<std::uint32_t> truncated, shortened;
+  std::optional<std::uint32_t> truncated, shortened, misstated, misplaced;
   cv::Mat1w last;
   std::jthread camera;
 
   ~State();
 
   [[nodiscard]] std::uint32_t image_bytes() const {
-    return static_cast<std::uint32_t>(size.area() * format.bytes_per_pixel());
+    return static_cast<std::uint32_t>(size.area() * format.bytes_per_pixel() + size.height * quirks.row_padding_bytes);
   }
 
   void expose(const std::stop_token& stop);
@@ -70,6 +71,7 @@ struct EmulatedV4l2Camera::State {
   int enumerate_size(v4l2_frmsizeenum& out) const;
   int get_format(v4l2_format& out) const;
   int try_format(v4l2_format& out, cv::Size& chosen) const;
+  int made_of(v4l2_format& out);
   int set_format(v4l2_format& out);
   int get_parameters(v4l2_streamparm& out) const;
   int set_parameters(v4l2_streamparm& out);

@@ -29,7 +29,7 @@ void put_text(__u8 (&field)[N], const std::string& text) {
 
 int EmulatedV4l2Camera::State::query_capability(v4l2_capability& out) const {
   out = {};
-  put_text(out.driver, "uvcvideo");
+  put_text(out.driver, quirks.driver);
   put_text(out.card, config.model);
   put_text(out.bus_info, "usb-0000:00:14.0-" + std::to_string(number + 1));
   out.version = 0x00060100;
@@ -46,7 +46,22 @@ int EmulatedV4l2Camera::State::enumerate_format(v4l2_fmtdesc& out) const {
 }
 
 int EmulatedV4l2Camera::State::enumerate_size(v4l2_frmsizeenum& out) const {
+  using Sizes = VideoDriverQuirks::Sizes;
+  if (quirks.sizes == Sizes::unlisted) return ENOTTY;
   if (out.pixel_format != format.fourcc() || out.index >= format.sizes.size()) return EINVAL;
+  if (quirks.sizes != Sizes::listed) {
+    if (out.index != 0) return EINVAL;
+    const auto& largest = format.sizes.back();
+    const bool continuous = quirks.sizes == Sizes::continuous;
+    out.type = continuous ? V4L2_FRMSIZE_TYPE_CONTINUOUS : V4L2_FRMSIZE_TYPE_STEPWISE;
+    out.stepwise = {.min_width = 2,
+                    .max_width = static_cast<__u32>(largest.width),
+                    .step_width = continuous ? 1U : 2U,
+                    .min_height = 2,
+                    .max_height = static_cast<__u32>(largest.height),
+                    .step_height = continuous ? 1U : 2U};
+    return 0;
+  }
   out.type = V4L2_FRMSIZE_TYPE_DISCRETE;
   out.discrete = {.width = static_cast<__u32>(format.sizes[out.index].width),
                   .height = static_cast<__u32>(format.sizes[out.index].height)};
@@ -61,6 +76,7 @@ int EmulatedV4l2Camera::State::get_format(v4l2_format& out) const {
   out.fmt.pix.pixelformat = format.fourcc();
   out.fmt.pix.field = V4L2_FIELD_NONE;
   out.fmt.pix.bytesperline = static_cast<__u32>(size.width * format.bytes_per_pixel());
+  if (quirks.states_row_bytes) out.fmt.pix.bytesperline += static_cast<__u32>(quirks.row_padding_bytes);
   out.fmt.pix.sizeimage = image_bytes();
   out.fmt.pix.colorspace = V4L2_COLORSPACE_SRGB;
   return 0;
@@ -69,12 +85,21 @@ int EmulatedV4l2Camera::State::get_format(v4l2_format& out) const {
 int EmulatedV4l2Camera::State::try_format(v4l2_format& out, cv::Size& chosen) const {
   if (out.type != V4L2_BUF_TYPE_VIDEO_CAPTURE) return EINVAL;
   // As uvcvideo: a size that does not exist becomes one that does.
-  chosen = format.sizes.front();
+  chosen =
+      out.fmt.pix.width > static_cast<__u32>(format.sizes.back().width) ? format.sizes.back() : format.sizes.front();
   for (const auto& s : format.sizes) {
     if (static_cast<__u32>(s.width) == out.fmt.pix.width && static_cast<__u32>(s.height) == out.fmt.pix.height)
       chosen = s;
   }
   return 0;
+}
+
+int EmulatedV4l2Camera::State::made_of(v4l2_format& out) {
+  const cv::Size present = size;
+  if (const int error = try_format(out, size); error != 0) return error;
+  const int error = get_format(out);
+  size = present;
+  return error;
 }
 
 int EmulatedV4l2Camera::State::set_format(v4l2_format& out) {
@@ -219,9 +244,14 @@ int EmulatedV4l2Camera::State::serve(UMockdevIoctlClient* client, std::unique_lo
       return with<v4l2_format>(client, [&](auto& a) { return get_format(a); });
     case VIDIOC_S_FMT:
       return with<v4l2_format>(client, [&](auto& a) { return set_format(a); });
+    case VIDIOC_TRY_FMT:
+      if (!quirks.has_try_format) return ENOTTY;
+      return with<v4l2_format>(client, [&](auto& a) { return made_of(a); });
     case VIDIOC_G_PARM:
+      if (!quirks.has_parameters) return ENOTTY;
       return with<v4l2_streamparm>(client, [&](auto& a) { return get_parameters(a); });
     case VIDIOC_S_PARM:
+      if (!quirks.has_parameters) return ENOTTY;
       return with<v4l2_streamparm>(client, [&](auto& a) { return set_parameters(a); });
     case VIDIOC_REQBUFS:
       return with<v4l2_requestbuffers>(client, [&](auto& a) { return request_buffers(a, client); });

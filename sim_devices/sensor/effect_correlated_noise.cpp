@@ -1,0 +1,82 @@
+// Temporal noise that remembers: first-order autoregressive from exposure to exposure, of the variance of white noise.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "sim_devices/sensor/effect_row.h"
+
+namespace todbench {
+namespace {
+
+/// Memory below this is cut off. Every correlation is right to it, that of successive exposures to its square.
+constexpr double shortest_memory = 0.01;
+
+/// What the white numbers of this exposure and of those before it add up to: x(t) = sum over j of w(j) z(t - j), with
+/// w(j) proportional to rho^j and squares that sum to 1. So an exposure takes bounded work wherever it is in the
+/// sequence.
+std::vector<double> weights(double rho) {
+  std::vector<double> out;
+  double squares = 0;
+  for (double power = 1; power >= shortest_memory; power *= rho) {
+    out.push_back(power);
+    squares += power * power;
+  }
+  for (double& weight : out) weight /= std::sqrt(squares);
+  return out;
+}
+
+/// The picture has its white noise already: what is added turns that into noise that remembers.
+void add(cv::Mat1f& picture, const SensorSpec& spec, const NoiseStreams& streams, double weight) {
+  std::vector<double> terms = weights(spec.noise_correlation);
+  terms[0] -= 1;
+  constexpr std::size_t strip = 4096;  // stays in the first-level cache
+  float noise[strip];
+  const auto count = static_cast<std::size_t>(picture.total());
+  auto* pixels = picture.ptr<float>();
+  for (std::size_t ago = 0; ago < terms.size(); ++ago) {
+    const RandomStream stream = streams("temporal", ago);
+    const auto sd = static_cast<float>(weight * spec.netd_k * terms[ago]);
+    for (std::size_t first = 0; first < count; first += strip) {
+      const std::size_t n = std::min(strip, count - first);
+      stream.fill_normal(std::span(noise, n), first);
+      for (std::size_t i = 0; i < n; ++i) pixels[first + i] += sd * noise[i];
+    }
+  }
+}
+
+/// The mean of n exposures has the variance of one times (1 + 2 sum over k < n of (1 - k / n) rho^k) / n: more than
+/// white noise by the sum. Of a single exposure nothing changes.
+double excess(const SensorSpec& spec) {
+  const int n = spec.exposures_per_sample();
+  double sum = 0, power = 1;
+  for (int k = 1; k < n; ++k) {
+    power *= spec.noise_correlation;
+    sum += 2 * (1 - static_cast<double>(k) / n) * power;
+  }
+  return sum / n;
+}
+
+}  // namespace
+
+EffectRow effect_rows::correlated_noise() {
+  EffectRow row;
+  row.title = "Noise that remembers";
+  row.keys = {{"noise_correlation", &SensorSpec::noise_correlation, KeyRange::between(0, 0.99), KeyPresence::optional,
+               "correlation of a sample's temporal noise in successive exposures, of first order"}};
+  row.is_neutral = [](const SensorSpec& spec, SceneMotion) { return spec.noise_correlation == 0 || spec.netd_k == 0; };
+  row.neutralise = [](SensorSpec& spec) { spec.noise_correlation = 0; };
+  row.neutral = "noise_correlation or netd_k is 0";
+  row.stage = stage::Noise{stage::Colour::white, stage::Recurrence::every_exposure, add};
+  row.white_variance_k2 = [](const SensorSpec& spec, double noise_factor) {
+    const double sd = spec.netd_k * noise_factor;
+    return sd * sd * excess(spec);
+  };
+  row.bound = [](const ExpectedScene& scene) -> std::optional<double> {
+    return scene.noise_change(-scene.variance_of(Effect::correlated_noise));
+  };
+  row.always = "simulated: it says how the noise of successive frames hangs together, which the run measures";
+  row.when_bounded = WhenBounded::simulated;
+  return row;
+}
+
+}  // namespace todbench
