@@ -3,13 +3,11 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
+#include "bench/cli/session_argument.h"
 #include "bench/judgement/verdict.h"
 #include "bench/report/cost_figure.h"
-#include "bench/report/report.h"
-#include "bench/run/report_data.h"
+#include "bench/run/rebuild_report.h"
 #include "bench/session/cost_record.h"
-#include "bench/session/manifest.h"
-#include "bench/session/session_folder.h"
 #include "bench/studies/cost_study.h"
 #include "bench/text/files.h"
 
@@ -19,6 +17,7 @@ namespace {
 struct CostArguments {
   std::string plan, session, svg;
   double budget_s = 60;
+  Opening opening{};
 };
 
 void print_cost(const Console& console, const CostFrontier& frontier) {
@@ -40,31 +39,46 @@ void print_cost(const Console& console, const CostFrontier& frontier) {
                " draws; best: nothing measured is both faster and nearer, standard error included");
 }
 
+struct Asked {
+  LoadedPlan plan;
+  std::vector<std::string> accepted_changes{};  ///< of the session
+};
+
 /// The plan that is named, or that of the session.
-Result<LoadedPlan> plan_of(const CostArguments& arguments) {
+Result<Asked> plan_of(Console& console, const CostArguments& arguments) {
   if (!arguments.plan.empty() && !arguments.session.empty())
     return fail(ErrorCode::invalid_input, "--session: the plan is that of the session, so no PLAN.toml may be named");
   if (arguments.plan.empty() && arguments.session.empty())
     return fail(ErrorCode::invalid_input, "cost: PLAN.toml or --session is required");
-  if (arguments.session.empty()) return read_plan(arguments.plan);
-  auto session = read_session(arguments.session);
+  if (arguments.session.empty()) {
+    auto plan = read_plan(arguments.plan);
+    if (!plan) return tl::unexpected(plan.error());
+    return Asked{*std::move(plan)};
+  }
+  auto session = opened(console, arguments.session, arguments.opening);
   if (!session) return tl::unexpected(session.error());
-  return LoadedPlan::of(std::move(session->plan), std::move(session->parts));
+  auto plan = LoadedPlan::of(std::move(session->plan), std::move(session->parts));
+  if (!plan) return tl::unexpected(plan.error());
+  return Asked{*std::move(plan), std::move(session->accepted_changes)};
 }
 
-/// cost.json and, from the folder as it then is, the report; the manifest follows both.
-Result<void> into_session(const CostFrontier& frontier, const std::filesystem::path& folder) {
+/// cost.json and, from the folder as it then is, the report; the manifest follows both. The files may have been changed
+/// while the costs were measured.
+Result<void> into_session(const CostFrontier& frontier, const std::filesystem::path& folder, const Opening& opening) {
+  auto session = open_session(folder, opening);
+  if (!session) return tl::unexpected(session.error());
   if (auto written = write_file_atomically(folder / "cost.json", to_page(cost_json(frontier))); !written)
     return written;
-  const auto session = read_session(folder);
-  if (!session) return tl::unexpected(session.error());
-  const auto data = report_data(*session, session_name(folder));
-  if (!data) return tl::unexpected(data.error());
-  if (auto written = write_file_atomically(folder / "report.html", render_report(*data)); !written) return written;
-  // A run that was cut off has no manifest.
-  std::error_code none;
-  if (!std::filesystem::exists(folder / "manifest.json", none)) return {};
-  return refresh_manifest(folder, {"cost.json", "report.html"});
+  if (session->accepted_changes.empty()) {
+    if (auto listed = refresh_manifest(folder, {"cost.json"}); !listed) return listed;
+    auto digest = manifest_digest(folder);
+    if (!digest) return tl::unexpected(digest.error());
+    session->manifest_sha256 = *std::move(digest);
+  }
+  session->cost = frontier;
+  if (auto rebuilt = rebuild_report(*session, folder, html_page(folder)); !rebuilt)
+    return tl::unexpected(rebuilt.error());
+  return {};
 }
 
 Result<void> write_results(const CostFrontier& frontier, const CostArguments& arguments) {
@@ -73,12 +87,14 @@ Result<void> write_results(const CostFrontier& frontier, const CostArguments& ar
     if (!document) return tl::unexpected(document.error());
     if (auto written = write_file_atomically(arguments.svg, *document); !written) return written;
   }
-  return arguments.session.empty() ? Result<void>() : into_session(frontier, arguments.session);
+  if (arguments.session.empty()) return {};
+  return into_session(frontier, arguments.session, arguments.opening);
 }
 
 int run_cost(Console& console, const CostArguments& arguments, const Program& program) {
-  auto plan = plan_of(arguments);
-  if (!plan) return report_error(console, plan.error());
+  const auto asked = plan_of(console, arguments);
+  if (!asked) return report_error(console, asked.error());
+  Result<LoadedPlan> plan = asked->plan;
   if (program.common.seed_given) {
     Plan seeded = plan->plan();
     seeded.seed = program.common.seed;
@@ -91,7 +107,11 @@ int run_cost(Console& console, const CostArguments& arguments, const Program& pr
   const auto frontier = cost_of_plan(*plan, arguments.budget_s, listener, program.stop->token());
   console.end_progress();
   if (!frontier) return report_error(console, frontier.error());
-  if (console.json()) console.object(cost_json(*frontier));
+  if (console.json()) {
+    Json json = cost_json(*frontier);
+    add_accepted_changes(json, arguments.opening, asked->accepted_changes);
+    console.object(json);
+  }
   if (frontier->reference.empty()) {
     for (const auto& note : frontier->notes) console.note(note);
     console.error("the plan has no identifiable threshold: there is nothing whose error could be measured");
@@ -116,6 +136,7 @@ void add_cost_command(CLI::App& app, Program& program) {
   command->add_option("--budget-s", a->budget_s, "wall time for all of it; what does not fit is left unmeasured")
       ->check(number_in(0.1, 86400))
       ->capture_default_str();
+  add_accept_changed(*command, a->opening.accept_changed);
   finish_command(*command, program, [a, &program](Console& console) { return run_cost(console, *a, program); });
 }
 

@@ -2,9 +2,11 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
+#include "bench/cli/findings.h"
 #include "bench/judgement/verdict.h"
 #include "bench/session/trials_csv.h"
 #include "bench/text/text.h"
+#include "tod/adequacy/adequacy.h"
 
 namespace todbench {
 namespace {
@@ -51,21 +53,28 @@ int run_fit(Console& console, const FitArguments& arguments) {
   if (!levels) return report_error(console, levels.error());
   auto fit = fit_psychometric(*levels, *options);
   if (!fit) return report_error(console, with_context(arguments.file, fit.error()));
+  const Adequacy found = adequacy(*levels, *fit, *options);
   if (console.json()) {
-    console.object(fit_json(*fit));
+    Json json = fit_json(*fit);
+    json["adequacy"] = adequacy_json(found);
+    console.object(json);
   } else {
     print(console, *fit);
+    print_findings(console, found, "");
   }
-  return exit_code(*fit);
+  return exit_code(*fit, found);
 }
 
 }  // namespace
 
 void add_fit_command(CLI::App& app, Program& program) {
   auto* command =
-      app.add_subcommand("fit", "fits one psychometric function to counts in a CSV file: size,correct,total");
+      app.add_subcommand("fit", "fits one psychometric function to counts in a CSV file: size,correct,total[,cluster]");
   auto arguments = std::make_shared<FitArguments>();
-  command->add_option("TRIALS.csv", arguments->file, "file with the columns size, correct, total")->required();
+  command
+      ->add_option("TRIALS.csv", arguments->file,
+                   "file with the columns size, correct, total and, for trials that are not independent, cluster")
+      ->required();
   command->add_option("--lapse", arguments->lapse, "0 to 0.1, or free")->capture_default_str();
   command->add_option("--form", arguments->form, "Weibull in size or in acuity")
       ->check(CLI::IsMember({"size", "acuity"}))

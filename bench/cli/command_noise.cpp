@@ -1,14 +1,18 @@
 // todbench noise
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <memory>
+#include <optional>
 
 #include "acquisition/core/camera_id.h"
+#include "acquisition/core/correction_watch.h"
 #include "acquisition/recording/recording_backend.h"
 #include "bench/cli/commands.h"
 #include "bench/judgement/verdict.h"
 #include "bench/plan/descriptions.h"
 #include "bench/studies/real_noise_study.h"
+#include "tod/measures/temporal_noise.h"
 #include "tod/plate/test_pattern.h"
 
 namespace todbench {
@@ -25,12 +29,49 @@ struct NoiseArguments {
 /// noise.
 constexpr double moved_scene = 0.8;
 
+/// Beyond this correlation successive frames understate the noise of one by 5 % and more.
+constexpr double white_enough = 0.1;
+
 struct Frames {
-  std::vector<cv::Mat1f> pictures;
+  std::vector<TimedPicture> pictures;
   bool kelvin = false;
 };
 
-/// All complete frames, in kelvin where the recording says how, else in counts.
+/// In kelvin where the recording says how, else in counts.
+Result<cv::Mat1f> picture_of(const Frame& frame, bool in_kelvin) {
+  cv::Mat1f picture;
+  if (in_kelvin) {
+    auto kelvin = to_kelvin(frame);
+    if (!kelvin) return tl::unexpected(kelvin.error());
+    // Single precision keeps a tenth of a millikelvin of what is left above freezing.
+    cv::Mat1d(*kelvin - 273.15).convertTo(picture, CV_32F);
+  } else {
+    frame.counts.convertTo(picture, CV_32F);
+  }
+  return picture;
+}
+
+/// Tells new exposures from repeated ones, and the segments between corrections of the camera from each other.
+class Segments {
+ public:
+  /// The segment of a frame; nothing for one that is no new exposure or was made during a correction.
+  [[nodiscard]] std::optional<int> of(const Frame& frame) {
+    const bool repeated =
+        !last_.empty() && last_.size() == frame.counts.size() && cv::norm(last_, frame.counts, cv::NORM_INF) == 0;
+    const auto seen = repeated ? watch_.see_frozen() : watch_.see(frame);
+    last_ = frame.counts;
+    if (seen || frame.correction == CorrectionState::running) ++segment_;
+    const bool usable = !repeated && frame.correction != CorrectionState::running && seen != CorrectionSign::shutter;
+    return usable ? std::optional(segment_) : std::nullopt;
+  }
+
+ private:
+  CorrectionWatch watch_{CorrectionWatchOptions{}};
+  cv::Mat1w last_;
+  int segment_ = 0;
+};
+
+/// All complete frames that are exposures of their own.
 Result<Frames> frames_of(const std::string& id) {
   auto source =
       recording_backend()->open(has_scheme(id, camera_scheme::file) ? id : camera_id(camera_scheme::file, id));
@@ -39,26 +80,62 @@ Result<Frames> frames_of(const std::string& id) {
   if (auto started = (*source)->start(); !started) return tl::unexpected(started.error());
   Frames frames;
   frames.kelvin = (*source)->info().scale.calibrated();
+  Segments segments;
   for (;;) {
     auto frame = (*source)->next(std::chrono::seconds(1));
     if (!frame && frame.error().code == ErrorCode::disconnected) return frames;
     if (!frame) return tl::unexpected(frame.error());
     if (frame->status != FrameStatus::complete) continue;
-    cv::Mat1f picture;
-    if (frames.kelvin) {
-      auto kelvin = to_kelvin(*frame);
-      if (!kelvin) return fail(id, kelvin.error());
-      // Single precision keeps a tenth of a millikelvin of what is left above freezing.
-      cv::Mat1d(*kelvin - 273.15).convertTo(picture, CV_32F);
-    } else {
-      frame->counts.convertTo(picture, CV_32F);
-    }
-    frames.pictures.push_back(picture);
+    const auto segment = segments.of(*frame);
+    if (!segment) continue;
+    auto picture = picture_of(*frame, frames.kelvin);
+    if (!picture) return fail(id, picture.error());
+    frames.pictures.push_back({*std::move(picture), frame->sequence, *segment});
   }
 }
 
+/// Blocks of so many frames with no correction in them, one after the other.
+std::vector<cv::Mat1f> in_blocks(const std::vector<TimedPicture>& pictures, int block_frames) {
+  std::vector<cv::Mat1f> blocks;
+  const auto size = static_cast<std::size_t>(block_frames);
+  for (std::size_t first = 0; first + size <= pictures.size();) {
+    if (pictures[first].segment != pictures[first + size - 1].segment) {
+      ++first;
+      continue;
+    }
+    for (std::size_t k = 0; k < size; ++k) blocks.push_back(pictures[first + k].picture);
+    first += size;
+  }
+  return blocks;
+}
+
+/// What was found in a recording.
+struct Found {
+  RecordedNoise blocks;
+  TemporalNoise time;
+  bool kelvin = false;
+};
+
 bool moved(const RecordedNoise& noise) {
   return std::max(noise.correlation_x, noise.correlation_y) > moved_scene;
+}
+
+bool correlated(const TemporalNoise& noise) {
+  return noise.lag1_correlation && std::abs(*noise.lag1_correlation) > white_enough;
+}
+
+std::string_view verdict_of(const Found& found) {
+  if (moved(found.blocks)) return "scene_moved";
+  return correlated(found.time) ? "correlated" : "ok";
+}
+
+/// What the correlation does to a number that someone may take from here.
+std::string memory_sentence(const TemporalNoise& noise) {
+  return "the noise is correlated in time, by " + fixed(noise.lag1_correlation, 2) +
+         " in successive frames: they show the temporal noise of an instrument, but a single frame, which the observer "
+         "judges, carries " +
+         fixed(noise.whole_to_successive, 2) +
+         " times as much, and averaging frames helps less than the root of their number";
 }
 
 Json components_json(const ThreeDNoise& c) {
@@ -66,8 +143,14 @@ Json components_json(const ThreeDNoise& c) {
           {"vh", json_number(c.vh)},   {"v", json_number(c.v)},   {"h", json_number(c.h)}};
 }
 
-Json noise_json(const RecordedNoise& noise, const std::vector<NoiseAcuity>& points, bool kelvin,
-                const NoiseArguments& arguments) {
+Json structure_json(const TemporalNoise& noise) {
+  Json values = Json::array();
+  for (const double value : noise.structure) values.push_back(json_number(value));
+  return {{"lags", noise.lags}, {"values", values}};
+}
+
+Json noise_json(const Found& found, const std::vector<NoiseAcuity>& points, const NoiseArguments& arguments) {
+  const RecordedNoise& noise = found.blocks;
   Json list = Json::array();
   for (const auto& p : points) {
     list.push_back({{"contrast_over_noise", p.contrast_over_noise},
@@ -77,32 +160,53 @@ Json noise_json(const RecordedNoise& noise, const std::vector<NoiseAcuity>& poin
                     {"acuity_ratio_ci95", json_interval(p.ratio_ci95)},
                     {"template_noise_ratio", json_number(p.template_noise_ratio)},
                     {"predicted_acuity_ratio", json_number(p.predicted_ratio)},
+                    {"memory_acuity_ratio", json_number(p.memory_acuity_ratio)},
                     {"pixel_share", json_number(p.pixel_share)},
                     {"row_share", json_number(p.row_share)},
                     {"column_share", json_number(p.column_share)},
                     {"correlated_share", json_number(p.correlated_share)}});
   }
   return {{"recording", arguments.recording},
-          {"unit", kelvin ? "K" : "counts"},
+          {"unit", found.kelvin ? "K" : "counts"},
           {"width", noise.usable.cols},
           {"height", noise.usable.rows},
           {"blocks", noise.blocks},
           {"block_frames", arguments.block_frames},
           {"usable_share", noise.usable_share},
-          {"temporal_noise", json_number(noise.temporal_noise)},
+          {"temporal_noise", json_number(found.time.successive)},
+          {"lag1_correlation", json_number(found.time.lag1_correlation)},
+          {"structure_function", structure_json(found.time)},
+          {"whole_to_successive", json_number(found.time.whole_to_successive)},
+          {"block_noise", json_number(noise.temporal_noise)},
           {"components", components_json(noise.components)},
           {"correlation_x", json_number(noise.correlation_x)},
           {"correlation_y", json_number(noise.correlation_y)},
           {"observer", arguments.observer},
           {"sensor", arguments.sensor},
-          {"verdict", moved(noise) ? "scene_moved" : "ok"},
+          {"verdict", verdict_of(found)},
           {"points", list}};
 }
 
-void print_components(Console& console, const RecordedNoise& noise, bool kelvin) {
+void print_time(Console& console, const Found& found, const std::string& unit) {
+  const TemporalNoise& time = found.time;
+  console.text("temporal noise " + fixed(time.successive, 4) + " " + unit + " (successive frames) over " +
+               fixed(100 * time.usable_share, 1) + " % of the pixels; correlation of successive frames " +
+               fixed(time.lag1_correlation, 3));
+  std::vector<TableRow> rows;
+  for (std::size_t i = 0; i < time.lags.size(); ++i) {
+    const int lag = time.lags[i];
+    if (i == 0 || (lag & (lag - 1)) == 0) rows.push_back({std::to_string(lag), fixed(time.structure[i], 4)});
+  }
+  console.table({"frames apart", "sqrt(mean d^2 / 2) [" + unit + "]"}, rows);
+  console.text("");
+}
+
+void print_components(Console& console, const Found& found) {
+  const RecordedNoise& noise = found.blocks;
   const auto& c = noise.components;
-  const std::string unit = kelvin ? "K" : "counts";
-  console.text("temporal noise " + fixed(noise.temporal_noise, 4) + " " + unit + " over " +
+  const std::string unit = found.kelvin ? "K" : "counts";
+  print_time(console, found, unit);
+  console.text("noise in blocks " + fixed(noise.temporal_noise, 4) + " " + unit + " over " +
                fixed(100 * noise.usable_share, 1) + " % of the pixels; neighbours correlate by " +
                fixed(noise.correlation_x, 3) + " in a row, " + fixed(noise.correlation_y, 3) + " in a column");
   console.table({"component", "sd [" + unit + "]"}, {{"pixels in time (tvh)", fixed(c.tvh, 4)},
@@ -118,13 +222,16 @@ void print_acuities(Console& console, const std::vector<NoiseAcuity>& points) {
   std::vector<TableRow> rows, why;
   for (const auto& p : points) {
     rows.push_back({fixed(p.contrast_over_noise, 1), fixed(p.real.s75_pitch, 3), fixed(p.white.s75_pitch, 3),
-                    fixed(p.acuity_ratio, 3), range(p.ratio_ci95, 3), fixed(p.predicted_ratio, 3)});
+                    fixed(p.acuity_ratio, 3), range(p.ratio_ci95, 3), fixed(p.predicted_ratio, 3),
+                    fixed(p.memory_acuity_ratio, 3)});
     why.push_back({fixed(p.contrast_over_noise, 1), fixed(p.template_noise_ratio, 3), fixed(p.pixel_share, 3),
                    fixed(p.row_share, 3), fixed(p.column_share, 3), fixed(p.correlated_share, 3)});
   }
   console.text("");
   console.text("75 % sizes under this noise and under white noise of the same strength");
-  console.table({"dT / noise", "S75 [pitch]", "S75 white", "acuity real / white", "95 %", "predicted from r"}, rows);
+  console.table({"dT / noise", "S75 [pitch]", "S75 white", "acuity real / white", "95 %", "predicted from r",
+                 "whole frame / successive"},
+                rows);
   console.text("");
   console.text("what moves the decision: r^2, the variance in the templates' differences over that of white noise");
   console.table({"dT / noise", "r", "pixels", "rows", "columns", "correlated"}, why);
@@ -135,37 +242,39 @@ int run_noise(Console& console, NoiseArguments arguments, const Program& program
   if (!sensor) return report_error(console, sensor.error());
   auto spec = load_observer(arguments.observer);
   if (!spec) return report_error(console, spec.error());
-  auto frames = frames_of(arguments.recording);
+  const auto frames = frames_of(arguments.recording);
   if (!frames) return report_error(console, frames.error());
   const auto count = static_cast<int>(frames->pictures.size());
   if (count < arguments.block_frames && count >= 2) {
     console.note("the recording holds " + std::to_string(count) + " frames: they are one block");
     arguments.block_frames = count;
   }
-  auto noise = recorded_noise(frames->pictures, arguments.block_frames);
-  if (!noise) return report_error(console, with_context(arguments.recording, noise.error()));
-  if (moved(*noise)) {
+  auto blocks = recorded_noise(in_blocks(frames->pictures, arguments.block_frames), arguments.block_frames);
+  if (!blocks) return report_error(console, with_context(arguments.recording, blocks.error()));
+  auto time = temporal_noise(frames->pictures);
+  if (!time) return report_error(console, with_context(arguments.recording, time.error()));
+  const Found found{*std::move(blocks), *std::move(time), frames->kelvin};
+  std::vector<NoiseAcuity> points;
+  if (moved(found.blocks)) {
     // Components and acuity would be those of the moving scene.
     console.note("neighbouring pixels change together: the scene or the camera moved, this is not the camera's noise");
-    if (console.json()) {
-      console.object(noise_json(*noise, {}, frames->kelvin, arguments));
-    } else {
-      print_components(console, *noise, frames->kelvin);
-    }
-    return exit_code(VerdictKind::inconclusive);
-  }
-  TemplateObserver observer(*spec, triangle_alternatives());
-  arguments.study.seed = program.common.seed;
-  arguments.study.stop = program.stop->token();
-  const auto points = real_noise_study(*noise, *sensor, observer, arguments.study);
-  if (!points) return report_error(console, points.error());
-  if (console.json()) {
-    console.object(noise_json(*noise, *points, frames->kelvin, arguments));
   } else {
-    print_components(console, *noise, frames->kelvin);
-    print_acuities(console, *points);
+    if (correlated(found.time)) console.note(memory_sentence(found.time));
+    TemplateObserver observer(*spec, triangle_alternatives());
+    arguments.study.seed = program.common.seed;
+    arguments.study.stop = program.stop->token();
+    arguments.study.whole_to_successive = found.time.whole_to_successive;
+    auto studied = real_noise_study(found.blocks, *sensor, observer, arguments.study);
+    if (!studied) return report_error(console, studied.error());
+    points = *std::move(studied);
   }
-  return 0;
+  if (console.json()) {
+    console.object(noise_json(found, points, arguments));
+  } else {
+    print_components(console, found);
+    if (!points.empty()) print_acuities(console, points);
+  }
+  return moved(found.blocks) ? exit_code(VerdictKind::inconclusive) : 0;
 }
 
 }  // namespace

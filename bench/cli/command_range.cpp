@@ -1,9 +1,10 @@
 // todbench range
+#include <algorithm>
 #include <memory>
 
 #include "bench/cli/commands.h"
+#include "bench/cli/session_argument.h"
 #include "bench/judgement/verdict.h"
-#include "bench/session/session_folder.h"
 #include "bench/text/text.h"
 #include "tod/range/range_prediction.h"
 
@@ -14,11 +15,19 @@ struct RangeArguments {
   std::string tod;
   RangeTask task;
   std::optional<double> v50;
+  Opening opening{};
 };
+
+/// Where the TOD curve says something about the target at all.
+bool any_probability(const RangePrediction& prediction) {
+  return std::any_of(prediction.curve.begin(), prediction.curve.end(),
+                     [](const RangePoint& point) { return point.probability.has_value(); });
+}
 
 Json range_json(const RangePrediction& prediction, const TodCurve& tod, const RangeTask& task) {
   Json points = Json::array();
-  for (const auto& point : prediction.curve) {
+  const std::vector<RangePoint> none;
+  for (const auto& point : any_probability(prediction) ? prediction.curve : none) {
     points.push_back({{"range_m", point.range_m},
                       {"probability", json_number(point.probability)},
                       {"probability_ci95", json_interval(point.probability_ci95)},
@@ -43,19 +52,24 @@ void print_range(Console& console, const RangePrediction& prediction, const TodC
                number_text(task.m75) + ", extinction " + number_text(task.extinction_per_km) + " per km");
   std::vector<TableRow> rows;
   for (const auto& p : prediction.curve) {
+    if (!p.probability) continue;
     rows.push_back(
         {fixed(p.range_m, 0), fixed(p.apparent_delta_t_k, 3), fixed(p.probability, 3), range(p.probability_ci95, 3)});
   }
-  console.table({"range [m]", "apparent dT [K]", "P correct", "95 %"}, rows);
-  console.text("");
-  console.text("75 % correct at " + fixed(prediction.r75_m, 1) + " m, 95 %: " + range(prediction.r75_ci95_m, 1) + " m");
+  if (!rows.empty()) {
+    console.table({"range [m]", "apparent dT [K]", "P correct", "95 %"}, rows);
+    console.text("");
+  }
+  if (prediction.r75_m || prediction.r75_ci95_m.low)
+    console.text("75 % correct at " + fixed(prediction.r75_m, 1) + " m, 95 %: " + range(prediction.r75_ci95_m, 1) +
+                 " m");
   if (!prediction.reason.empty()) console.text(prediction.reason);
 }
 
 int run_range(Console& console, const RangeArguments& arguments) {
   RangeTask task = arguments.task;
   if (arguments.v50) task.m75 = m75_from_v50(*arguments.v50);
-  auto session = read_session(arguments.tod);
+  auto session = opened(console, arguments.tod, arguments.opening);
   if (!session) return report_error(console, session.error());
   if (!session->curve) {
     return report_error(console, {ErrorCode::invalid_input, arguments.tod + ": the session holds no curve"});
@@ -73,9 +87,12 @@ int run_range(Console& console, const RangeArguments& arguments) {
   for (const auto& sentence : prediction.notes) console.note(sentence);
   prediction.notes.insert(prediction.notes.begin(), selection.notes.begin(), selection.notes.end());
   if (console.json()) {
-    console.object(range_json(prediction, *session->curve, task));
+    Json json = range_json(prediction, *session->curve, task);
+    add_accepted_changes(json, arguments.opening, session->accepted_changes);
+    console.object(json);
   } else {
     print_range(console, prediction, *session->curve, task);
+    if (const auto sentence = accepted_sentence(arguments.tod, *session); !sentence.empty()) console.text(sentence);
   }
   return exit_code(prediction.r75_m ? VerdictKind::pass : VerdictKind::inconclusive);
 }
@@ -101,6 +118,7 @@ void add_range_command(CLI::App& app, Program& program) {
   command->add_option("--extinction-per-km", a->task.extinction_per_km, "of the apparent contrast")
       ->check(number_in(0, 1e4))
       ->capture_default_str();
+  add_accept_changed(*command, a->opening.accept_changed);
   finish_command(*command, program, [a](Console& console) { return run_range(console, *a); });
 }
 

@@ -7,7 +7,7 @@
 #include "acquisition/core/camera_id.h"
 #include "acquisition/core/integrity_gate.h"
 #include "acquisition/recording/frame_stream.h"
-#include "acquisition/recording/tiff_stack.h"
+#include "acquisition/recording/tiff_writer.h"
 #include "bench/cli/commands.h"
 #include "bench/judgement/verdict.h"
 #include "bench/run/devices.h"
@@ -52,7 +52,10 @@ class Sink {
     if (stream_) return stream_->append(frame);
     return frame.status == FrameStatus::complete ? tiff_->append(frame.counts) : Result<void>();
   }
-  Result<void> finish() { return stream_ ? stream_->sync() : tiff_->finish(); }
+  /// The frames that a reader finds in the file, once everything is on the disk.
+  Result<std::uint64_t> finish() { return stream_ ? stream_->verified_frames() : tiff_->verified_pages(); }
+  /// Whether a file without a frame is one of its format.
+  [[nodiscard]] bool may_be_empty() const { return stream_.has_value(); }
 
  private:
   std::optional<FrameStreamWriter> stream_;
@@ -61,7 +64,9 @@ class Sink {
 
 /// What came of it.
 struct Recorded {
-  std::uint64_t frames = 0;
+  std::uint64_t arrived = 0;
+  std::uint64_t frames = 0;  ///< in the file
+  NumberingFaults numbering;
   std::map<std::string, std::uint64_t> rejected;
   std::uint64_t lost = 0;
   std::optional<Error> ended_by;
@@ -90,16 +95,16 @@ Recorded take_frames(FrameSource& camera, Sink& sink, const RecordArguments& a, 
     recorded.ended_by = started.error();
     return recorded;
   }
-  while ((limit == 0 || recorded.frames < limit) && (a.seconds == 0 || monotonic_ns() < end_ns)) {
+  while ((limit == 0 || recorded.arrived < limit) && (a.seconds == 0 || monotonic_ns() < end_ns)) {
     Result<Frame> frame = stop.token().stop_requested()
                               ? Result<Frame>(fail(ErrorCode::interrupted, "stopped on request"))
                               : camera.next(timeout);
     if (frame) {
       (void)gate.judge(*frame);
+      ++recorded.arrived;
       auto written = sink.append(*frame);
       if (written) {
-        ++recorded.frames;
-        if (limit > 0) console.progress(recorded.frames, limit);
+        if (limit > 0) console.progress(recorded.arrived, limit);
         continue;
       }
       recorded.ended_by = written.error();
@@ -112,6 +117,7 @@ Recorded take_frames(FrameSource& camera, Sink& sink, const RecordArguments& a, 
   for (const auto& [reason, count] : gate.rejected_by_reason())
     recorded.rejected[std::string(to_string(reason))] = count;
   recorded.lost = gate.lost();
+  recorded.numbering = gate.numbering();
   return recorded;
 }
 
@@ -123,13 +129,28 @@ std::string default_file(const RecordArguments& a) {
   return name + (a.format == "tiff" ? ".tif" : ".todrec");
 }
 
+/// Looks what is on the disk. A file that holds nothing and is none of its format is taken away again.
+void finish(Sink& sink, const std::filesystem::path& file, Recorded& recorded) {
+  const auto kept = sink.finish();
+  recorded.frames = kept.value_or(0);
+  // A disk that does not hold what was written to it is the worse of two troubles.
+  if (!kept && (!recorded.ended_by || recorded.ended_by->code != ErrorCode::io)) recorded.ended_by = kept.error();
+  if (!kept || *kept > 0 || sink.may_be_empty()) return;
+  std::error_code problem;
+  std::filesystem::remove(file, problem);
+  const bool has_a_reason = recorded.arrived == 0 && recorded.ended_by;
+  if (has_a_reason && recorded.ended_by->code != ErrorCode::interrupted) return;
+  recorded.ended_by =
+      Error{ErrorCode::integrity, "none of " + std::to_string(recorded.arrived) + " frames is complete"};
+}
+
 /// Without a limit Ctrl-C is how a recording ends, and a recording that is recorded ends where it ends.
 bool as_wanted(const Recorded& recorded, const RecordArguments& a) {
   if (!recorded.ended_by) return true;
   const bool limited = a.frames > 0 || a.seconds > 0;
   if (recorded.ended_by->code == ErrorCode::interrupted) return !limited;
   return recorded.ended_by->code == ErrorCode::disconnected && has_scheme(a.camera, camera_scheme::file) &&
-         a.frames == 0 && recorded.frames > 0;
+         a.frames == 0 && recorded.arrived > 0;
 }
 
 /// Whether the file that is about to be written is the one that the frames come out of, or one of that folder.
@@ -154,7 +175,8 @@ int run_record(Console& console, const RecordArguments& a, StopSignals& stop) {
   if (overwrites_its_camera(file, a.camera)) {
     return report_error(console, {ErrorCode::invalid_input, file.string() + ": is where the frames come from"});
   }
-  auto camera = camera_registry().open(a.camera);
+  auto camera =
+      camera_registry(stop.token(), [&](std::string_view sentence) { console.phase(sentence); }).open(a.camera);
   if (!camera) return report_error(console, camera.error());
   if (auto set = apply_settings(**camera, a.settings); !set) return report_error(console, set.error());
   const SourceInfo info = (*camera)->info();
@@ -164,13 +186,19 @@ int run_record(Console& console, const RecordArguments& a, StopSignals& stop) {
   console.phase("recording " + info.id);
   Recorded recorded = take_frames(**camera, *sink, a, console, stop);
   console.end_progress();
-  if (auto finished = sink->finish(); !finished && !recorded.ended_by) recorded.ended_by = finished.error();
+  finish(*sink, file, recorded);
+  if (const std::string faults = describe(recorded.numbering); !faults.empty()) console.note(faults);
   if (console.json()) {
     console.object({{"recording", file.string()},
                     {"camera", info.id},
                     {"frames", recorded.frames},
+                    {"arrived", recorded.arrived},
                     {"lost", recorded.lost},
-                    {"rejected", recorded.rejected}});
+                    {"rejected", recorded.rejected},
+                    {"numbering",
+                     {{"restarts", recorded.numbering.restarts},
+                      {"silent_gaps", recorded.numbering.silent_gaps},
+                      {"estimated_lost", recorded.numbering.estimated_lost}}}});
   } else {
     std::string doubtful;
     for (const auto& [reason, count] : recorded.rejected) doubtful += ", " + std::to_string(count) + " " + reason;
@@ -178,7 +206,8 @@ int run_record(Console& console, const RecordArguments& a, StopSignals& stop) {
                  " lost" + doubtful);
   }
   if (as_wanted(recorded, a)) return 0;
-  console.error("ended early: " + recorded.ended_by->message + "; the frames so far are in " + file.string());
+  console.error("ended early: " + recorded.ended_by->message +
+                (recorded.frames > 0 ? "; the frames so far are in " + file.string() : "; no frame was kept"));
   return exit_code(recorded.ended_by->code);
 }
 

@@ -7,6 +7,7 @@
 #include "bench/report/html.h"
 #include "bench/studies/eo_vista.h"
 #include "bench/text/files.h"
+#include "bench/text/folders.h"
 #include "bench/text/text.h"
 
 namespace todbench {
@@ -57,8 +58,7 @@ Result<std::filesystem::path> folder_for(const ReproduceArguments& arguments) {
   std::error_code error;
   if (std::filesystem::exists(folder, error) && !std::filesystem::is_directory(folder, error))
     return fail(ErrorCode::invalid_input, folder.string() + ": is not a folder");
-  std::filesystem::create_directories(folder, error);
-  if (error) return fail(ErrorCode::invalid_input, folder.string() + ": " + error.message());
+  if (auto made = make_folder(folder); !made) return tl::unexpected(made.error());
   if (!arguments.overwrite && !std::filesystem::is_empty(folder, error))
     return fail(ErrorCode::invalid_input,
                 folder.string() + ": is not empty (--force overwrites the reproduction in it)");

@@ -3,7 +3,9 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
+#include "bench/cli/findings.h"
 #include "bench/cli/key_options.h"
+#include "bench/cli/session_argument.h"
 #include "bench/cli/simulation_plan.h"
 #include "bench/judgement/demand_kinds.h"
 #include "bench/judgement/verdict_record.h"
@@ -52,6 +54,8 @@ void print_curve(const Console& console, const TodCurve& curve) {
   console.text("TOD of " + curve.sensor + ", observer " + curve.observer);
   console.table({"dT [K]", "S75 [mrad]", "95 %", "acuity [1/mrad]", "95 %", "S75 direct [mrad]", "trials", "fit"},
                 rows);
+  for (const auto& point : curve.points)
+    print_findings(console, point.adequacy, fixed(point.set_delta_t_k, 3) + " K: ");
 }
 
 void print_comparison(const Console& console, const ExperimentOutcome& outcome) {
@@ -220,13 +224,20 @@ void add_folder_options(CLI::App& command, RunArguments& arguments) {
   command.add_option("--out", arguments.out, "session folder; default: session-TIME-NAME in the current folder");
 }
 
-int run_replay(Console& console, const std::string& session, const RunArguments& arguments, const Program& program) {
+struct ReplayArguments {
+  RunArguments run{};
+  std::string session;
+  Opening opening{};
+};
+
+int run_replay(Console& console, const ReplayArguments& asked, const Program& program) {
+  const auto& [arguments, session, opening] = asked;
   auto name = std::filesystem::path(session).lexically_normal();
   if (name.filename().empty()) name = name.parent_path();
   Plan named;
   named.name = name.filename().string() + "-replay";
   const ExperimentOptions options = folder_of(arguments, named);
-  auto outcome = replay_session(session, options, listener_of(console), program.stop->token());
+  auto outcome = replay_session(session, options, listener_of(console), program.stop->token(), opening);
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
   const auto said = [](const std::optional<bool>& same) { return same ? (*same ? "the same" : "DIFFERENT") : "none"; };
@@ -236,10 +247,13 @@ int run_replay(Console& console, const std::string& session, const RunArguments&
     json["same_trials"] = outcome->same_trials;
     json["same_fits"] = outcome->same_fits ? Json(*outcome->same_fits) : Json();
     json["session"] = outcome->run.folder.string();
+    add_accepted_changes(json, opening, outcome->accepted_changes);
     console.object(json);
   } else {
     print_curve(console, outcome->run.curve);
     console.text("");
+    for (const std::string& file : outcome->accepted_changes)
+      console.text("changed, removed or added after the session had ended, and accepted: " + file);
     console.text("trials: " + std::string(said(outcome->same_trials)) + "; fits: " + said(outcome->same_fits));
   }
   if (!outcome->same_trials || !outcome->same_fits.value_or(true)) {
@@ -254,13 +268,12 @@ int run_replay(Console& console, const std::string& session, const RunArguments&
 void add_replay_command(CLI::App& app, Program& program) {
   auto* command = app.add_subcommand(
       "replay", "measures a session again from its recorded frames, into a new session: same answers bit for bit");
-  auto a = std::make_shared<RunArguments>();
-  auto session = std::make_shared<std::string>();
-  command->add_option("DIR", *session, "session folder with recorded frames")->required();
-  add_folder_options(*command, *a);
-  command->add_flag("--force", a->overwrite, "overwrite the session in an existing folder");
-  finish_command(*command, program,
-                 [a, session, &program](Console& console) { return run_replay(console, *session, *a, program); });
+  auto a = std::make_shared<ReplayArguments>();
+  command->add_option("DIR", a->session, "session folder with recorded frames")->required();
+  add_folder_options(*command, a->run);
+  command->add_flag("--force", a->run.overwrite, "overwrite the session in an existing folder");
+  add_accept_changed(*command, a->opening.accept_changed);
+  finish_command(*command, program, [a, &program](Console& console) { return run_replay(console, *a, program); });
 }
 
 void add_measure_command(CLI::App& app, Program& program) {

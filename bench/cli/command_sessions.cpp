@@ -1,16 +1,13 @@
-// todbench compare, todbench report
+// todbench compare, todbench report, todbench verify
 #include <memory>
 
 #include "bench/cli/commands.h"
+#include "bench/cli/findings.h"
+#include "bench/cli/session_argument.h"
 #include "bench/judgement/verdict.h"
-#include "bench/plan/plan_options.h"
-#include "bench/report/report.h"
 #include "bench/run/comparison_forecast.h"
-#include "bench/run/report_data.h"
-#include "bench/session/human_record.h"
-#include "bench/session/manifest.h"
-#include "bench/session/session_folder.h"
-#include "bench/text/files.h"
+#include "bench/run/rebuild_report.h"
+#include "bench/session/session_comparison.h"
 
 namespace todbench {
 namespace {
@@ -18,73 +15,106 @@ namespace {
 struct CompareArguments {
   std::string a, b;
   double margin_percent = 0;
+  Opening opening{};
 };
 
-Result<TodCurve> curve_of(const std::string& folder) {
-  auto session = read_session(folder);
-  if (!session) return tl::unexpected(session.error());
-  if (!session->curve) return fail(ErrorCode::invalid_input, folder + ": the session holds no curve");
-  return *session->curve;
+/// Of both sessions, with their folders in front.
+std::vector<std::string> accepted_files(const CompareArguments& arguments, const Session& a, const Session& b) {
+  std::vector<std::string> files;
+  for (const auto& [folder, session] : {std::pair(&arguments.a, &a), std::pair(&arguments.b, &b)}) {
+    for (const std::string& file : session->accepted_changes)
+      files.push_back((std::filesystem::path(*folder) / file).generic_string());
+  }
+  return files;
 }
 
-int run_compare(Console& console, const CompareArguments& arguments) {
-  auto session = read_session(arguments.a);
-  if (!session) return report_error(console, session.error());
-  auto a = curve_of(arguments.a);
-  if (!a) return report_error(console, a.error());
-  auto b = curve_of(arguments.b);
-  if (!b) return report_error(console, b.error());
-  ComparisonOptions options = comparison_options(session->plan);
-  if (arguments.margin_percent > 0) options.margin_percent = arguments.margin_percent;
-  auto comparison = compare(*a, *b, options);
-  if (!comparison) return report_error(console, comparison.error());
-  const std::string outlook = comparison_forecast(*a, *b, *comparison).sentence;
-  if (!outlook.empty()) console.note(outlook);
-  if (console.json()) {
-    console.object(comparison_json(*comparison));
-    return exit_code(decision_of(comparison->verdict));
-  }
+void print_comparison(const Console& console, const Comparison& comparison) {
   std::vector<TableRow> rows;
-  for (const auto& p : comparison->points) {
+  for (const auto& p : comparison.points) {
     rows.push_back({fixed(p.delta_t_a_k, 3), fixed(p.delta_t_b_k, 3), fixed(p.ratio, 4), range(p.ratio_ci95, 4),
                     fixed(p.p_difference, 4), fixed(p.p_equivalence, 4), std::string(to_string(p.verdict))});
   }
   console.table({"dT A [K]", "dT B [K]", "acuity A / B", "95 %", "p difference", "p equivalence", "verdict"}, rows);
-  console.text("margin " + fixed(options.margin_percent, 1) +
-               " %; verdict: " + std::string(to_string(comparison->verdict)));
+  print_findings(console, comparison.adequacy, "");
+  console.text("margin " + fixed(comparison.points.front().margin_percent, 1) +
+               " %; verdict: " + std::string(to_string(comparison.verdict)));
+}
+
+int run_compare(Console& console, const CompareArguments& arguments) {
+  const auto a = opened(console, arguments.a, arguments.opening);
+  if (!a) return report_error(console, a.error());
+  const auto b = opened(console, arguments.b, arguments.opening);
+  if (!b) return report_error(console, b.error());
+  const auto margin = arguments.margin_percent > 0 ? std::optional(arguments.margin_percent) : std::nullopt;
+  const auto compared = compare_sessions(*a, *b, margin);
+  if (!compared) return report_error(console, with_context(arguments.a + ", " + arguments.b, compared.error()));
+  const Comparison* comparison = &compared->comparison;
+  const std::string outlook = comparison_forecast(compared->a, compared->b, *comparison).sentence;
+  if (!outlook.empty()) console.note(outlook);
+  if (console.json()) {
+    Json json = comparison_json(*comparison);
+    add_accepted_changes(json, arguments.opening, accepted_files(arguments, *a, *b));
+    console.object(json);
+  } else {
+    print_comparison(console, *comparison);
+    for (const auto& sentence : {accepted_sentence(arguments.a, *a), accepted_sentence(arguments.b, *b)}) {
+      if (!sentence.empty()) console.text(sentence);
+    }
+  }
   return exit_code(decision_of(comparison->verdict));
 }
 
-int run_report(Console& console, const std::string& folder) {
-  auto session = read_session(folder);
+int run_report(Console& console, const std::string& folder, Opening opening) {
+  opening.accept_cut_off = true;
+  const auto session = opened(console, folder, opening);
   if (!session) return report_error(console, session.error());
   const auto path = std::filesystem::path(folder);
-  auto data = report_data(*session, session_name(path));
+  const auto data = rebuild_report(*session, path, html_page(path));
   if (!data) return report_error(console, data.error());
-  auto human = read_human(path);
-  if (!human) return report_error(console, human.error());
-  if (*human) data->human = (*human)->curve;
-  const auto file = path / "report.html";
-  if (auto written = write_file_atomically(file, render_report(*data)); !written)
-    return report_error(console, written.error());
-  if (!session->verdict) {
-    if (auto kept = keep_verdict(path, *data->verdict); !kept) return report_error(console, kept.error());
-  }
-  // A run that was cut off has no manifest; there is nothing to bring up to date then.
-  if (std::error_code none; std::filesystem::exists(path / "manifest.json", none)) {
-    if (auto refreshed = refresh_manifest(path, {"report.html"}); !refreshed)
-      return report_error(console, refreshed.error());
-  }
   const bool afterwards = data->verdict->judged == JudgedWhen::afterwards;
   if (afterwards) console.note(std::string(remark_on(data->verdict->judged)));
+  const std::string file = (path / "report.html").string();
   if (console.json()) {
-    Json json{{"report", file.string()}};
+    Json json{{"report", file}};
     if (afterwards) json["judged"] = to_string(data->verdict->judged);
+    add_accepted_changes(json, opening, session->accepted_changes);
     console.object(json);
   } else {
-    console.text(file.string());
+    console.text(file);
+    if (const auto sentence = accepted_sentence(folder, *session); !sentence.empty()) console.text(sentence);
   }
   return 0;
+}
+
+int run_verify(Console& console, const std::string& folder) {
+  const auto check = check_session(folder);
+  if (!check) return report_error(console, check.error());
+  const ManifestCheck& files = check->files;
+  const bool intact = check->condition == SessionCondition::intact;
+  if (console.json()) {
+    console.object({{"intact", intact},
+                    {"changed", files.changed},
+                    {"missing", files.missing},
+                    {"foreign", files.foreign},
+                    {"signed_by", nullptr},
+                    {"manifest_sha256", files.manifest_sha256.empty() ? Json() : Json(files.manifest_sha256)},
+                    {"condition", to_string(check->condition)},
+                    {"reason", check->sentence.empty() ? Json() : Json(check->sentence)}});
+    return intact ? 0 : exit_code(ErrorCode::invalid_input);
+  }
+  for (const std::string& file : files.changed) console.text("changed   " + file);
+  for (const std::string& file : files.missing) console.text("missing   " + file);
+  for (const std::string& file : files.foreign) console.text("foreign   " + file);
+  if (!files.manifest_sha256.empty()) console.text("SHA-256 of the manifest: " + files.manifest_sha256);
+  if (intact) {
+    console.text("intact: every file is what the run wrote");
+    return 0;
+  }
+  const bool harmless = check->sentence.empty();
+  return report_error(console,
+                      {ErrorCode::invalid_input,
+                       folder + ": not intact: " +
+                           (harmless ? "files are missing or foreign that nothing is read from" : check->sentence)});
 }
 
 }  // namespace
@@ -95,8 +125,11 @@ void add_compare_command(CLI::App& app, Program& program) {
   auto a = std::make_shared<CompareArguments>();
   command->add_option("A", a->a, "session folder")->required();
   command->add_option("B", a->b, "session folder")->required();
-  command->add_option("--margin-percent", a->margin_percent, "equivalence margin; default: that of A's plan, or 10")
+  command
+      ->add_option("--margin-percent", a->margin_percent,
+                   "equivalence margin; default: the smaller one of the two plans, or 10")
       ->check(number_in(0.1, 100));
+  add_accept_changed(*command, a->opening.accept_changed);
   finish_command(*command, program, [a](Console& console) { return run_compare(console, *a); });
 }
 
@@ -104,7 +137,18 @@ void add_report_command(CLI::App& app, Program& program) {
   auto* command = app.add_subcommand("report", "rebuilds the report from the session folder alone");
   auto folder = std::make_shared<std::string>();
   command->add_option("DIR", *folder, "session folder")->required();
-  finish_command(*command, program, [folder](Console& console) { return run_report(console, *folder); });
+  auto opening = std::make_shared<Opening>();
+  add_accept_changed(*command, opening->accept_changed);
+  finish_command(*command, program,
+                 [folder, opening](Console& console) { return run_report(console, *folder, *opening); });
+}
+
+void add_verify_command(CLI::App& app, Program& program) {
+  auto* command = app.add_subcommand(
+      "verify", "whether the files of a session folder are those that its run wrote, by its manifest");
+  auto folder = std::make_shared<std::string>();
+  command->add_option("DIR", *folder, "session folder")->required();
+  finish_command(*command, program, [folder](Console& console) { return run_verify(console, *folder); });
 }
 
 }  // namespace todbench

@@ -24,6 +24,15 @@ std::string padded(std::string_view text, std::size_t columns, bool left) {
   return left ? std::string(text) + blanks : blanks + std::string(text);
 }
 
+/// Cells of a table at most: names come from cameras and files.
+constexpr std::size_t longest_cell = 300;
+
+TableRow shown(const TableRow& row) {
+  TableRow cells;
+  for (const std::string& cell : row) cells.push_back(one_line(cell, longest_cell));
+  return cells;
+}
+
 /// A number, an interval, or the dash of a missing one.
 bool is_numeric(const std::string& cell) {
   return cell.empty() || cell.starts_with("–") || cell.find_first_of("0123456789") <= (cell.starts_with('-') ? 1U : 0U);
@@ -49,11 +58,13 @@ void Console::object(const Json& json) const {
 
 void Console::text(std::string_view line) const {
   if (options_.json) return;
-  std::fputs((std::string(line) + "\n").c_str(), stdout);
+  std::fputs((valid_text(line) + "\n").c_str(), stdout);
   std::fflush(stdout);
 }
 
-void Console::table(const TableRow& header, const std::vector<TableRow>& rows) const {
+void Console::table(const TableRow& header, const std::vector<TableRow>& given) const {
+  std::vector<TableRow> rows;
+  for (const TableRow& row : given) rows.push_back(shown(row));
   std::vector<std::size_t> widths;
   for (const auto& cell : header) widths.push_back(width(cell));
   for (const auto& row : rows) {
@@ -83,6 +94,11 @@ void Console::note(std::string_view sentence) {
   std::fputs((one_line(sentence) + "\n").c_str(), stderr);
 }
 
+void Console::warning(std::string_view sentence) {
+  end_progress();
+  std::fputs((one_line(sentence) + "\n").c_str(), stderr);
+}
+
 void Console::error(std::string_view sentence) {
   end_progress();
   const std::string text = "todbench: " + one_line(sentence);
@@ -91,7 +107,7 @@ void Console::error(std::string_view sentence) {
 
 void Console::phase(std::string_view name) {
   end_progress();
-  phase_ = name;
+  phase_ = one_line(name);
   phase_start_ = std::chrono::steady_clock::now();
   last_draw_ = {};
   if (options_.quiet) return;

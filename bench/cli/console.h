@@ -21,7 +21,7 @@ struct ConsoleOptions {
 /// Columns of a table are aligned; numbers are text already.
 using TableRow = std::vector<std::string>;
 
-/// One thread at a time.
+/// Where text goes to a terminal: whatever it holds comes out as valid_text(). One thread at a time.
 class Console {
  public:
   explicit Console(ConsoleOptions options);
@@ -35,6 +35,8 @@ class Console {
   void table(const TableRow& header, const std::vector<TableRow>& rows) const;
   /// A sentence on standard error; nothing with --quiet.
   void note(std::string_view sentence);
+  /// A sentence on standard error, always: without it what the program says next would be taken for more than it is.
+  void warning(std::string_view sentence);
   /// An error on standard error, always, on one line.
   void error(std::string_view sentence);
   /// Begins a phase of work; progress() then draws a bar with the time left where standard error is a terminal.

@@ -125,6 +125,7 @@ int run(int argc, char** argv) {
   add_replay_command(app, program);
   add_compare_command(app, program);
   add_report_command(app, program);
+  add_verify_command(app, program);
   add_fit_command(app, program);
   add_render_command(app, program);
   add_mtf_command(app, program);
@@ -142,7 +143,7 @@ int run(int argc, char** argv) {
   }
   const int code = program.chosen();
   if (auto written = finish_output(); !written) {
-    std::fprintf(stderr, "todbench: %s\n", written.error().message.c_str());
+    std::fprintf(stderr, "todbench: %s\n", one_line(written.error().message).c_str());
     return exit_code(written.error().code);
   }
   return code;
@@ -157,7 +158,7 @@ int main(int argc, char** argv) {
   try {
     return todbench::run(argc, argv);
   } catch (const std::exception& exception) {
-    std::fprintf(stderr, "todbench: internal error: %s\n", exception.what());
+    std::fprintf(stderr, "todbench: internal error: %s\n", todbench::one_line(exception.what()).c_str());
     return 7;
   }
 }

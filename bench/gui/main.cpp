@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <string_view>
 
+#include "acquisition/core/safe_text.h"
 #include "bench/gui/presenters/session_presenter.h"
 #include "bench/gui/screenshots.h"
 #include "bench/gui/views/main_window.h"
@@ -20,7 +21,7 @@ int write_reports(const QString& session) {
   const auto opened = todbench::read_opened_session(session.toStdString());
   const auto written = opened ? todbench::export_reports(*opened) : tl::unexpected(opened.error());
   if (!written) {
-    std::fprintf(stderr, "%s\n", written.error().message.c_str());
+    std::fprintf(stderr, "%s\n", todbench::one_line(written.error().message).c_str());
     return todbench::exit_code(written.error().code);
   }
   std::printf("%s\n%s\n", qPrintable(written->html), qPrintable(written->pdf));

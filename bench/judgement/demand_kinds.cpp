@@ -33,6 +33,14 @@ std::string words_of(const Interval& acuity_per_mrad) {
   return "no interval";
 }
 
+/// A demand on a number that is not fit for a decision stays open, whatever its interval says.
+void withhold(Demand& demand, const std::optional<Adequacy>& adequacy) {
+  if (!adequacy || adequacy->adequate()) return;
+  demand.decision = VerdictKind::inconclusive;
+  demand.reason =
+      "not fit for a decision: " + reasons_unfit(*adequacy) + (demand.reason.empty() ? "" : "; ") + demand.reason;
+}
+
 // acuity
 
 /// The smallest interval that contains both; an open side stays open.
@@ -82,6 +90,7 @@ Demand judged_acuity(const AcuityLimit& limit, const TodCurve& curve) {
                     ", " + words_of(demand.interval) + ")";
   }
   if (point->lapse_warning) demand.reason += "; a free lapse rate explains the data better, both fits have to agree";
+  withhold(demand, point->adequacy);
   return demand;
 }
 
@@ -108,6 +117,7 @@ Demand judged_identified(const TodPoint& point) {
     demand.reason =
         "the threshold cannot be identified from the data (" + std::string(to_string(point.fit.verdict)) + ")";
   }
+  withhold(demand, point.adequacy);
   return demand;
 }
 
@@ -203,6 +213,8 @@ std::vector<Demand> judge_equivalence(const Evidence& evidence) {
   demand.interval = deviation_interval_percent(*evidence.comparison);
   demand.decision = decision_of(evidence.comparison->verdict);
   demand.reason = reason_of(*evidence.comparison);
+  if (const auto& found = evidence.comparison->adequacy; found && !found->adequate())
+    demand.reason += "; not fit for a decision: " + reasons_unfit(*found);
   return {demand};
 }
 

@@ -127,8 +127,8 @@ int exit_code(VerdictKind kind) {
   return 7;
 }
 
-int exit_code(const PsychometricFit& fit) {
-  return threshold_identified(fit) ? 0 : 3;
+int exit_code(const PsychometricFit& fit, const Adequacy& adequacy) {
+  return threshold_identified(fit) && adequacy.adequate() ? 0 : 3;
 }
 
 int exit_code(ErrorCode code) {

@@ -83,7 +83,8 @@ struct Evidence {
 
 /// Exit codes: 0 pass, 1 fail, 3 inconclusive.
 [[nodiscard]] int exit_code(VerdictKind kind);
-[[nodiscard]] int exit_code(const PsychometricFit& fit);
+/// 0 where the threshold is identified and fit for a decision, else 3.
+[[nodiscard]] int exit_code(const PsychometricFit& fit, const Adequacy& adequacy = {});
 /// 2 invalid_input, 4 not_found, 5 disconnected, integrity, timeout, 6 calibration, 7 io (a full disk) and internal,
 /// 130 interrupted.
 [[nodiscard]] int exit_code(ErrorCode code);

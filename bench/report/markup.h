@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "acquisition/core/safe_text.h"
+
 namespace todbench {
 
 /// Finished markup, well-formed as XML. Plain text becomes markup only through escaped(), so that nothing enters a page
@@ -18,9 +20,6 @@ struct Markup {
 
 /// Markup written in the program itself.
 [[nodiscard]] Markup literal(std::string_view markup);
-
-/// Text from outside as valid UTF-8: bytes that are none and control characters become U+FFFD.
-[[nodiscard]] std::string valid_text(std::string_view plain);
 
 /// valid_text() with & < > " ' as entities.
 [[nodiscard]] Markup escaped(std::string_view plain);

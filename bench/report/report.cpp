@@ -26,6 +26,7 @@ std::string page_label(const ReportData& data) {
 }  // namespace
 
 ReportVerdict report_verdict(const ReportData& data) {
+  if (!data.accepted_changes.empty()) return ReportVerdict::changed;
   if (data.verdict && data.verdict->decision == VerdictKind::fail) return ReportVerdict::fail;
   if (data.interrupted) return ReportVerdict::interrupted;
   if (!data.verdict) return ReportVerdict::not_judged;

@@ -29,6 +29,7 @@ enum class ReportVerdict {
   inconclusive,  ///< no limit is violated, but one is not decided
   interrupted,   ///< the run ended early and no limit is violated
   not_judged,    ///< no limits were asked for
+  changed,       ///< files of the session are not those that the run wrote
 };
 
 /// Everything in a report. Texts are plain; empty texts and missing values appear as a dash with the reason. Times are
@@ -69,13 +70,17 @@ struct ReportData {
   std::uint64_t frames_lost = 0;
   double temporal_noise_k = 0;  ///< per pixel; 0: not measured
 
-  std::vector<std::pair<std::string, std::string>> provenance;  ///< versions, seeds, host, digests
+  std::vector<std::pair<std::string, std::string>> provenance;  ///< versions, seeds, host
+  std::string manifest_sha256;                ///< of the manifest that vouches for all this; empty: there is none
+  std::vector<std::string> accepted_changes;  ///< files of the session that are not those that the run wrote
+  bool cut_off = false;                       ///< the run wrote no manifest
   std::vector<std::string> notes;
   std::optional<std::string> interrupted;   ///< why the run ended early
   std::vector<Interruption> interruptions;  ///< losses of the camera after which the run went on
 };
 
-/// The verdict's decision; of an interrupted run only a failure; not_judged in place of a pass without limits.
+/// The verdict's decision; of an interrupted run only a failure; not_judged in place of a pass without limits; of
+/// changed files none.
 [[nodiscard]] ReportVerdict report_verdict(const ReportData& data);
 
 /// The TOD curve of the report, and one psychometric function per contrast.

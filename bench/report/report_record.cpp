@@ -165,6 +165,8 @@ std::optional<Section> frames_section(const ReportData& data) {
 Section provenance_section(const ReportData& data) {
   std::vector<NamedValue> values = text_values(data.provenance);
   if (values.empty()) values.push_back({"Versions and seeds", missing("not recorded")});
+  values.push_back({"SHA-256 of the session's manifest",
+                    text_or_missing(data.manifest_sha256, "no manifest vouches for the files")});
   return {"Versions and seeds", {ValueTable{"", std::move(values)}}};
 }
 

@@ -68,6 +68,41 @@ RichText trials_cell(const PsychometricFit& fit) {
   return unbroken(fit.clusters > 0 ? trials + " / " + shown(fit.clusters, 0) : trials);
 }
 
+/// Beside the fit, so that no number stands alone that is not fit for a decision.
+RichText fit_cell(const TodPoint& point) {
+  RichText cell = plain(in_words(point.fit.verdict));
+  if (point.adequacy && !point.adequacy->adequate())
+    cell += plain(" ") + badge("not fit for a decision", Mood::bad);
+  else if (point.adequacy && !point.adequacy->findings.empty())
+    cell += plain("; see findings");
+  return cell;
+}
+
+/// What speaks against the numbers of a curve, one sentence each; empty where nothing does.
+std::vector<RichText> findings_of(const TodCurve& curve, std::string_view which) {
+  std::vector<RichText> items;
+  for (const TodPoint& point : curve.points) {
+    if (!point.adequacy) continue;
+    for (const AdequacyFinding& finding : point.adequacy->findings) {
+      RichText item = plain(std::string(which) + " at " + stated(point.set_delta_t_k) + " K: " + finding.sentence);
+      if (finding.unfit) item += plain(" ") + badge("not fit for a decision", Mood::bad);
+      items.push_back(std::move(item));
+    }
+  }
+  return items;
+}
+
+void add_findings(Section& section, const ReportData& data) {
+  List findings;
+  for (const auto& [curve, which] : {std::pair(&data.measured, "Measured"), std::pair(&data.simulated, "Simulated"),
+                                     std::pair(&data.human, "Human")})
+    if (*curve)
+      for (RichText& item : findings_of(**curve, which)) findings.items.push_back(std::move(item));
+  if (findings.items.empty()) return;
+  section.blocks.emplace_back(Paragraph{strong("What speaks against these numbers")});
+  section.blocks.emplace_back(std::move(findings));
+}
+
 std::vector<RichText> curve_row(const TodPoint& point, bool with_direct) {
   const PsychometricFit& fit = point.fit;
   const std::string_view reason = fit.verdict == FitVerdict::no_data ? "no trials" : "not identified";
@@ -78,7 +113,7 @@ std::vector<RichText> curve_row(const TodPoint& point, bool with_direct) {
                             optional_number(fit.slope, 3, reason),
                             lapse_cell(point),
                             trials_cell(fit),
-                            plain(in_words(fit.verdict))};
+                            fit_cell(point)};
   if (with_direct) {
     const double error = point.direct_s75_se_mrad.value_or(0);
     const int decimals = decimals_for(point.direct_s75_mrad, {-error, error});
@@ -172,6 +207,11 @@ Headline headline(ReportVerdict verdict) {
     case ReportVerdict::interrupted:
       return {"? INTERRUPTED", "The run ended early. The results below are partial and no verdict can be given.",
               Mood::open};
+    case ReportVerdict::changed:
+      return {"✗ FILES CHANGED",
+              "Files of this session are not those that its run wrote. The page shows them as they were found; no "
+              "verdict can be given.",
+              Mood::bad};
     case ReportVerdict::not_judged:
       break;
   }
@@ -193,7 +233,12 @@ VerdictBox verdict_box(const ReportData& data) {
   const ReportVerdict verdict = report_verdict(data);
   const Headline found = headline(verdict);
   VerdictBox box{found.word, found.mood, {plain(found.sentence)}};
-  if (verdict != ReportVerdict::not_judged)
+  for (const std::string& file : data.accepted_changes)
+    box.paragraphs.push_back(strong("Changed, removed or added after the session ended:") + plain(" " + file));
+  if (data.cut_off)
+    box.paragraphs.push_back(strong("Cut off:") +
+                             plain(" the run wrote no manifest, so nothing vouches for its files."));
+  if (verdict != ReportVerdict::not_judged && verdict != ReportVerdict::changed)
     box.paragraphs.push_back(strong("Decision rule:") + plain(" ") +
                              text_or_missing(data.verdict ? data.verdict->rule_in_words : "", "not stated"));
   if (data.verdict && data.verdict->judged == JudgedWhen::afterwards)
@@ -266,6 +311,7 @@ Section curve_section(const ReportData& data) {
   if (data.simulated)
     section.blocks.emplace_back(
         curve_table(*data.simulated, "Simulated; in brackets the 95 % interval, behind ± the standard error", true));
+  add_findings(section, data);
   section.blocks.emplace_back(
       note(plain(form_in_words(data) + " " + std::string(one_sided_note) + " " + std::string(groups_note))));
   if (data.simulated)
@@ -316,12 +362,18 @@ Section comparison_section(const ReportData& data) {
   }
   const RichText overall =
       plain("Over all contrasts: ") + badge(in_words(data.comparison->verdict), mood_of(data.comparison->verdict));
-  return {title,
-          {std::move(rows), Paragraph{overall},
-           note(plain("p different: likelihood-ratio test of a common threshold, corrected for groups of trials. p "
-                      "equivalent: two one-sided tests that the ratio lies within the margin, chosen before the "
-                      "measurement; below 0.05 the 90 % interval lies within it. Neither test significant is "
-                      "inconclusive: more trials are needed, nothing is shown."))}};
+  List findings;
+  if (data.comparison->adequacy)
+    for (const AdequacyFinding& finding : data.comparison->adequacy->findings)
+      findings.items.push_back(plain(finding.sentence));
+  Section section{title, {std::move(rows), Paragraph{overall}}};
+  if (!findings.items.empty()) section.blocks.emplace_back(std::move(findings));
+  section.blocks.emplace_back(
+      note(plain("p different: likelihood-ratio test of a common threshold, corrected for groups of trials. p "
+                 "equivalent: two one-sided tests that the ratio lies within the margin, chosen before the "
+                 "measurement; below 0.05 the 90 % interval lies within it. Neither test significant is "
+                 "inconclusive: more trials are needed, nothing is shown.")));
+  return section;
 }
 
 std::optional<Section> answers_section(const ReportData& data) {

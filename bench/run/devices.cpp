@@ -101,11 +101,12 @@ Result<void> write_settings(FrameSource& camera, const std::map<std::string, std
 
 }  // namespace
 
-CameraRegistry camera_registry() {
+CameraRegistry camera_registry([[maybe_unused]] std::stop_token stop, [[maybe_unused]] SayProgress on_progress) {
   CameraRegistry registry;
 #ifdef TODBENCH_WITH_ARAVIS
-  registry.add(aravis_backend());
-  registry.add(aravis_backend({.transport = AravisTransport::usb3_vision}));
+  for (const auto transport : {AravisTransport::gige_vision, AravisTransport::usb3_vision}) {
+    registry.add(aravis_backend({.transport = transport, .stop = stop, .on_progress = on_progress}));
+  }
 #endif
 #ifdef TODBENCH_WITH_USB
   registry.add(usb_backend());
@@ -135,7 +136,7 @@ OpenedBench simulated_bench(std::shared_ptr<const SensorModel> model, const std:
 }
 
 Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>& plates, std::stop_token stop,
-                               const ExperimentHost& host) {
+                               const ExperimentHost& host, const SayProgress& on_progress) {
   BenchHostOptions hosting{.pause = host.pause};
   if (plan.target.kind == TargetKind::scene) {
     const auto sensor = camera_name(plan.camera.id, camera_scheme::sim);
@@ -154,7 +155,7 @@ Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>&
     return bench;
   }
   OpenedBench bench;
-  auto camera = camera_registry().open(plan.camera.id);
+  auto camera = camera_registry(stop, on_progress).open(plan.camera.id);
   if (!camera) return tl::unexpected(camera.error());
   bench.camera = std::move(*camera);
   if (auto written = write_settings(*bench.camera, plan.camera.settings); !written) {

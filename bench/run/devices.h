@@ -2,9 +2,11 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <map>
 #include <memory>
 #include <stop_token>
+#include <string_view>
 
 #include "acquisition/core/camera_registry.h"
 #include "bench/plan/plan.h"
@@ -15,8 +17,12 @@
 
 namespace todbench {
 
-/// Every back end of this build: GigE Vision, USB3 Vision, V4L2, recordings, simulated sensors.
-[[nodiscard]] CameraRegistry camera_registry();
+/// What goes on while a camera is opened, in a sentence.
+using SayProgress = std::function<void(std::string_view sentence)>;
+
+/// Every back end of this build: GigE Vision, USB3 Vision, V4L2, recordings, simulated sensors. `stop` ends the opening
+/// of a camera that takes its time (`interrupted`), `on_progress` tells of it about once a second.
+[[nodiscard]] CameraRegistry camera_registry(std::stop_token stop = {}, SayProgress on_progress = {});
 
 /// A camera, what changes the target before it, and who commands a measurement with them.
 struct OpenedBench {
@@ -31,7 +37,8 @@ struct OpenedBench {
 /// that cannot work with this camera, a setting that is refused), `interrupted`.
 /// `host` commands what is measured with it.
 [[nodiscard]] Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>& plates,
-                                             std::stop_token stop, const ExperimentHost& host = {});
+                                             std::stop_token stop, const ExperimentHost& host = {},
+                                             const SayProgress& on_progress = {});
 
 /// A simulated sensor behind a scene. `shown_delta_t_k`: set-point -> contrast really shown, so that a twin shows what
 /// a camera saw; set-points that are not in it are shown as they are.

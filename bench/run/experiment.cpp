@@ -4,17 +4,19 @@
 #include <chrono>
 #include <cmath>
 
-#include "bench/report/report.h"
+#include "acquisition/recording/frame_stream.h"
 #include "bench/run/bench_host.h"
 #include "bench/run/comparison_forecast.h"
 #include "bench/run/experiment_inputs.h"
 #include "bench/run/observed_source.h"
 #include "bench/run/recorded_bench.h"
-#include "bench/run/report_data.h"
+#include "bench/run/session_frame.h"
 #include "bench/run/simulated_responses.h"
 #include "bench/run/simulated_set_up.h"
 #include "bench/text/text.h"
 #include "sim_devices/prediction/direct_estimate.h"
+#include "sim_devices/sensor/effect_quantisation.h"
+#include "tod/adequacy/adequacy.h"
 #include "tod/measurement/measurement.h"
 
 namespace todbench {
@@ -26,23 +28,14 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void phase(SessionFolder& folder, const ExperimentListener& listener, const std::string& text) {
-  (void)folder.log(text);
-  if (listener.on_phase) listener.on_phase(text);
-}
-
-void note(SessionFolder& folder, const ExperimentListener& listener, const std::string& sentence) {
-  (void)folder.log(sentence);
-  if (listener.on_note) listener.on_note(sentence);
-}
-
 /// One run of the measurement into its files of trials and presentations.
 class Recorder {
  public:
   Recorder(SessionFolder& folder, const ExperimentListener& listener, std::stop_token stop)
       : folder_(folder), listener_(listener), forward_(std::move(stop), [this] { halt_.request_stop(); }) {}
 
-  /// Trials and presentations reach the disk one by one. A disk that refuses stops the run with `io`.
+  /// Trials and presentations reach the disk one by one. A disk that refuses stops the run with `io`; what counts then
+  /// is what is on it.
   [[nodiscard]] Result<MeasurementResult> run(OpenedBench& bench, Observer& observer, TrialSchedule& schedule,
                                               const MeasurementOptions& options, SessionCurve which) {
     auto writer = folder_.open_trials(which);
@@ -50,6 +43,7 @@ class Recorder {
     auto targets = folder_.open_targets(which);
     if (!targets) return tl::unexpected(targets.error());
     std::optional<Error> write_error;
+    std::size_t on_disk = 0;
     const auto keep = [&](const Result<void>& written) {
       if (written || write_error) return;
       write_error = written.error();
@@ -60,6 +54,7 @@ class Recorder {
     events.on_trial = [&](Trial trial) {
       if (bench.simulated) trial.host_time_ns = trial.device_time_ns;
       if (!write_error) keep(writer->append(trial));
+      if (!write_error) ++on_disk;
     };
     events.on_presentation = [&](Presentation shown) {
       if (bench.simulated) shown.host_time_ns.reset();
@@ -84,7 +79,8 @@ class Recorder {
     keep(writer->sync());
     keep(targets->sync());
     if (write_error) {
-      if (!result) return tl::unexpected(*write_error);
+      if (!result || on_disk == 0) return tl::unexpected(*write_error);
+      result->trials.resize(std::min(on_disk, result->trials.size()));
       result->ended_by = write_error;
     }
     return result;
@@ -122,13 +118,19 @@ struct DirectResults {
   std::optional<Error> ended_by;
 };
 
-DirectResults direct_results(const TodCurve& curve, const ExperimentInputs& inputs, std::uint64_t seed,
+/// `shown_delta_t_k`: what the scene shows of a set contrast, where it is not the same.
+DirectResults direct_results(const TodCurve& curve, const ExperimentInputs& inputs,
+                             const std::map<double, double>& shown_delta_t_k, std::uint64_t seed,
                              std::stop_token stop) {
   TemplateObserver observer(inputs.observer, triangle_alternatives());
-  const DirectEstimateOptions options{
+  DirectEstimateOptions options{
       .motion = inputs.motion, .accuracy = inputs.accuracy, .seed = seed, .stop = std::move(stop)};
   std::vector<double> contrasts;
-  for (const auto& point : curve.points) contrasts.push_back(point.delta_t_k);
+  for (const auto& point : curve.points) {
+    contrasts.push_back(point.delta_t_k);
+    const auto shown = shown_delta_t_k.find(point.set_delta_t_k);
+    options.scene_delta_t_k[point.delta_t_k] = shown == shown_delta_t_k.end() ? point.set_delta_t_k : shown->second;
+  }
   DirectResults results;
   // Together they share their images. Where one has no threshold the others are estimated alone.
   std::vector<std::vector<double>> attempts{contrasts};
@@ -148,10 +150,10 @@ DirectResults direct_results(const TodCurve& curve, const ExperimentInputs& inpu
 }
 
 Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, SessionFolder& folder,
-                              SessionCurve which, std::map<double, double> shown_delta_t_k, const ExperimentHost& host,
-                              const ExperimentListener& listener, std::stop_token stop) {
+                              SessionCurve which, const std::map<double, double>& shown_delta_t_k,
+                              const ExperimentHost& host, const ExperimentListener& listener, std::stop_token stop) {
   const auto begin = Clock::now();
-  auto set_up = simulated_set_up(plan, inputs, std::move(shown_delta_t_k), stop);
+  auto set_up = simulated_set_up(plan, inputs, shown_delta_t_k, stop);
   if (!set_up) return tl::unexpected(set_up.error());
   set_up->bench.host = bench_host({.pause = host.pause});
   TemplateObserver observer(inputs.observer, triangle_alternatives());
@@ -164,10 +166,15 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
   run.curve = std::move(*curve);
   run.curve.sensor = inputs.sensor.name;
   run.curve.observer = inputs.observer.name;
+  for (auto& point : run.curve.points) {
+    // Of the sensor as it is: where the planner leaves the noise out, that says nothing about its counts.
+    point.noise_counts = noise_in_counts(inputs.sensor);
+    point.lag1_correlation = run.result.lag1_correlation;
+  }
 
   if (!run.result.ended_by) {
     phase(folder, listener, "estimating " + inputs.sensor.name + " directly");
-    DirectResults direct = direct_results(run.curve, inputs, plan.seed, std::move(stop));
+    DirectResults direct = direct_results(run.curve, inputs, shown_delta_t_k, plan.seed, std::move(stop));
     run.result.ended_by = std::move(direct.ended_by);
     for (auto& sentence : direct.notes) {
       note(folder, listener, sentence);
@@ -180,71 +187,9 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
       point.direct_s75_se_mrad = found->second.standard_error_pitch * inputs.sensor.ifov_mrad();
     }
   }
+  examine(run.curve, fit_options(plan));
   run.wall_s = seconds_since(begin);
   return run;
-}
-
-/// Writes report.html from what the folder holds.
-Result<void> write_report_of(SessionFolder& folder) {
-  auto session = read_session(folder.path());
-  if (!session) return tl::unexpected(session.error());
-  auto data = report_data(*session, session_name(folder.path()));
-  if (!data) return tl::unexpected(data.error());
-  return folder.write_report(render_report(*data));
-}
-
-/// Ends a session in good order whatever happened: report where there is a run, provenance, manifest.
-Result<void> close_session(SessionFolder& folder, const Provenance& provenance, const std::optional<Error>& ended_by) {
-  (void)folder.log(ended_by ? "ended early: " + ended_by->message : "complete");
-  const SessionState state = ended_by ? SessionState::interrupted : SessionState::complete;
-  Provenance last = provenance;
-  last.state = state;
-  last.ended_utc = utc_now();
-  if (auto written = folder.write_provenance(last); !written) return written;
-  if (last.run) {
-    if (auto written = write_report_of(folder); !written) return written;
-  }
-  return folder.finish(last, state);
-}
-
-/// The session is over before there is a curve: leave a valid folder, hand the reason on.
-tl::unexpected<Error> abandon(SessionFolder& folder, const Plan& plan, const Provenance& provenance, Error error) {
-  (void)folder.write_verdict(
-      judge({.limits = plan.limits, .curve = {}, .comparison = std::nullopt, .ended_early = error.message}));
-  (void)close_session(folder, provenance, error);
-  return tl::unexpected<Error>(std::move(error));
-}
-
-Result<void> write_results(SessionFolder& folder, const Provenance& provenance, const ExperimentOutcome& outcome) {
-  if (auto written = folder.write_curves(outcome.curve, outcome.twin, provenance.side); !written) return written;
-  if (outcome.comparison) {
-    if (auto written = folder.write_comparison(*outcome.comparison); !written) return written;
-  }
-  if (auto written = folder.write_verdict(outcome.verdict); !written) return written;
-  return close_session(folder, provenance, outcome.ended_by);
-}
-
-/// The last step of every run that has a curve. A disk that refuses ends the session early; the results still reach the
-/// caller.
-ExperimentOutcome concluded(ExperimentOutcome outcome, const Plan& plan, SessionFolder& folder,
-                            const Provenance& provenance) {
-  outcome.verdict = judge({.limits = plan.limits,
-                           .curve = outcome.curve,
-                           .comparison = outcome.comparison,
-                           .ended_early = outcome.ended_by ? std::optional(outcome.ended_by->message) : std::nullopt});
-  if (auto written = write_results(folder, provenance, outcome); !written && !outcome.ended_by)
-    outcome.ended_by = written.error();
-  return outcome;
-}
-
-/// Creates the folder and writes what is known before the first frame.
-Result<SessionFolder> begin_session(const LoadedPlan& loaded, const ExperimentOptions& options,
-                                    const Provenance& provenance) {
-  auto folder = SessionFolder::create(options.folder, options.existing);
-  if (!folder) return folder;
-  if (auto written = folder->write_plan(loaded); !written) return tl::unexpected(written.error());
-  if (auto written = folder->write_provenance(provenance); !written) return tl::unexpected(written.error());
-  return folder;
 }
 
 std::chrono::year_month_day today() {
@@ -328,6 +273,7 @@ Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const Experime
   if (auto possible = check_tolerance(plan, *inputs); !possible) return tl::unexpected(possible.error());
   auto folder = begin_session(loaded, options, provenance);
   if (!folder) return tl::unexpected(folder.error());
+  const SessionFrame frame{*folder, listener};
   if (listener.on_session) listener.on_session(folder->path());
 
   for (const auto& warning : inputs->warnings) note(*folder, listener, warning);
@@ -336,9 +282,9 @@ Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const Experime
   if (!run) {
     // Below what can be seen, the plate may not be found either: that is the reason, not its symptom.
     if (!inputs->identifiable && run.error().code == ErrorCode::calibration)
-      return abandon(*folder, plan, provenance,
+      return abandon(frame, plan, provenance,
                      {ErrorCode::not_identifiable, inputs->warnings.front() + "; " + run.error().message});
-    return abandon(*folder, plan, provenance, run.error());
+    return abandon(frame, plan, provenance, run.error());
   }
   run->result.notes.insert(run->result.notes.end(), inputs->warnings.begin(), inputs->warnings.end());
   provenance.run = run_record(run->result, run->wall_s);
@@ -350,7 +296,7 @@ Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const Experime
                     .effects = inputs->effects,
                     .figures = figures_of(*provenance.run),
                     .ended_by = run->result.ended_by},
-                   plan, *folder, provenance);
+                   plan, frame, provenance);
 }
 
 Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions& options,
@@ -370,7 +316,7 @@ Result<ExperimentOutcome> measure_plan(const LoadedPlan& loaded, const Experimen
   if (!inputs) return tl::unexpected(inputs.error());
   if (auto possible = check_tolerance(plan, *inputs); !possible) return tl::unexpected(possible.error());
   if (listener.on_phase) listener.on_phase("opening " + plan.camera.id);
-  auto bench = open_bench(plan, inputs->plates, stop, options.host);
+  auto bench = open_bench(plan, inputs->plates, stop, options.host, listener.on_phase);
   if (!bench) return tl::unexpected(bench.error());
   return measure_on_bench(loaded, *inputs, *std::move(bench), options, listener, std::move(stop));
 }
@@ -395,12 +341,15 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   provenance.target = bench.target->capabilities().description;
   auto folder = begin_session(loaded, options, provenance);
   if (!folder) return tl::unexpected(folder.error());
+  const SessionFrame frame{*folder, listener};
   if (listener.on_session) listener.on_session(folder->path());
   for (const auto& warning : info.warnings) note(*folder, listener, warning);
   for (const auto& warning : inputs.warnings) note(*folder, listener, warning);
+  std::shared_ptr<FrameStreamWriter> recording;
   if (plan.measurement.record_frames) {
-    if (auto recording = record_bench(bench, folder->path()); !recording)
-      return abandon(*folder, plan, provenance, recording.error());
+    auto begun = record_bench(bench, folder->path());
+    if (!begun) return abandon(frame, plan, provenance, begun.error());
+    recording = *std::move(begun);
   }
 
   std::string forecast;
@@ -410,16 +359,24 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   const auto begin = Clock::now();
   phase(*folder, listener, "measuring " + info.model + " " + info.serial);
   auto result = run_measured(plan, inputs, bench, *folder, listener, stop);
-  if (!result) return abandon(*folder, plan, provenance, with_context("measuring", result.error()));
+  if (!result) return abandon(frame, plan, provenance, with_context("measuring", result.error()));
+  if (recording && !result->ended_by) {
+    if (auto kept = recording->verified_frames(); !kept) result->ended_by = with_context("recording", kept.error());
+  }
   result->notes.insert(result->notes.end(), inputs.warnings.begin(), inputs.warnings.end());
   if (!forecast.empty()) result->notes.push_back(forecast);
   provenance.run = run_record(*result, seconds_since(begin));
   bench = {};
 
   auto curve = tod_curve(result->trials, fit_options(plan));
-  if (!curve) return abandon(*folder, plan, provenance, curve.error());
+  if (!curve) return abandon(frame, plan, provenance, curve.error());
   curve->sensor = info.model + " " + info.serial;
   curve->observer = inputs.observer.name;
+  for (auto& point : curve->points) {
+    point.noise_counts = result->temporal_noise_counts;
+    point.lag1_correlation = result->lag1_correlation;
+  }
+  examine(*curve, fit_options(plan));
   ExperimentOutcome outcome{.folder = folder->path(),
                             .curve = std::move(*curve),
                             .twin = std::nullopt,
@@ -435,7 +392,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
     outcome.comparison = std::move(twin.comparison);
     outcome.ended_by = std::move(twin.ended_by);
   }
-  return concluded(std::move(outcome), plan, *folder, provenance);
+  return concluded(std::move(outcome), plan, frame, provenance);
 }
 
 }  // namespace todbench

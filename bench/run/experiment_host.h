@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bench/run/pause.h"
+#include "bench/session/session_clock.h"
 #include "tod/presentation/operator_request.h"
 
 namespace todbench {
@@ -12,6 +13,7 @@ struct ExperimentHost {
   const Pause* pause = nullptr;
   /// Answers a request to a target of kind prompt; none: the terminal.
   AskOperator ask_operator{};
+  HostClocks clocks = host_clocks();
 };
 
 }  // namespace todbench

@@ -48,6 +48,8 @@ std::string differing(const std::string& what, const std::string& before, const 
 
 /// What of a camera must be as it was; empty when all is.
 std::string difference(const SourceInfo& before, const SourceInfo& now) {
+  // Nothing equals nothing, and another camera of the kind would too.
+  if (before.serial.empty() || now.serial.empty()) return "the camera has no serial number to be known by";
   if (now.serial != before.serial) return differing("the serial number", before.serial, now.serial);
   if (now.width != before.width || now.height != before.height) {
     return differing("the picture", std::to_string(before.width) + " x " + std::to_string(before.height),

@@ -132,7 +132,7 @@ std::filesystem::path recorded_frames(const std::filesystem::path& session) {
   return session / "frames" / "camera.todrec";
 }
 
-Result<void> record_bench(OpenedBench& bench, const std::filesystem::path& session) {
+Result<std::shared_ptr<FrameStreamWriter>> record_bench(OpenedBench& bench, const std::filesystem::path& session) {
   const std::filesystem::path file = recorded_frames(session);
   std::error_code problem;
   std::filesystem::create_directories(file.parent_path(), problem);
@@ -153,7 +153,7 @@ Result<void> record_bench(OpenedBench& bench, const std::filesystem::path& sessi
   bench.camera = recording_camera(std::move(bench.camera), stream);
   bench.target = std::make_unique<RecordingTarget>(std::move(bench.target), stream);
   bench.host = std::make_unique<RecordingHost>(std::move(bench.host), stream);
-  return {};
+  return stream;
 }
 
 Result<RecordedBench> open_recorded_bench(const std::filesystem::path& session, const Pause* pause) {

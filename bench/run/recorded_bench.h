@@ -9,13 +9,17 @@
 
 namespace todbench {
 
+class FrameStreamWriter;
+
 /// Where the recording of a session is.
 [[nodiscard]] std::filesystem::path recorded_frames(const std::filesystem::path& session);
 
 /// From now on everything that the measurement learns from the bench beside what the plan says is appended to the
 /// recording of the session: every frame, every failure, everything that the target said, and every answer of the host,
-/// each with what was asked. `io`.
-[[nodiscard]] Result<void> record_bench(OpenedBench& bench, const std::filesystem::path& session);
+/// each with what was asked. What is returned is to be asked at the end whether the recording is on the disk as it was
+/// written. `io`.
+[[nodiscard]] Result<std::shared_ptr<FrameStreamWriter>> record_bench(OpenedBench& bench,
+                                                                      const std::filesystem::path& session);
 
 /// A bench of then.
 struct RecordedBench {

@@ -2,22 +2,11 @@
 
 #include "bench/run/recorded_bench.h"
 #include "bench/session/fit_record.h"
-#include "bench/session/manifest.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
 
 namespace todbench {
 namespace {
-
-/// Frames and plan have to be those of the run. A session that was cut off has no manifest to tell.
-Result<void> check_unchanged(const std::filesystem::path& session) {
-  std::error_code problem;
-  if (!std::filesystem::exists(session / "manifest.json", problem)) return {};
-  auto changes = verify_manifest(session);
-  if (!changes) return tl::unexpected(changes.error());
-  if (changes->empty()) return {};
-  return fail(ErrorCode::invalid_input, session.string() + ": the session was changed: " + changes->front());
-}
 
 /// Equal files; of a session that was cut off, in which frames and trials need not end together, equal as far as both
 /// go.
@@ -29,12 +18,18 @@ Result<bool> same_trials(const std::filesystem::path& session, const std::filesy
   return *now == *then || (cut_off && (now->starts_with(*then) || then->starts_with(*now)));
 }
 
+/// A curve without what is said of it: a session of an earlier program knows no findings.
+Json fits_of(TodCurve curve) {
+  for (TodPoint& point : curve.points) point.adequacy.reset();
+  return curve_record(curve);
+}
+
 }  // namespace
 
 Result<ReplayOutcome> replay_session(const std::filesystem::path& session, const ExperimentOptions& options,
-                                     const ExperimentListener& listener, std::stop_token stop) {
-  if (auto unchanged = check_unchanged(session); !unchanged) return tl::unexpected(unchanged.error());
-  auto recorded = read_session(session);
+                                     const ExperimentListener& listener, std::stop_token stop, const Opening& opening) {
+  // Frames and plan have to be those of the run.
+  auto recorded = open_session(session, {.accept_changed = opening.accept_changed, .accept_cut_off = true});
   if (!recorded) return tl::unexpected(recorded.error());
   auto recording = open_recorded_bench(session, options.host.pause);
   if (!recording) return tl::unexpected(recording.error());
@@ -45,16 +40,19 @@ Result<ReplayOutcome> replay_session(const std::filesystem::path& session, const
   EffectPlanner planner;
   auto inputs = experiment_inputs(*loaded, planner);
   if (!inputs) return tl::unexpected(inputs.error());
+  for (const std::string& file : recorded->accepted_changes)
+    inputs->warnings.push_back("replayed from a session that was changed after it had ended: " + file);
   auto run = measure_on_bench(*loaded, *inputs, std::move(recording->bench), options, listener, std::move(stop));
   // What was measured with answers to other questions is no replay.
   if (auto agreed = recording->answers->agreed(); !agreed) return tl::unexpected(agreed.error());
   if (!run) return tl::unexpected(run.error());
 
-  const bool cut_off = recorded->provenance.state == SessionState::running;
+  const bool cut_off = recorded->cut_off;
   auto trials = same_trials(session, run->folder, cut_off);
   if (!trials) return tl::unexpected(trials.error());
   ReplayOutcome outcome{.run = *std::move(run), .same_trials = *trials, .same_fits = std::nullopt};
-  if (recorded->curve) outcome.same_fits = curve_record(*recorded->curve) == curve_record(outcome.run.curve);
+  outcome.accepted_changes = recorded->accepted_changes;
+  if (recorded->curve) outcome.same_fits = fits_of(*recorded->curve) == fits_of(outcome.run.curve);
   return outcome;
 }
 

@@ -4,6 +4,7 @@
 
 #include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
+#include "bench/session/session_clock.h"
 
 namespace todbench {
 namespace {
@@ -94,10 +95,14 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
     data.notes.insert(data.notes.end(), provenance.run->notes.begin(), provenance.run->notes.end());
     data.interruptions = provenance.run->interruptions;
   }
+  data.manifest_sha256 = session.manifest_sha256;
+  data.accepted_changes = session.accepted_changes;
+  data.cut_off = session.cut_off;
   data.interrupted = data.verdict->ended_early ? data.verdict->ended_early : ended_early(session);
   if (provenance.twin_run) {
     for (const auto& note : provenance.twin_run->notes) data.notes.push_back("Simulated twin: " + note);
   }
+  if (provenance.clock_jump_s != 0) data.notes.push_back(jump_sentence(provenance.clock_jump_s));
   add_provenance(data, provenance);
   return data;
 }

@@ -44,6 +44,11 @@ class FieldReader {
   [[nodiscard]] Whole whole() {
     return taken(parse_whole<Whole>(fields_[position_]), "a whole number");
   }
+  /// A whole number of 0 or more.
+  [[nodiscard]] int count() {
+    const auto value = parse_whole<int>(fields_[position_]);
+    return taken(value && *value >= 0 ? value : std::nullopt, "a whole number of 0 or more");
+  }
   template <typename Whole>
   [[nodiscard]] std::optional<Whole> optional_whole() {
     if (skip_empty()) return std::nullopt;

@@ -32,6 +32,7 @@ PsychometricFit read_fit(const JsonReader& reader) {
   fit.ci95 = reader.at("ci95").interval();
   fit.ci90 = reader.at("ci90").interval();
   fit.slope = reader.at("slope").optional_number();
+  if (const JsonReader at_cap = reader.at_if_there("slope_at_cap"); !at_cap.is_null()) fit.slope_at_cap = at_cap.flag();
   fit.lapse = reader.at("lapse").number();
   fit.log_likelihood = reader.at("log_likelihood").optional_number();
   fit.deviance = reader.at("deviance").optional_number();
@@ -46,6 +47,17 @@ PsychometricFit read_fit(const JsonReader& reader) {
                               posterior.at("prior_bound").flag()};
   }
   return fit;
+}
+
+std::optional<Adequacy> read_adequacy(const JsonReader& reader) {
+  if (reader.is_null()) return std::nullopt;
+  Adequacy adequacy;
+  for (const JsonReader& item : reader.at("findings").elements()) {
+    adequacy.findings.push_back({item.at("kind").named(all_finding_kinds), item.at("value").optional_number(),
+                                 item.at("limit").optional_number(), item.at("sentence").text(),
+                                 item.at("unfit").flag()});
+  }
+  return adequacy;
 }
 
 Json level_record(const Level& level) {
@@ -65,8 +77,12 @@ Json point_record(const TodPoint& point) {
   json["fit"] = fit_record(point.fit);
   json["free_lapse_fit"] = point.free_lapse_fit ? fit_record(*point.free_lapse_fit) : Json(nullptr);
   json["lapse_warning"] = point.lapse_warning;
+  json["adequacy"] = adequacy_json(point.adequacy);
   json["direct_s75_mrad"] = json_number(point.direct_s75_mrad);
   json["direct_s75_se_mrad"] = json_number(point.direct_s75_se_mrad);
+  json["saturated_share"] = json_number(point.saturated_share);
+  json["noise_counts"] = json_number(point.noise_counts);
+  json["lag1_correlation"] = json_number(point.lag1_correlation);
   json["levels"] = Json::array();
   for (const Level& level : point.levels) json["levels"].push_back(level_record(level));
   return json;
@@ -80,8 +96,12 @@ TodPoint read_point(const JsonReader& reader) {
   point.fit = read_fit(reader.at("fit"));
   if (const JsonReader free = reader.at("free_lapse_fit"); !free.is_null()) point.free_lapse_fit = read_fit(free);
   point.lapse_warning = reader.at("lapse_warning").flag();
+  point.adequacy = read_adequacy(reader.at_if_there("adequacy"));
   point.direct_s75_mrad = reader.at("direct_s75_mrad").optional_number();
   point.direct_s75_se_mrad = reader.at("direct_s75_se_mrad").optional_number();
+  point.saturated_share = reader.at_if_there("saturated_share").optional_number().value_or(0);
+  point.noise_counts = reader.at_if_there("noise_counts").optional_number();
+  point.lag1_correlation = reader.at_if_there("lag1_correlation").optional_number();
   for (const JsonReader& level : reader.at("levels").elements()) {
     point.levels.push_back({level.at("size_mrad").number(), level.at("correct").number(), level.at("total").number(),
                             static_cast<int>(level.at("cluster").whole())});
@@ -125,6 +145,7 @@ Result<Comparison> comparison_from(const Json& record) {
   const JsonReader reader(record);
   Comparison comparison;
   comparison.verdict = reader.at("verdict").named(comparison_verdicts);
+  comparison.adequacy = read_adequacy(reader.at_if_there("adequacy"));
   for (const JsonReader& item : reader.at("points").elements()) {
     ComparisonPoint point;
     point.set_delta_t_k = item.at("delta_t_k").number();

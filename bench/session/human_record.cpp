@@ -9,10 +9,12 @@
 #include "bench/plan/plan_options.h"
 #include "bench/session/fit_record.h"
 #include "bench/session/manifest.h"
+#include "bench/session/open_session.h"
 #include "bench/session/trials_csv.h"
 #include "bench/text/csv_table.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
+#include "tod/adequacy/adequacy.h"
 
 namespace todbench {
 namespace {
@@ -95,10 +97,12 @@ Result<HumanRecord> human_record(std::vector<Trial> answers, std::vector<ShownPa
   auto curve = tod_curve(answers, fit_options(plan));
   if (!curve) return tl::unexpected(curve.error());
   curve->observer = "human";
+  examine(*curve, fit_options(plan));
   return HumanRecord{std::move(answers), *std::move(curve), std::move(shown)};
 }
 
 Result<void> write_human(const std::filesystem::path& session, const HumanRecord& record) {
+  if (auto intact = require_intact(session); !intact) return intact;
   auto writer = TrialsWriter::create(session / trials_name);
   if (!writer) return tl::unexpected(writer.error());
   for (const Trial& trial : record.trials) {

@@ -35,9 +35,11 @@ struct HumanRecord {
 [[nodiscard]] Result<HumanRecord> human_record(std::vector<Trial> answers, std::vector<ShownPatch> shown,
                                                const Plan& plan);
 /// Writes trials_human.csv, shown_human.csv and fits_human.json into a finished session and lists them in its manifest,
-/// in place of earlier ones. `io`; `invalid_input` for a folder without a manifest.
+/// in place of earlier ones. `io`; `invalid_input` for a folder without a manifest, or whose files are not those of the
+/// manifest: nothing is written then.
 [[nodiscard]] Result<void> write_human(const std::filesystem::path& session, const HumanRecord& record);
-/// Nothing when no person has answered. `invalid_input` with file and line or key.
+/// Of a session that open_session() took. Nothing when no person has answered. `invalid_input` with file and line or
+/// key.
 [[nodiscard]] Result<std::optional<HumanRecord>> read_human(const std::filesystem::path& session);
 
 }  // namespace todbench

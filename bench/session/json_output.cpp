@@ -12,6 +12,7 @@ Json fit_json(const PsychometricFit& fit) {
   json["threshold"] = json_number(fit.threshold);
   json["ci95"] = json_interval(fit.ci95);
   json["slope"] = json_number(fit.slope);
+  json["slope_at_cap"] = fit.slope_at_cap;
   json["lapse"] = json_number(fit.lapse);
   json["log_likelihood"] = json_number(fit.log_likelihood);
   json["deviance"] = json_number(fit.deviance);
@@ -23,6 +24,23 @@ Json fit_json(const PsychometricFit& fit) {
     posterior["ci95"] = Json::array({json_number(fit.posterior->low), json_number(fit.posterior->high)});
     posterior["prior_bound"] = fit.posterior->prior_bound;
     json["posterior"] = std::move(posterior);
+  }
+  return json;
+}
+
+Json adequacy_json(const std::optional<Adequacy>& adequacy) {
+  if (!adequacy) return nullptr;
+  Json json;
+  json["adequate"] = adequacy->adequate();
+  json["findings"] = Json::array();
+  for (const AdequacyFinding& finding : adequacy->findings) {
+    Json item;
+    item["kind"] = to_string(finding.kind);
+    item["value"] = json_number(finding.value);
+    item["limit"] = json_number(finding.limit);
+    item["sentence"] = finding.sentence;
+    item["unfit"] = finding.unfit;
+    json["findings"].push_back(std::move(item));
   }
   return json;
 }
@@ -52,6 +70,7 @@ Json curve_json(const TodCurve& curve, const SensorPlan& plan, const RunFigures&
     json["acuity_per_mrad"] = json_number(acuity_per_mrad(point.fit));
     json["trials"] = static_cast<std::int64_t>(std::llround(point.fit.trials));
     json["verdict"] = to_string(point.fit.verdict);
+    json["adequacy"] = adequacy_json(point.adequacy);
     points.push_back(std::move(json));
   }
   Json json;
@@ -82,6 +101,7 @@ Json comparison_json(const Comparison& comparison) {
   Json json;
   json["points"] = std::move(points);
   json["verdict"] = to_string(comparison.verdict);
+  if (comparison.adequacy) json["adequacy"] = adequacy_json(comparison.adequacy);
   return json;
 }
 

@@ -14,8 +14,11 @@
 
 namespace todbench {
 
-/// `fit TRIALS.csv --json`.
+/// The fit of `fit TRIALS.csv --json`.
 [[nodiscard]] Json fit_json(const PsychometricFit& fit);
+/// {"adequate", "findings": [{"kind", "value", "limit", "sentence", "unfit"}]} of a fit, a point or a comparison; null
+/// where it was not examined.
+[[nodiscard]] Json adequacy_json(const std::optional<Adequacy>& adequacy);
 
 /// What `measure` and `simulate` say beside the curve.
 struct RunFigures {

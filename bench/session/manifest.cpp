@@ -24,23 +24,34 @@ constexpr std::array<std::string_view, 17> known_files{"comparison.json",  "cost
 constexpr std::array<std::string_view, 2> known_folders{"inputs", "frames"};
 constexpr std::string_view schema = "todbench-manifest-1";
 
-struct Entry {
-  std::uint64_t bytes = 0;
-  std::string sha256;
-  bool operator==(const Entry&) const = default;
-};
-using Entries = std::map<std::string, Entry>;
+constexpr std::array<std::string_view, 2> report_pages{"report.html", "report.pdf"};
 
-Result<Entry> entry_of(const std::filesystem::path& file) {
+/// Manifests of earlier versions carry no digest of themselves.
+enum class OwnDigest { none, written };
+
+struct Manifest {
+  ManifestEntries entries;
+  bool as_written = false;  ///< to the byte what write_manifest() makes of the entries
+};
+
+Result<ManifestEntry> entry_of(const std::filesystem::path& file) {
   std::error_code problem;
   const std::uintmax_t bytes = std::filesystem::file_size(file, problem);
   if (problem) return fail(ErrorCode::io, file.string() + ": " + problem.message());
   Result<std::string> sum = sha256_of_file(file);
   if (!sum) return tl::unexpected(sum.error());
-  return Entry{bytes, *std::move(sum)};
+  return ManifestEntry{bytes, *std::move(sum)};
 }
 
-Result<void> write_entries(const std::filesystem::path& folder, const Entries& entries) {
+/// Of everything that the manifest says of every file.
+std::string digest_of_entries(const ManifestEntries& entries) {
+  std::string lines;
+  for (const auto& [path, entry] : entries)
+    lines += entry.sha256 + "  " + std::to_string(entry.bytes) + "  " + path + "\n";
+  return sha256_of(lines);
+}
+
+std::string text_of(const ManifestEntries& entries, OwnDigest own) {
   Json json;
   json["schema"] = schema;
   json["algorithm"] = "SHA-256";
@@ -48,28 +59,87 @@ Result<void> write_entries(const std::filesystem::path& folder, const Entries& e
   for (const auto& [path, entry] : entries) {
     json["files"].push_back(Json{{"path", path}, {"bytes", entry.bytes}, {"sha256", entry.sha256}});
   }
-  return write_file_atomically(folder / "manifest.json", to_page(json));
+  if (own == OwnDigest::written) {
+    json["manifest_sha256"] = digest_of(entries);
+    json["entries_sha256"] = digest_of_entries(entries);
+  }
+  return to_page(json);
 }
 
-Result<Entries> read_entries(const std::filesystem::path& folder) {
-  const std::filesystem::path file = folder / "manifest.json";
+Result<Manifest> read_manifest(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / manifest_name;
   const Result<std::string> text = read_text_file(file);
   if (!text) return tl::unexpected(text.error());
   const Json json = Json::parse(*text, nullptr, false);
   if (json.is_discarded()) return fail(ErrorCode::invalid_input, file.string() + ": not valid JSON");
   const JsonReader reader(json);
-  Entries entries;
+  Manifest manifest;
   if (reader.at("schema").text() != schema) {
     return fail(ErrorCode::invalid_input, file.string() + ": expected the schema " + std::string(schema));
   }
   for (const JsonReader& item : reader.at("files").elements()) {
-    entries[item.at("path").text()] = {item.at("bytes").count(), item.at("sha256").text()};
+    manifest.entries[item.at("path").text()] = {item.at("bytes").count(), item.at("sha256").text()};
   }
   if (const Result<void> read = reader.finish(); !read) return fail(file.string(), read.error());
-  return entries;
+  const bool of_an_earlier_version = !json.contains("manifest_sha256") && !json.contains("entries_sha256");
+  manifest.as_written =
+      *text == text_of(manifest.entries, of_an_earlier_version ? OwnDigest::none : OwnDigest::written);
+  return manifest;
+}
+
+/// One to go on with: a new digest over entries that somebody edited would vouch for them.
+Result<Manifest> read_written_manifest(const std::filesystem::path& folder) {
+  Result<Manifest> manifest = read_manifest(folder);
+  if (!manifest || manifest->as_written) return manifest;
+  return fail(ErrorCode::invalid_input, (folder / manifest_name).string() + ": changed since the session was written");
+}
+
+bool is_there(const std::filesystem::path& file) {
+  std::error_code problem;
+  return std::filesystem::exists(std::filesystem::symlink_status(file, problem));
+}
+
+/// Every path below the folder that is no folder itself, links as they are.
+std::vector<std::string> everything_in(const std::filesystem::path& folder) {
+  std::vector<std::string> paths;
+  std::error_code problem;
+  auto entry = std::filesystem::recursive_directory_iterator(folder, problem);
+  for (const auto end = std::filesystem::recursive_directory_iterator(); !problem && entry != end;
+       entry.increment(problem)) {
+    if (!std::filesystem::is_directory(entry->symlink_status(problem)))
+      paths.push_back(entry->path().lexically_relative(folder).generic_string());
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+/// Compares every listed file with its entry.
+Result<void> check_entries(const std::filesystem::path& folder, const ManifestEntries& entries, ManifestCheck& check) {
+  for (const auto& [path, expected] : entries) {
+    std::error_code problem;
+    if (!std::filesystem::is_regular_file(folder / path, problem)) {
+      check.missing.push_back(path);
+      continue;
+    }
+    const Result<ManifestEntry> found = entry_of(folder / path);
+    if (!found) return tl::unexpected(found.error());
+    if (*found != expected) check.changed.push_back(path);
+  }
+  return {};
 }
 
 }  // namespace
+
+bool is_report_page(std::string_view path) {
+  return std::find(report_pages.begin(), report_pages.end(), path) != report_pages.end();
+}
+
+bool is_session_file(std::string_view path) {
+  if (std::find(known_files.begin(), known_files.end(), path) != known_files.end()) return true;
+  return std::any_of(known_folders.begin(), known_folders.end(), [&](std::string_view folder) {
+    return path.starts_with(folder) && path.substr(folder.size()).starts_with('/');
+  });
+}
 
 std::vector<std::string> session_files(const std::filesystem::path& folder) {
   std::vector<std::string> files;
@@ -89,44 +159,98 @@ std::vector<std::string> session_files(const std::filesystem::path& folder) {
   return files;
 }
 
-Result<void> write_manifest(const std::filesystem::path& folder) {
-  Entries entries;
+Result<ManifestEntries> manifest_entries(const std::filesystem::path& folder) {
+  ManifestEntries entries;
   for (const std::string& file : session_files(folder)) {
-    Result<Entry> entry = entry_of(folder / file);
+    Result<ManifestEntry> entry = entry_of(folder / file);
     if (!entry) return tl::unexpected(entry.error());
     entries.emplace(file, *std::move(entry));
   }
-  return write_entries(folder, entries);
+  return entries;
+}
+
+/// Of the lines that sha256sum would print. A page prints it, and no file can hold its own digest: so without the
+/// pages.
+std::string digest_of(const ManifestEntries& entries) {
+  std::string lines;
+  for (const auto& [path, entry] : entries) {
+    if (!is_report_page(path)) lines += entry.sha256 + "  " + path + "\n";
+  }
+  return sha256_of(lines);
+}
+
+Result<void> update_entries(const std::filesystem::path& folder, const std::vector<std::string>& files,
+                            ManifestEntries& entries) {
+  for (const std::string& file : files) {
+    Result<ManifestEntry> entry = entry_of(folder / file);
+    if (!entry) return tl::unexpected(entry.error());
+    entries[file] = *std::move(entry);
+  }
+  return {};
+}
+
+Result<void> write_manifest(const std::filesystem::path& folder, const ManifestEntries& entries) {
+  return write_file_atomically(folder / manifest_name, text_of(entries, OwnDigest::written));
+}
+
+Result<void> write_manifest(const std::filesystem::path& folder) {
+  const Result<ManifestEntries> entries = manifest_entries(folder);
+  if (!entries) return tl::unexpected(entries.error());
+  return write_manifest(folder, *entries);
+}
+
+Result<bool> is_listed(const std::filesystem::path& folder, const std::string& path) {
+  const Result<Manifest> manifest = read_manifest(folder);
+  if (!manifest || !manifest->as_written) return false;
+  const auto entry = manifest->entries.find(path);
+  if (entry == manifest->entries.end()) return false;
+  const Result<ManifestEntry> found = entry_of(folder / path);
+  if (!found) return tl::unexpected(found.error());
+  return *found == entry->second;
+}
+
+Result<std::string> manifest_digest(const std::filesystem::path& folder) {
+  const Result<Manifest> manifest = read_written_manifest(folder);
+  if (!manifest) return tl::unexpected(manifest.error());
+  return digest_of(manifest->entries);
 }
 
 Result<void> refresh_manifest(const std::filesystem::path& folder, const std::vector<std::string>& files) {
-  Result<Entries> entries = read_entries(folder);
-  if (!entries) return tl::unexpected(entries.error());
-  for (const std::string& file : files) {
-    Result<Entry> entry = entry_of(folder / file);
-    if (!entry) return tl::unexpected(entry.error());
-    (*entries)[file] = *std::move(entry);
+  Result<Manifest> manifest = read_written_manifest(folder);
+  if (!manifest) return tl::unexpected(manifest.error());
+  if (auto updated = update_entries(folder, files, manifest->entries); !updated) return updated;
+  return write_manifest(folder, manifest->entries);
+}
+
+Result<ManifestCheck> check_manifest(const std::filesystem::path& folder) {
+  ManifestCheck check;
+  if (!is_there(folder / manifest_name)) {
+    check.missing.emplace_back(manifest_name);
+    return check;
   }
-  return write_entries(folder, *entries);
+  const Result<Manifest> manifest = read_manifest(folder);
+  if (!manifest || !manifest->as_written) check.changed.emplace_back(manifest_name);
+  if (!manifest) return check;
+  check.manifest_sha256 = digest_of(manifest->entries);
+  if (auto compared = check_entries(folder, manifest->entries, check); !compared)
+    return tl::unexpected(compared.error());
+  for (std::string& path : everything_in(folder)) {
+    if (path != manifest_name && !manifest->entries.contains(path)) check.foreign.push_back(std::move(path));
+  }
+  std::sort(check.changed.begin(), check.changed.end());
+  return check;
 }
 
 Result<std::vector<std::string>> verify_manifest(const std::filesystem::path& folder) {
-  const Result<Entries> entries = read_entries(folder);
-  if (!entries) return tl::unexpected(entries.error());
+  if (const Result<Manifest> manifest = read_manifest(folder); !manifest) return tl::unexpected(manifest.error());
+  const Result<ManifestCheck> check = check_manifest(folder);
+  if (!check) return tl::unexpected(check.error());
   std::vector<std::string> deviations;
-  const std::vector<std::string> present = session_files(folder);
-  for (const auto& [path, expected] : *entries) {
-    std::error_code problem;
-    if (!std::filesystem::is_regular_file(folder / path, problem)) {
-      deviations.push_back(path + ": missing");
-      continue;
-    }
-    const Result<Entry> found = entry_of(folder / path);
-    if (!found) return tl::unexpected(found.error());
-    if (*found != expected) deviations.push_back(path + ": changed since the session was written");
-  }
-  for (const std::string& path : present) {
-    if (!entries->contains(path)) deviations.push_back(path + ": not in the manifest");
+  for (const std::string& path : check->changed) deviations.push_back(path + ": changed since the session was written");
+  for (const std::string& path : check->missing) deviations.push_back(path + ": missing");
+  std::sort(deviations.begin(), deviations.end());
+  for (const std::string& path : check->foreign) {
+    if (is_session_file(path)) deviations.push_back(path + ": not in the manifest");
   }
   return deviations;
 }

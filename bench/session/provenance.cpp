@@ -3,10 +3,10 @@
 #include <unistd.h>
 
 #include <array>
-#include <ctime>
 
 #include "bench/session/build_info.h"
 #include "bench/session/fit_record.h"
+#include "bench/session/session_clock.h"
 #include "bench/text/json_reader.h"
 
 namespace todbench {
@@ -200,12 +200,7 @@ RunFigures figures_of(const RunRecord& run) {
 }
 
 std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  ::gmtime_r(&now, &parts);
-  std::array<char, 32> text{};
-  const std::size_t length = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return {text.data(), length};
+  return utc_text(host_clocks().wall());
 }
 
 Provenance begin_provenance(const Plan& plan, Side side) {
@@ -243,6 +238,7 @@ Json provenance_json(const Provenance& provenance) {
   json["host"] = provenance.host;
   json["started_utc"] = provenance.started_utc;
   json["ended_utc"] = provenance.ended_utc;
+  json["clock_jump_s"] = json_number(provenance.clock_jump_s);
   json["seeds"] = object_of(provenance.seeds);
   json["camera"] = provenance.camera ? camera_json(*provenance.camera) : Json(nullptr);
   json["target"] = provenance.target;
@@ -273,6 +269,9 @@ Result<Provenance> provenance_from(const Json& json) {
   }
   if (const JsonReader run = reader.at("run"); !run.is_null()) provenance.run = read_run(run);
   if (const JsonReader run = reader.at("twin_run"); !run.is_null()) provenance.twin_run = read_run(run);
+  // Folders of earlier versions have none.
+  if (json.is_object() && json.contains("clock_jump_s"))
+    provenance.clock_jump_s = reader.at("clock_jump_s").optional_number().value_or(0);
   if (const Result<void> read = reader.finish(); !read) return tl::unexpected(read.error());
   if (!json.contains("effects")) return fail(ErrorCode::invalid_input, "missing key 'effects'");
   const Result<SensorPlan> effects = effects_from(json["effects"]);

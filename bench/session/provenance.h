@@ -51,7 +51,9 @@ struct RunRecord {
 struct Provenance {
   std::string program_version, git_commit, compiler;
   std::string host;
-  std::string started_utc, ended_utc;  ///< ISO 8601 with Z; empty: not yet
+  std::string started_utc;  ///< ISO 8601 with Z
+  std::string ended_utc;    ///< the start, and what passed by a clock that is never set; empty: not yet
+  double clock_jump_s = 0;  ///< by how much the clock of the host was set ahead meanwhile
   SessionState state = SessionState::running;
   Side side = Side::measured;  ///< what trials.csv holds
   std::map<std::string, std::uint64_t> seeds;

@@ -1,17 +1,16 @@
 #include "bench/session/session_folder.h"
 
-#include <unistd.h>
-
 #include <cctype>
-#include <cerrno>
 #include <cmath>
 #include <set>
 #include <system_error>
 
 #include "bench/judgement/verdict_record.h"
 #include "bench/session/cost_record.h"
+#include "bench/session/ending_reserve.h"
 #include "bench/session/fit_record.h"
 #include "bench/text/files.h"
+#include "bench/text/folders.h"
 #include "bench/text/text.h"
 #include "tod/psychometric/acuity.h"
 
@@ -27,15 +26,8 @@ std::filesystem::path targets_file(const std::filesystem::path& folder, SessionC
   return folder / (which == SessionCurve::main ? "targets.csv" : "targets_simulated.csv");
 }
 
-/// A folder that cannot be had is a wrong choice; a disk that is full or broken is not.
-ErrorCode code_of(const std::error_code& problem) {
-  for (const std::errc of_the_disk : {std::errc::no_space_on_device, std::errc::io_error}) {
-    if (problem == of_the_disk) return ErrorCode::io;
-  }
-  return ErrorCode::invalid_input;
-}
-
 Result<void> remove_session_files(const std::filesystem::path& folder) {
+  free_ending_rooms(folder);
   std::vector<std::string> files = session_files(folder);
   files.emplace_back("manifest.json");
   for (const std::string& file : files) {
@@ -166,36 +158,32 @@ std::string session_folder_name(const std::string& plan_name) {
   return "session-" + stamp + "-" + clean;
 }
 
-Result<SessionFolder> SessionFolder::create(const std::filesystem::path& folder, ExistingFolder existing) {
-  if (existing == ExistingFolder::number) return create_numbered(folder);
+Result<SessionFolder> SessionFolder::create(const std::filesystem::path& folder, ExistingFolder existing,
+                                            const HostClocks& clocks) {
+  if (existing == ExistingFolder::number) return create_numbered(folder, clocks);
   std::error_code problem;
   if (std::filesystem::exists(folder, problem) && !std::filesystem::is_directory(folder, problem)) {
     return fail(ErrorCode::invalid_input, folder.string() + ": is a file, expected a folder");
   }
-  std::filesystem::create_directories(folder, problem);
-  if (problem) return fail(code_of(problem), folder.string() + ": cannot be created: " + problem.message());
+  if (auto made = make_folder(folder); !made) return tl::unexpected(made.error());
   const bool empty = std::filesystem::is_empty(folder, problem);
-  if (problem) return fail(code_of(problem), folder.string() + ": cannot be read: " + problem.message());
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-    return fail(ErrorCode::invalid_input,
-                folder.string() + ": cannot be written to: " + std::generic_category().message(errno));
-  }
+  if (problem) return fail(code_of_path(problem), folder.string() + ": cannot be read: " + problem.message());
   if (!empty && existing == ExistingFolder::refuse) {
     return fail(ErrorCode::invalid_input,
                 folder.string() + ": the folder is not empty; choose another or allow overwriting (--force)");
   }
   if (const Result<void> removed = remove_session_files(folder); !removed) return tl::unexpected(removed.error());
-  return SessionFolder(folder);
+  return SessionFolder(folder, clocks);
 }
 
-Result<SessionFolder> SessionFolder::create_numbered(const std::filesystem::path& folder) {
+Result<SessionFolder> SessionFolder::create_numbered(const std::filesystem::path& folder, const HostClocks& clocks) {
   std::filesystem::path name = folder;
   for (int number = 2;; ++number) {
     std::error_code problem;
     // Only one of several programs creates a folder.
-    if (std::filesystem::create_directory(name, problem)) return SessionFolder(name);
+    if (std::filesystem::create_directory(name, problem)) return SessionFolder(name, clocks);
     if (problem && problem != std::errc::file_exists)
-      return fail(code_of(problem), name.string() + ": cannot be created: " + problem.message());
+      return fail(code_of_path(problem), name.string() + ": cannot be created: " + problem.message());
     name = folder.string() + "-" + std::to_string(number);
   }
 }
@@ -250,12 +238,12 @@ Result<void> SessionFolder::write_report(std::string_view html) {
 Result<void> SessionFolder::log(std::string_view sentence) {
   Result<AppendFile> file = AppendFile::open(folder_ / "log.txt", AppendFile::Start::at_end);
   if (!file) return tl::unexpected(file.error());
-  return file->append(utc_now() + " " + one_line(sentence) + "\n");
+  return file->append(clock_.now_utc() + " " + one_line(sentence) + "\n");
 }
 
 Result<void> SessionFolder::finish(Provenance provenance, SessionState state) {
   provenance.state = state;
-  provenance.ended_utc = utc_now();
+  if (provenance.ended_utc.empty()) provenance.ended_utc = clock_.now_utc();
   if (const Result<void> written = write_provenance(provenance); !written) return written;
   return write_manifest(folder_);
 }
@@ -322,7 +310,7 @@ Verdict verdict_of(const Session& session) {
 }
 
 Result<void> keep_verdict(const std::filesystem::path& folder, const Verdict& verdict) {
-  if (!is_there(folder / "manifest.json")) return {};
+  if (!is_there(folder / manifest_name)) return {};
   if (auto written = write_file_atomically(folder / "verdict.json", to_page(verdict_json(verdict))); !written)
     return written;
   return refresh_manifest(folder, {"verdict.json"});

@@ -12,6 +12,7 @@
 #include "bench/plan/loaded_plan.h"
 #include "bench/session/manifest.h"
 #include "bench/session/provenance.h"
+#include "bench/session/session_clock.h"
 #include "bench/session/targets_csv.h"
 #include "bench/session/trials_csv.h"
 #include "sim_devices/prediction/cost_frontier.h"
@@ -37,11 +38,13 @@ enum class SessionCurve { main, twin };
 /// Every function fails with `io` and the path when the disk refuses.
 class SessionFolder {
  public:
-  /// Creates the folder with its parents. `invalid_input` when it exists, is not empty and may not be overwritten, is a
-  /// file, or may not be created or written to.
-  [[nodiscard]] static Result<SessionFolder> create(const std::filesystem::path& folder, ExistingFolder existing);
+  /// Creates the folder with its parents; the session begins now. `invalid_input` when it exists, is not empty and may
+  /// not be overwritten, or is a file or below one. `io` when it cannot be created or written to.
+  [[nodiscard]] static Result<SessionFolder> create(const std::filesystem::path& folder, ExistingFolder existing,
+                                                    const HostClocks& clocks = host_clocks());
 
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
+  [[nodiscard]] const SessionClock& clock() const { return clock_; }
   /// session.toml; the plates, sensor and observer used are copied to inputs/, and references to files point there.
   /// References to built-in descriptions stay names.
   [[nodiscard]] Result<void> write_plan(const LoadedPlan& loaded);
@@ -59,15 +62,18 @@ class SessionFolder {
   [[nodiscard]] Result<void> write_verdict(const Verdict& verdict);
   /// report.html.
   [[nodiscard]] Result<void> write_report(std::string_view html);
-  /// One line in log.txt, with the time.
+  /// One line in log.txt, with the time of the session's clock.
   [[nodiscard]] Result<void> log(std::string_view sentence);
-  /// Writes provenance with `state` and the time, then the manifest. To be called last, also when interrupted.
+  /// Writes provenance with `state` and, where it has no end yet, the time, then the manifest. To be called last, also
+  /// when interrupted.
   [[nodiscard]] Result<void> finish(Provenance provenance, SessionState state);
 
  private:
-  [[nodiscard]] static Result<SessionFolder> create_numbered(const std::filesystem::path& folder);
-  explicit SessionFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  [[nodiscard]] static Result<SessionFolder> create_numbered(const std::filesystem::path& folder,
+                                                             const HostClocks& clocks);
+  SessionFolder(std::filesystem::path folder, const HostClocks& clocks) : folder_(std::move(folder)), clock_(clocks) {}
   std::filesystem::path folder_;
+  SessionClock clock_;
 };
 
 /// A session as values.
@@ -84,11 +90,18 @@ struct Session {
   std::optional<Comparison> comparison;
   std::optional<Verdict> verdict;    ///< as it was stored; nothing in an old session, or where the run was cut off
   std::optional<CostFrontier> cost;  ///< what accuracy costs, where it was measured for this session
+  /// Of the manifest that vouches for these values (ManifestCheck); empty where none does.
+  std::string manifest_sha256;
+  /// Files that are not those that the run wrote and were read nevertheless, because somebody asked for it.
+  std::vector<std::string> accepted_changes;
+  bool cut_off = false;  ///< no manifest: nothing vouches for these values
   /// False when the run was interrupted or cut off.
   [[nodiscard]] bool complete() const { return provenance.state == SessionState::complete; }
 };
 
-/// `invalid_input`: not a session folder, or a file in it that cannot be read, with its path and line or key.
+/// The files as they are. For a session that is being written; every other reader has to know whether they are those
+/// that the run wrote, so it takes open_session(). `invalid_input`: not a session folder, or a file in it that cannot
+/// be read, with its path and line or key.
 [[nodiscard]] Result<Session> read_session(const std::filesystem::path& folder);
 /// Why the run of a session ended early; nothing when it came to its end.
 [[nodiscard]] std::optional<std::string> ended_early(const Session& session);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "bench/session/csv_fields.h"
@@ -14,12 +15,16 @@ namespace todbench {
 
 namespace {
 
-constexpr std::array<std::string_view, 21> trial_columns{
-    "presentation", "plate",      "mounting",   "triangle", "set_delta_t_k",  "delta_t_k",    "size_mm",
-    "size_mrad",    "size_px",    "truth",      "answer",   "score_up",       "score_right",  "score_down",
-    "score_left",   "phase_x_px", "phase_y_px", "frame",    "device_time_ns", "host_time_ns", "since_nuc_s"};
+constexpr std::array<std::string_view, 22> trial_columns{
+    "presentation",   "plate",        "mounting",    "triangle",        "set_delta_t_k", "delta_t_k",
+    "size_mm",        "size_mrad",    "size_px",     "truth",           "answer",        "score_up",
+    "score_right",    "score_down",   "score_left",  "phase_x_px",      "phase_y_px",    "frame",
+    "device_time_ns", "host_time_ns", "since_nuc_s", "saturated_pixels"};
 
-Trial read_trial(FieldReader& fields) {
+/// Files of earlier versions end before these.
+constexpr std::size_t later_columns = 1;
+
+Trial read_trial(FieldReader& fields, std::size_t columns) {
   Trial trial;
   trial.presentation = fields.whole<std::int64_t>();
   trial.plate = fields.text();
@@ -39,6 +44,7 @@ Trial read_trial(FieldReader& fields) {
   trial.device_time_ns = fields.whole<std::int64_t>();
   trial.host_time_ns = fields.whole<std::int64_t>();
   trial.since_nuc_s = fields.optional_number().value_or(-1);
+  if (columns == trial_columns.size()) trial.saturated_pixels = fields.count();
   return trial;
 }
 
@@ -60,6 +66,7 @@ std::string trial_line(const Trial& trial) {
   add(std::to_string(trial.device_time_ns));
   add(std::to_string(trial.host_time_ns));
   add(trial.since_nuc_s < 0 ? std::string() : number_text(trial.since_nuc_s));
+  add(std::to_string(trial.saturated_pixels));
   return line + "\n";
 }
 
@@ -151,13 +158,15 @@ Result<std::vector<Trial>> read_trials(const std::filesystem::path& file) {
   if (!text) return tl::unexpected(text.error());
   const Result<CsvTable> table = parse_csv(*text, file.string());
   if (!table) return tl::unexpected(table.error());
-  if (const Result<void> as_expected = check_columns(*table, trial_columns); !as_expected)
+  std::span<const std::string_view> columns(trial_columns);
+  if (table->header.size() + later_columns == columns.size()) columns = columns.first(table->header.size());
+  if (const Result<void> as_expected = check_columns(*table, columns); !as_expected)
     return tl::unexpected(as_expected.error());
   std::vector<Trial> trials;
   trials.reserve(table->rows.size());
   for (const CsvRow& row : table->rows) {
-    FieldReader fields(row.fields, trial_columns);
-    trials.push_back(read_trial(fields));
+    FieldReader fields(row.fields, columns);
+    trials.push_back(read_trial(fields, columns.size()));
     if (fields.wrong()) return table->wrong(row.line, *fields.wrong());
   }
   return trials;

@@ -288,6 +288,10 @@ Result<std::vector<NoiseAcuity>> real_noise_study(const RecordedNoise& noise, co
     const auto predicted = white.s75(q * point.template_noise_ratio, internal);
     if (!predicted) return tl::unexpected(predicted.error());
     point.predicted_ratio = under_white->s75_pitch / predicted->s75_pitch;
+    if (const auto whole = white.s75(q * options.whole_to_successive, internal); whole)
+      point.memory_acuity_ratio = under_white->s75_pitch / whole->s75_pitch;
+    else if (whole.error().code == ErrorCode::interrupted)
+      return tl::unexpected(whole.error());
     explain(point, (*real_size)->bank(), noise.components);
     points.push_back(point);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -15,13 +16,15 @@ namespace todbench {
 
 /// Noise that a recording holds: each pixel without its mean over a block of successive frames, which takes scene,
 /// fixed pattern and drift out. In the unit of the frames, and scaled so that the variance is that of single frames.
+/// Noise that remembers loses with the mean what is slower than a block; tod/measures/temporal_noise.h says how much
+/// that is.
 struct RecordedNoise {
   std::vector<cv::Mat1f> frames;
   std::vector<int> block_of_frame;
   int blocks = 0;
   cv::Mat1b usable;           ///< 0 where the scene moved: temporal noise above twice the median pixel's
   double usable_share = 0;    ///< of the pixels
-  double temporal_noise = 0;  ///< standard deviation over usable pixels
+  double temporal_noise = 0;  ///< standard deviation over usable pixels, of what a block holds
   double correlation_x = 0, correlation_y = 0;  ///< of neighbours in a row and in a column, whole-frame changes removed
   ThreeDNoise components;                       ///< mean of the blocks' variances; fixed components contain the
                                                 ///< scene; pixels that are not usable are held still for it
@@ -36,6 +39,9 @@ struct RecordedNoise {
 
 struct RealNoiseOptions {
   std::vector<double> contrast_over_noise{1.6, 3.3, 8, 28};  ///< 3.3: 0.23 K at a NETD of 0.07 K
+  /// Noise of a whole frame over that of successive frames (TemporalNoise::whole_to_successive): what the observer
+  /// suffers of noise that remembers.
+  double whole_to_successive = 1;
   int draws = 2000;  ///< noise windows per size, spread over the recording; all phases and orientations share them
   std::uint64_t seed = 1;
   std::stop_token stop{};
@@ -56,6 +62,9 @@ struct NoiseAcuity {
   /// what the observer's decisions see of it. Below 1 the noise disturbs less than its NETD says.
   double template_noise_ratio = 1;
   double predicted_ratio = 1;  ///< of acuities, from white noise of template_noise_ratio times the strength
+  /// Acuity under white noise of the strength of a whole frame / of that which successive frames show, the latter taken
+  /// as the unit of the contrast; nothing: the stronger noise leaves no threshold.
+  std::optional<double> memory_acuity_ratio;
   /// Shares of template_noise_ratio^2: pixel noise, rows, columns from the 3D components, and what they leave over,
   /// which is noise correlated over neighbouring pixels (positive: low frequencies).
   double pixel_share = 1, row_share = 0, column_share = 0, correlated_share = 0;

@@ -70,6 +70,12 @@ Result<void> write_file_atomically(const std::filesystem::path& file, std::strin
   return io_error(file, "cannot be written", problem);
 }
 
+std::string sha256_of(std::string_view text) {
+  const DigestContext context = sha256_context();
+  EVP_DigestUpdate(context.get(), text.data(), text.size());
+  return hexadecimal(context.get());
+}
+
 Result<std::string> sha256_of_file(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return fail(ErrorCode::io, file.string() + ": cannot be opened for reading");

@@ -13,6 +13,8 @@ namespace todbench {
 /// the path and the reason (disk full, access denied); the old file is then still there.
 [[nodiscard]] Result<void> write_file_atomically(const std::filesystem::path& file, std::string_view content);
 
+/// SHA-256 of a text in lower-case hexadecimal.
+[[nodiscard]] std::string sha256_of(std::string_view text);
 /// SHA-256 of a file in lower-case hexadecimal, read in pieces. `io` when it cannot be read.
 [[nodiscard]] Result<std::string> sha256_of_file(const std::filesystem::path& file);
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "acquisition/core/safe_text.h"
+
 namespace todbench {
 
 Json json_number(double value) {
@@ -17,11 +19,11 @@ Json json_interval(const Interval& interval) {
 }
 
 std::string to_line(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return escaped_json(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 std::string to_page(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return escaped_json(json.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
 }
 
 }  // namespace todbench

@@ -17,7 +17,8 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json json_number(const std::optional<double>& value);
 /// [low, high], each side null where it is open.
 [[nodiscard]] Json json_interval(const Interval& interval);
-/// One line of text; invalid UTF-8 is replaced, nothing throws.
+/// One line of text; invalid UTF-8 is replaced, and what steers a terminal (valid_text()) stands there as \u escapes.
+/// Nothing throws.
 [[nodiscard]] std::string to_line(const Json& json);
 /// The same over several lines, for files.
 [[nodiscard]] std::string to_page(const Json& json);

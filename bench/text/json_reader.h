@@ -34,6 +34,12 @@ class JsonReader {
     }
     return {&*found, path, mistake_};
   }
+  /// The value of a key that older records do not have; null where it is missing.
+  [[nodiscard]] JsonReader at_if_there(const std::string& key) const {
+    if (json_->is_object() && !json_->contains(key))
+      return {&nothing(), path_.empty() ? key : path_ + "." + key, mistake_};
+    return at(key);
+  }
   [[nodiscard]] std::vector<JsonReader> elements() const {
     std::vector<JsonReader> readers;
     if (!json_->is_array()) (void)wrong("a list");

@@ -75,14 +75,6 @@ std::string quoted_list(std::span<const std::string> words) {
   return list;
 }
 
-std::string one_line(std::string_view text) {
-  std::string line(text);
-  for (char& c : line) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-  }
-  return line;
-}
-
 Result<std::string> read_text_file(const std::filesystem::path& file) {
   std::error_code problem;
   const auto status = std::filesystem::status(file, problem);
@@ -132,10 +124,11 @@ Result<std::vector<std::string>> split_csv(std::string_view line) {
 }
 
 std::string csv_field(std::string_view text) {
-  const bool blank_ends = !text.empty() && (text.front() == ' ' || text.back() == ' ');
-  if (!blank_ends && text.find_first_of(",\"") == std::string_view::npos) return std::string(text);
+  const std::string safe = one_line(text);
+  const bool blank_ends = !safe.empty() && (safe.front() == ' ' || safe.back() == ' ');
+  if (!blank_ends && safe.find_first_of(",\"") == std::string::npos) return safe;
   std::string field = "\"";
-  for (const char c : text) {
+  for (const char c : safe) {
     if (c == '"') field += '"';
     field += c;
   }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "acquisition/core/result.h"
+#include "acquisition/core/safe_text.h"
 
 namespace todbench {
 
@@ -26,16 +27,13 @@ namespace todbench {
 [[nodiscard]] std::string nearest_name_hint(std::string_view name, std::span<const std::string> known);
 /// The words, each in single quotes, with commas.
 [[nodiscard]] std::string quoted_list(std::span<const std::string> words);
-/// `text` with every control character as a blank: for messages of one line.
-[[nodiscard]] std::string one_line(std::string_view text);
 
 /// A configuration or input file, whole. `invalid_input` with one sentence when it cannot be read.
 [[nodiscard]] Result<std::string> read_text_file(const std::filesystem::path& file);
 
 /// Splits one RFC 4180 record without its line end; `invalid_input` for a quote in the wrong place.
 [[nodiscard]] Result<std::vector<std::string>> split_csv(std::string_view line);
-/// A field as RFC 4180 wants it: quoted where it contains a comma, a quote or blanks at its ends. Line ends are not
-/// allowed in fields here.
+/// A field as RFC 4180 wants it: one_line(), quoted where it contains a comma, a quote or blanks at its ends.
 [[nodiscard]] std::string csv_field(std::string_view text);
 
 }  // namespace todbench

@@ -35,7 +35,7 @@ namespace {
 using namespace std::chrono_literals;
 
 /// Far longer than any frame takes on a loaded machine; a test that waits this long has failed.
-constexpr auto patience = 20s;
+constexpr auto patience = 120s;
 /// The shortest recording has two frames.
 constexpr int least_frames = 2;
 

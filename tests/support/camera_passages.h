@@ -16,7 +16,7 @@
 namespace todbench::testing_support {
 
 /// Far longer than any frame takes on a loaded machine; a test that waits this long has failed.
-inline constexpr std::chrono::seconds patience{20};
+inline constexpr std::chrono::seconds patience{120};
 
 /// Picture `index`: no two within 2^`bits` are alike, and no pixel has the value of its neighbours, so that a shifted,
 /// torn, repeated or byte-swapped frame differs.

@@ -6,12 +6,14 @@
 
 namespace todbench::testing_support {
 
-VideoBench start_video(const VideoCameraConfig& config) {
+VideoBench start_video(const VideoCameraConfig& config, const VideoDriverQuirks& quirks) {
   VideoBench bench{.system = MockSystem::create(), .camera = nullptr};
-  auto camera =
-      EmulatedV4l2Camera::start(bench.system, config,
-                                [width = config.width, height = config.height, bits = significant_bits(config.kind)](
-                                    std::uint64_t index) { return test_picture(index, width, height, bits); });
+  auto camera = EmulatedV4l2Camera::start(
+      bench.system, config,
+      [width = config.width, height = config.height, bits = significant_bits(config.kind)](std::uint64_t index) {
+        return test_picture(index, width, height, bits);
+      },
+      quirks);
   if (!camera) {
     ADD_FAILURE() << camera.error().message;
     return bench;

@@ -16,7 +16,7 @@ struct VideoBench {
 };
 
 /// A camera that shows test_picture(); fails the test when it cannot start.
-[[nodiscard]] VideoBench start_video(const VideoCameraConfig& config = {});
+[[nodiscard]] VideoBench start_video(const VideoCameraConfig& config = {}, const VideoDriverQuirks& quirks = {});
 
 [[nodiscard]] std::string video_camera_id(const VideoCameraConfig& config);
 

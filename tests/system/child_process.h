@@ -42,6 +42,8 @@ class ChildProcess {
   [[nodiscard]] bool wait_until(const std::function<bool()>& enough);
   /// What it wrote to standard output so far.
   [[nodiscard]] const std::string& out() const { return out_; }
+  /// The same of standard error.
+  [[nodiscard]] const std::string& err() const { return err_; }
   /// Waits for the end. Fails the running test when patience ends first.
   [[nodiscard]] Ended wait();
 

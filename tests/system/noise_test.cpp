@@ -1,7 +1,10 @@
 // The noise of recordings, as a user asks for it.
 #include <cmath>
+#include <vector>
 
+#include "acquisition/core/rng.h"
 #include "tests/support/source_file.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/system/system_test_support.h"
 
 namespace todbench::testing {
@@ -19,10 +22,11 @@ TEST(NoiseCommand, TellsTheAcuityUnderARealCamerasNoiseFromThatUnderWhiteNoise) 
 
   ASSERT_EQ(ended.code, 0) << ended.err;
   const Json json = one_object(ended);
-  EXPECT_THAT(keys_of(json), UnorderedElementsAre("recording", "unit", "width", "height", "blocks", "block_frames",
-                                                  "usable_share", "temporal_noise", "components", "correlation_x",
-                                                  "correlation_y", "observer", "sensor", "verdict", "points"));
-  EXPECT_EQ(json["verdict"], "ok");
+  EXPECT_THAT(keys_of(json),
+              UnorderedElementsAre("recording", "unit", "width", "height", "blocks", "block_frames", "usable_share",
+                                   "temporal_noise", "lag1_correlation", "structure_function", "whole_to_successive",
+                                   "block_noise", "components", "correlation_x", "correlation_y", "observer", "sensor",
+                                   "verdict", "points"));
   EXPECT_EQ(json["unit"], "counts");
   EXPECT_EQ(json["width"], 160);
   EXPECT_EQ(json["blocks"], 10);  // 100 frames
@@ -45,7 +49,57 @@ TEST(NoiseCommand, TellsTheAcuityUnderARealCamerasNoiseFromThatUnderWhiteNoise) 
   const Json& c = json["components"];
   double variance = 0;
   for (const char* part : {"tvh", "tv", "th", "t"}) variance += std::pow(c[part].get<double>(), 2);
-  EXPECT_NEAR(std::sqrt(variance), json["temporal_noise"].get<double>(), 0.02 * std::sqrt(variance));
+  EXPECT_NEAR(std::sqrt(variance), json["block_noise"].get<double>(), 0.02 * std::sqrt(variance));
+}
+
+TEST(NoiseCommand, GivesTemporalNoiseThatNoBlockLengthEntersAndSaysThatItRemembers) {
+  const std::string lepton = recordings + "lepton_b_160x120_u16le.raw?width=160&height=120";
+  std::vector<double> noise;
+  for (const char* block : {"2", "10", "50"}) {
+    const Ended ended = todbench({"noise", lepton, "--block-frames", block, "--contrast-over-noise", "28", "--json"});
+
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    EXPECT_THAT(ended.err, HasSubstr("the noise is correlated in time"));
+    const Json json = one_object(ended);
+    EXPECT_EQ(json["verdict"], "correlated");
+    noise.push_back(json["temporal_noise"]);
+    const Json& structure = json["structure_function"];
+    EXPECT_EQ(structure["lags"][0], 1);
+    EXPECT_EQ(structure["lags"][7], 8);
+    EXPECT_EQ(structure["lags"].size(), 64u);
+    EXPECT_EQ(structure["values"][0], json["temporal_noise"]);
+    // Computed by hand over pixels whose mean square differences at lags 1 and 8 are below four times the median's.
+    EXPECT_NEAR(structure["values"][0].get<double>(), 0.834, 0.005);
+    EXPECT_NEAR(structure["values"][7].get<double>(), 2.074, 0.01);
+    EXPECT_GT(json["lag1_correlation"], 0.85);
+    EXPECT_LT(json["points"][0]["memory_acuity_ratio"], 1);
+  }
+  EXPECT_EQ(noise[0], noise[1]);
+  EXPECT_EQ(noise[0], noise[2]);
+}
+
+TEST(NoiseCommand, FindsNothingWrongWithWhiteNoise) {
+  const TemporaryFolder folder;
+  std::string frames;
+  const RandomStream stream(5, "white recording");
+  std::vector<float> z(80 * 60);
+  for (std::uint64_t frame = 0; frame < 40; ++frame) {
+    stream.sub(frame).fill_normal(z);
+    for (const float value : z) {
+      const auto count = static_cast<std::uint16_t>(std::lround(8000 + 5 * value));
+      frames += {static_cast<char>(count & 255), static_cast<char>(count >> 8)};
+    }
+  }
+  const std::string file = folder.write("white.raw", frames).string();
+
+  const Ended ended = todbench({"noise", file + "?width=80&height=60", "--contrast-over-noise", "8", "--json"});
+
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Json json = one_object(ended);
+  EXPECT_EQ(json["verdict"], "ok");
+  // 39 differences of 4800 pixels: 0.3 %, four times that; rounding adds 1/12.
+  EXPECT_NEAR(json["temporal_noise"].get<double>() / std::sqrt(25 + 1.0 / 12), 1, 0.012);
+  EXPECT_NEAR(json["lag1_correlation"].get<double>(), 0, 0.02);
 }
 
 TEST(NoiseCommand, WithholdsTheAcuityWhereTheSceneMoved) {

@@ -24,8 +24,10 @@ Json fit(const std::string& rows, int code, const std::vector<std::string>& more
 TEST(FitJson, HasTheKeysOfTheContractAndAThresholdBetweenTheLevels) {
   const Json json = fit("1,26,100\n2,50,100\n3,80,100\n4,96,100\n6,100,100\n", 0);
 
-  EXPECT_THAT(keys_of(json), UnorderedElementsAre("verdict", "threshold", "ci95", "slope", "lapse", "log_likelihood",
-                                                  "deviance", "degrees_of_freedom", "posterior"));
+  EXPECT_THAT(keys_of(json),
+              UnorderedElementsAre("verdict", "threshold", "ci95", "slope", "lapse", "log_likelihood", "deviance",
+                                   "degrees_of_freedom", "posterior", "slope_at_cap", "adequacy"));
+  EXPECT_EQ(json["adequacy"], Json::parse(R"({"adequate": true, "findings": []})"));
   EXPECT_THAT(keys_of(json["posterior"]), UnorderedElementsAre("median", "ci95", "prior_bound"));
   EXPECT_EQ(json["verdict"], "ok");
   EXPECT_GT(json["threshold"], 2);
@@ -65,6 +67,77 @@ TEST(FitJson, RowsMayBeUnsortedAndRepeatedAndTheFormMatters) {
 
   EXPECT_NEAR(shuffled["threshold"].get<double>(), sorted["threshold"].get<double>(), 1e-9);
   EXPECT_NE(acuity["threshold"], sorted["threshold"]);
+}
+
+// Counts of a Weibull function of acuity: psi = 1/4 + 3/4 exp(-ln 1.5 (2/S)^2).
+TEST(FitJson, AFormThatDoesNotFitIsSaidWithItsFigureAndDecidesNothing) {
+  std::string rows;
+  for (const double size : {0.8, 1.0, 1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0, 6.4}) {
+    const double p = 0.25 + 0.75 * std::exp(-std::log(1.5) * std::pow(2 / size, 2));
+    rows += std::to_string(size) + "," + std::to_string(std::llround(p * 1000)) + ",1000\n";
+  }
+
+  const Json wrong = fit(rows, 3);
+  const Json right = fit(rows, 0, {"--form", "acuity"});
+
+  EXPECT_EQ(wrong["verdict"], "ok");
+  EXPECT_GT(wrong["threshold"].get<double>(), 2.1);
+  EXPECT_EQ(wrong["adequacy"]["adequate"], false);
+  for (const Json& finding : wrong["adequacy"]["findings"]) {
+    EXPECT_THAT(keys_of(finding), UnorderedElementsAre("kind", "value", "limit", "sentence", "unfit"));
+    EXPECT_GT(finding["value"].get<double>(), finding["limit"].get<double>());
+  }
+  EXPECT_THAT(wrong["adequacy"].dump(), ::testing::HasSubstr("the acuity form"));
+  EXPECT_EQ(right["adequacy"]["adequate"], true) << right["adequacy"];
+  EXPECT_NEAR(right["threshold"].get<double>(), 2, 0.02);
+}
+
+// 5 % lapses at slope 3.5; the expected counts at 80 trials.
+TEST(FitJson, LapsesAreLookedForUnlessTheFitAllowsForThem) {
+  std::string rows;
+  for (const double size : {0.5, 0.6, 0.75, 0.9, 1.1, 1.35, 1.65, 2.0}) {
+    const double p = 0.25 + 0.7 * (1 - std::exp(-std::log(0.7 / 0.2) * std::pow(size, 3.5)));
+    rows += std::to_string(size) + "," + std::to_string(std::llround(p * 80)) + ",80\n";
+  }
+
+  const Json fixed = fit(rows, 3);
+
+  EXPECT_THAT(fixed["adequacy"].dump(), ::testing::HasSubstr(R"("kind":"lapse")"));
+  EXPECT_EQ(fit(rows, 0, {"--lapse", "free"})["adequacy"]["adequate"], true);
+}
+
+TEST(FitJson, AColumnOfClustersWidensTheIntervalAndExplainsTheScatter) {
+  const TemporaryFolder folder;
+  // Presentations by turns far better and far worse than the mean.
+  std::string rows;
+  for (int cluster = 0; cluster < 40; ++cluster) {
+    const double threshold = cluster % 2 == 0 ? 0.75 : 1.35;
+    for (const double size : {0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0}) {
+      const double p = 0.25 + 0.75 * (1 - std::exp(-std::log(3.0) * std::pow(size / threshold, 3.5)));
+      rows +=
+          std::to_string(size) + "," + std::to_string(std::llround(p * 16)) + ",16," + std::to_string(cluster) + "\n";
+    }
+  }
+  folder.write("clusters.csv", "size,correct,total,cluster\n" + rows);
+  std::string without = "size,correct,total\n";
+  for (const std::string& line : lines_of(rows)) without += line.substr(0, line.rfind(',')) + "\n";
+  folder.write("alone.csv", without);
+
+  const Json clustered = one_object(todbench({"fit", "clusters.csv", "--json"}, {.folder = folder.path()}));
+  const Ended alone = todbench({"fit", "alone.csv", "--json"}, {.folder = folder.path()});
+  const Json independent = one_object(alone);
+
+  const auto width = [](const Json& json) { return json["ci95"][1].get<double>() - json["ci95"][0].get<double>(); };
+  EXPECT_GT(width(clustered), 1.5 * width(independent));
+  EXPECT_THAT(clustered["adequacy"].dump(), ::testing::Not(::testing::HasSubstr("overdispersion")));
+  EXPECT_THAT(independent["adequacy"].dump(), ::testing::HasSubstr("overdispersion"));
+  EXPECT_EQ(alone.code, 3);
+}
+
+TEST(FitJson, ASlopeAtTheEndOfItsDomainIsToldAndAFunctionThatFallsIsUnfit) {
+  EXPECT_EQ(fit("1,25,100\n1.0001,100,100\n", 3)["slope_at_cap"], true);
+  EXPECT_EQ(fit("1,26,100\n2,50,100\n3,80,100\n4,96,100\n", 0)["slope_at_cap"], false);
+  EXPECT_THAT(fit("1,80,100\n2,70,100\n3,60,100\n", 3)["adequacy"].dump(), ::testing::HasSubstr("slope"));
 }
 
 TEST(MtfJson, DetectorAndOpticsFollowTheirClosedForms) {
@@ -162,6 +235,23 @@ TEST(RangeJson, ReadsTheCurveOfASessionAndFollowsTheTargetLine) {
   EXPECT_THAT(one_object(faint)["reason"].get<std::string>(), ::testing::HasSubstr("below the lowest contrast"));
   expect_refused(predict({"--delta-t-k", "1", "--v50", "8.5", "--m75", "5.1"}), 2, "range");
   expect_refused(todbench({"range", "--tod", "none", "--size-m", "1", "--delta-t-k", "1"}), 2, "none");
+}
+
+TEST(SimulatedSensor, ThatEndsBelowTheTargetIsNotFitForADecision) {
+  const TemporaryFolder folder;
+  ChildOptions options;
+  options.folder = folder.path();
+
+  // The SC2000 ends at 413.8 K, 114 K above the background.
+  const Ended clipped = todbench(
+      {"simulate", "--sensor", "sc2000", "--delta-t-k", "300", "--accuracy", "draft", "--out", "s", "--json"}, options);
+
+  EXPECT_EQ(clipped.code, 3) << clipped.err;
+  const Json json = one_object(clipped);
+  EXPECT_EQ(json["verdict"], "inconclusive");
+  const Json& adequacy = json["points"][0]["adequacy"];
+  EXPECT_EQ(adequacy["adequate"], false);
+  EXPECT_THAT(adequacy["findings"].dump(), ::testing::HasSubstr("\"clipping\"")) << adequacy;
 }
 
 }  // namespace

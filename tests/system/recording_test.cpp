@@ -1,4 +1,6 @@
 // Recording and replay as a user has them: the same answers bit for bit, also of a run that did not end well.
+#include <signal.h>
+
 #include "bench/session/session_folder.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
@@ -128,6 +130,103 @@ TEST_F(Replays, RecordNeverOverwritesTheFramesThatItReads) {
   expect_refused(run({"record", "file:a.todrec", "--out", "./a.todrec", "--force"}), 2, "where the frames come from");
 
   EXPECT_EQ(std::filesystem::file_size(at("a.todrec")), size);
+}
+
+class Recording : public Replays, public ::testing::WithParamInterface<const char*> {
+ protected:
+  /// As a camera.
+  std::string camera(const std::string& name) const {
+    return "file:" + name + (std::string(GetParam()) == "tiff" ? "?bits=14" : "");
+  }
+  std::string name() const { return std::string(GetParam()) == "tiff" ? "a.tif" : "a.todrec"; }
+  /// What another recording of the file says.
+  std::int64_t frames_in(const std::string& file) {
+    const Ended ended = run({"record", camera(file), "--out", "again.todrec", "--force", "--json"});
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    return ended.code == 0 ? one_object(ended)["frames"].get<std::int64_t>() : -1;
+  }
+};
+
+TEST_P(Recording, IntoAFolderThatIsDeletedEndsWithTheDisk) {
+  std::filesystem::create_directories(at("there"));
+  const std::string file = "there/" + name();
+  ChildOptions options;
+  options.folder = at("");
+  ChildProcess child(todbench_command({"record", "sim:sc2000", "--format", GetParam(), "--out", file, "--json"}),
+                     options);
+  ASSERT_TRUE(child.wait_until([&] {
+    std::error_code problem;
+    return std::filesystem::file_size(at(file), problem) > 1'000'000 && !problem;
+  }));
+
+  std::filesystem::remove_all(at("there"));
+  const Ended ended = child.wait();
+
+  EXPECT_EQ(ended.code, 7) << ended.err;
+  EXPECT_EQ(one_object(ended)["frames"], 0);
+  EXPECT_THAT(ended.err, HasSubstr(file));
+}
+
+TEST_P(Recording, OnAFullDiskKeepsEveryWholeFrameAndSaysHowMany) {
+  ChildOptions options;
+  options.folder = at("");
+  options.largest_file_bytes = 2'000'000;
+
+  const Ended ended = todbench({"record", "sim:sc2000", "--format", GetParam(), "--out", name(), "--json"}, options);
+
+  EXPECT_EQ(ended.code, 7) << ended.err;
+  const auto frames = one_object(ended)["frames"].get<std::int64_t>();
+  EXPECT_GT(frames, 0);
+  EXPECT_EQ(frames_in(name()), frames);
+}
+
+TEST_P(Recording, ThatIsKilledIsReadableUpToItsLastWholeFrame) {
+  ChildOptions options;
+  options.folder = at("");
+  ChildProcess child(todbench_command({"record", "sim:sc2000", "--format", GetParam(), "--out", name()}), options);
+  ASSERT_TRUE(child.wait_until([&] {
+    std::error_code problem;
+    return std::filesystem::file_size(at(name()), problem) > 3'000'000 && !problem;
+  }));
+
+  child.signal(SIGKILL);
+  (void)child.wait();
+
+  EXPECT_GT(frames_in(name()), 3);
+}
+
+INSTANTIATE_TEST_SUITE_P(InEveryFormat, Recording, ::testing::Values("recording", "tiff"),
+                         [](const auto& parameters) { return std::string(parameters.param); });
+
+TEST_F(Replays, RecordWritesNoTiffWithoutAFrame) {
+  ASSERT_EQ(run({"record", "sim:sc2000", "--frames", "3", "--out", "a.todrec"}).code, 0);
+  // One byte of every picture is another one: none is complete any more.
+  std::string bytes = *read_text_file(at("a.todrec"));
+  for (std::size_t at = bytes.find("FRAM"); at != std::string::npos; at = bytes.find("FRAM", at + 1000))
+    bytes[at + 500] = static_cast<char>(bytes[at + 500] ^ 1);
+  ASSERT_TRUE(write_file_atomically(at("bad.todrec"), bytes).has_value());
+
+  const Ended ended = run({"record", "file:bad.todrec", "--format", "tiff", "--out", "none.tif", "--json"});
+
+  EXPECT_EQ(ended.code, 5) << ended.err;
+  EXPECT_EQ(one_object(ended)["frames"], 0);
+  EXPECT_EQ(one_object(ended)["arrived"], 3);
+  EXPECT_THAT(ended.err, HasSubstr("none of 3 frames is complete"));
+  EXPECT_FALSE(std::filesystem::exists(at("none.tif")));
+}
+
+TEST_F(Replays, OfASessionWhoseFramesAreDeletedMeanwhileDoNotCount) {
+  write("plan.toml", small_measurement(10000));
+  ChildOptions options;
+  options.folder = at("");
+  ChildProcess child(todbench_command({"measure", "./plan.toml", "--record-frames", "--out", "m"}), options);
+  ASSERT_TRUE(child.wait_until([&] { return rows_in(at("m") / "trials.csv") > 20; }));
+
+  std::filesystem::remove_all(at("m") / "frames");
+  const Ended ended = child.wait();
+
+  EXPECT_EQ(ended.code, 7) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr("was deleted"));
 }
 
 TEST_F(Replays, RecordRefusesATiffStackThatIsCutOff) {

@@ -16,8 +16,9 @@ using ::testing::UnorderedElementsAre;
 
 const std::set<std::string> curve_keys{"observer", "sensor", "points",  "plan",
                                        "wall_s",   "frames", "verdict", "judgement"};
-const std::set<std::string> point_keys{"delta_t_k",          "s75_mrad",        "s75_ci95_mrad", "s75_direct_mrad",
-                                       "s75_direct_se_mrad", "acuity_per_mrad", "trials",        "verdict"};
+const std::set<std::string> point_keys{
+    "delta_t_k",       "s75_mrad", "s75_ci95_mrad", "s75_direct_mrad", "s75_direct_se_mrad",
+    "acuity_per_mrad", "trials",   "verdict",       "adequacy"};
 const std::set<std::string> effect_keys{"name", "decision", "reason", "predicted_change_percent"};
 
 /// A folder with a plan, and the program run in it.
@@ -48,7 +49,7 @@ TEST_F(Sessions, SimulateWritesEveryFileAndOneJsonObject) {
   EXPECT_EQ(point["delta_t_k"], 16.9);
   EXPECT_EQ(point["trials"], 8 * 20);  // twenty triangles on the plate
   EXPECT_DOUBLE_EQ(point["acuity_per_mrad"].get<double>() * point["s75_mrad"].get<double>(), 1);
-  ASSERT_EQ(json["plan"].size(), 14u);
+  ASSERT_EQ(json["plan"].size(), 15u);
   for (const auto& effect : json["plan"]) EXPECT_EQ(keys_of(effect), effect_keys);
   EXPECT_THAT(keys_of(json["frames"]), UnorderedElementsAre("used", "rejected"));
   expect_whole_session(at("s"), "complete");
@@ -67,7 +68,7 @@ TEST_F(Sessions, MeasureWithASimulatedCameraComparesWithItsTwin) {
   EXPECT_EQ(keys_of(json), curve_keys);
   EXPECT_EQ(keys_of(json["points"][0]), point_keys);
   EXPECT_TRUE(json["points"][0]["s75_direct_mrad"].is_null());  // exists only for a simulated curve
-  EXPECT_EQ(json["plan"].size(), 14u);                          // of the twin
+  EXPECT_EQ(json["plan"].size(), 15u);                          // of the twin
   expect_whole_session(at("m"), "complete");
   EXPECT_TRUE(std::filesystem::exists(at("m") / "comparison.json"));
   EXPECT_EQ(json["judgement"], Json::parse(content_of(at("m") / "verdict.json")));
@@ -292,11 +293,78 @@ TEST_F(Sessions, CompareTellsEquivalentDifferentAndUndecidedApart) {
   EXPECT_EQ(other.code, 1) << other.out;
   EXPECT_EQ(open.code, 3) << open.out;
   const Json json = one_object(other);
-  EXPECT_THAT(keys_of(json), UnorderedElementsAre("points", "verdict"));
+  EXPECT_THAT(keys_of(json), UnorderedElementsAre("points", "verdict", "adequacy"));
   EXPECT_THAT(keys_of(json["points"][0]), UnorderedElementsAre("delta_t_k", "ratio", "ratio_ci95", "p_difference",
                                                                "p_equivalence", "margin_percent", "verdict"));
   EXPECT_GT(json["points"][0]["ratio"].get<double>(), 1);  // the sharper one sees more
   EXPECT_EQ(json["verdict"], "different");
+}
+
+TEST_F(Sessions, CompareRefusesWhatCannotBeComparedInEitherOrder) {
+  std::string observer = content_of(source_file("hvs/observers/hvs-1.toml"));
+  observer.replace(observer.find("internal_noise = 0.07"), 21, "internal_noise = 0.09");
+  write("observer.toml", observer);
+  write("plan.toml", small_plan(4, "[fit]\nform = \"size\"\n"));
+  write("form.toml", small_plan(4, "[fit]\nform = \"acuity\"\n"));
+  write("lapse.toml", small_plan(4, "[fit]\nlapse = \"free\"\n"));
+  write("observer_plan.toml", small_plan(4, "[observer]\nname = \"./observer.toml\"\n"));
+  const auto simulate = [&](const std::string& plan, const std::string& out, const std::string& seed) {
+    ASSERT_TRUE(completed(run({"simulate", "./" + plan, "--out", out, "--seed", seed})));
+  };
+  simulate("plan.toml", "a", "1");
+  simulate("plan.toml", "again", "1");
+  simulate("form.toml", "form", "2");
+  simulate("lapse.toml", "lapse", "3");
+  simulate("observer_plan.toml", "observer", "4");
+
+  for (const auto& [other, sentence] :
+       std::vector<std::pair<std::string, std::string>>{{"a", "the same trials"},
+                                                        {"again", "the same trials"},
+                                                        {"form", "fitted differently"},
+                                                        {"lapse", "fitted differently"},
+                                                        {"observer", "their parameters differ"}}) {
+    expect_refused(run({"compare", "a", other}), 2, sentence);
+    expect_refused(run({"compare", other, "a"}), 2, sentence);
+  }
+}
+
+TEST_F(Sessions, CompareWithOtherPlatesDecidesNothing) {
+  std::string plate = content_of(source_file("tod/plate/tcat-a.toml"));
+  const auto at = plate.find("size_mm = ");
+  ASSERT_NE(at, std::string::npos);
+  const auto end = plate.find_first_of(" ,}\n", at + 10);
+  plate.replace(at + 10, end - at - 10, std::to_string(std::stod(plate.substr(at + 10, end - at - 10)) * 0.99));
+  write("plate.toml", plate);
+  write("plan.toml", small_plan(16));
+  std::string other = small_plan(16);
+  other.replace(other.find("\"tcat-a\""), 8, "\"./plate.toml\"");
+  write("other.toml", other);
+  ASSERT_TRUE(completed(run({"simulate", "./plan.toml", "--out", "a"})));
+  ASSERT_TRUE(completed(run({"simulate", "./other.toml", "--out", "b", "--seed", "2"})));
+
+  for (const auto& [first, second] : {std::pair("a", "b"), std::pair("b", "a")}) {
+    const Ended compared = run({"compare", first, second, "--margin-percent", "60", "--json"});
+
+    EXPECT_EQ(compared.code, 3) << compared.out << compared.err;
+    const Json json = one_object(compared);
+    EXPECT_EQ(json["verdict"], "inconclusive");
+    EXPECT_EQ(json["adequacy"]["findings"][0]["kind"], "identity");
+    EXPECT_TRUE(json["points"][0]["ratio"].is_number());
+  }
+}
+
+TEST_F(Sessions, TheMarginOfAComparisonIsTheSmallerOneOfBothPlans) {
+  write("wide.toml", small_plan(4, "[limits]\nequivalence_margin_percent = 60\n"));
+  write("narrow.toml", small_plan(4, "[limits]\nequivalence_margin_percent = 5\n"));
+  ASSERT_NE(run({"simulate", "./wide.toml", "--out", "a"}).code, 2);
+  ASSERT_NE(run({"simulate", "./narrow.toml", "--out", "b", "--seed", "2"}).code, 2);
+
+  const Json forth = one_object(run({"compare", "a", "b", "--json"}));
+  const Json back = one_object(run({"compare", "b", "a", "--json"}));
+
+  EXPECT_EQ(forth["points"][0]["margin_percent"], 5);
+  EXPECT_EQ(back["points"][0]["margin_percent"], 5);
+  EXPECT_EQ(forth["verdict"], back["verdict"]);
 }
 
 TEST_F(Sessions, QuietMeansNothingOnStandardErrorAndNoTerminalNoControlCharacters) {
@@ -339,8 +407,8 @@ TEST_F(Sessions, ADamagedSessionIsNamedByFile) {
   ASSERT_TRUE(completed(run({"simulate", "./plan.toml", "--out", "s"})));
   write("s/fits.json", "{\"main\": ");
 
-  expect_refused(run({"report", "s"}), 2, "s/fits.json: not valid JSON");
-  expect_refused(run({"compare", "s", "s"}), 2, "s/fits.json: not valid JSON");
+  expect_refused(run({"report", "s"}), 2, "s: the session was changed: fits.json was changed after the session ended");
+  expect_refused(run({"compare", "s", "s", "--accept-changed"}), 2, "s/fits.json: not valid JSON");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "bench/session/manifest.h"
 #include "bench/session/trials_csv.h"
 #include "tests/system/system_test_support.h"
 
@@ -30,6 +31,22 @@ void expect_readable_trials(const std::filesystem::path& csv, std::size_t at_lea
   const auto trials = read_trials(csv);
   ASSERT_TRUE(trials) << trials.error().message;
   EXPECT_GE(trials->size(), at_least);
+}
+
+/// A disk that refused: the session says so, vouches for every file that is there, and holds no trial more or less.
+void expect_ended_by_the_disk(const std::filesystem::path& session, const std::string& reason, const Json& said) {
+  const Json provenance = Json::parse(content_of(session / "provenance.json"), nullptr, false);
+  ASSERT_TRUE(provenance.is_object());
+  EXPECT_EQ(provenance["state"], "interrupted");
+  EXPECT_THAT(provenance["run"]["ended_by"].get<std::string>(), HasSubstr(reason));
+  EXPECT_FALSE(provenance["ended_utc"].get<std::string>().empty());
+  EXPECT_THAT(content_of(session / "log.txt"), HasSubstr("ended early: "));
+  EXPECT_THAT(Json::parse(content_of(session / "verdict.json"))["ended_early"].get<std::string>(), HasSubstr(reason));
+  const auto check = check_manifest(session);
+  ASSERT_TRUE(check) << check.error().message;
+  EXPECT_TRUE(check->intact()) << check->changed.size() << check->missing.size() << check->foreign.size();
+  EXPECT_EQ(said["points"][0]["trials"], rows_in(session / "trials.csv"));
+  EXPECT_EQ(said["verdict"], "inconclusive");
 }
 
 class Interruption : public ::testing::TestWithParam<std::tuple<const char*, int>> {};
@@ -113,6 +130,7 @@ TEST(FullDisk, ALimitOfTheFileSizeKeepsEveryWholeTrial) {
   EXPECT_THAT(lines_of(ended.err).back(), HasSubstr("s/trials.csv: cannot be written: File too large"));
   expect_readable_trials(folder.path() / "s" / "trials.csv", trials_per_frame);
   EXPECT_EQ(one_object(ended)["points"].size(), 1u);
+  expect_ended_by_the_disk(folder.path() / "s", "File too large", one_object(ended));
 }
 
 /// A disk of the test's own, in memory.
@@ -138,18 +156,53 @@ class SmallDisk {
   bool mounted_ = false;
 };
 
-TEST(FullDisk, KeepsEveryWholeTrialAndTellsTheResult) {
-  const TemporaryFolder folder;
-  const SmallDisk disk(folder.path() / "disk", "128k");
-  if (!disk.mounted()) GTEST_SKIP() << "no mount of its own is permitted here: " << disk.reason();
-  folder.write("plan.toml", small_plan(endless));
+class FullDiskOf : public ::testing::TestWithParam<std::tuple<const char*, const char*>> {};
 
-  const Ended ended = todbench({"simulate", "./plan.toml", "--out", "disk/s", "--json"}, {.folder = folder.path()});
+TEST_P(FullDiskOf, KeepsEveryWholeTrialAndTellsTheResult) {
+  const auto [command, size] = GetParam();
+  const TemporaryFolder folder;
+  const SmallDisk disk(folder.path() / "disk", size);
+  if (!disk.mounted()) GTEST_SKIP() << "no mount of its own is permitted here: " << disk.reason();
+  folder.write("plan.toml", small_measurement(endless, "[measurement]\nregistration_frames = 4\n"));
+  folder.write("simulated.toml", small_plan(endless));
+  const char* plan = std::string(command) == "measure" ? "./plan.toml" : "./simulated.toml";
+
+  const Ended ended = todbench({command, plan, "--out", "disk/s", "--json"}, {.folder = folder.path()});
 
   EXPECT_EQ(ended.code, 7) << ended.err;
   EXPECT_THAT(lines_of(ended.err).back(), HasSubstr("cannot be written: No space left on device"));
   expect_readable_trials(folder.path() / "disk" / "s" / "trials.csv", trials_per_frame);
   EXPECT_EQ(one_object(ended)["points"].size(), 1u);
+  expect_ended_by_the_disk(folder.path() / "disk" / "s", "No space left on device", one_object(ended));
+  EXPECT_EQ(todbench({"verify", "disk/s"}, {.folder = folder.path()}).code, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FullDiskOf,
+                         ::testing::Combine(::testing::Values("simulate", "measure"),
+                                            ::testing::Values("128k", "140k", "200k")));
+
+TEST(FullDisk, AFolderThatCannotBeWrittenIsNoMistakeOfTheUser) {
+  const TemporaryFolder folder;
+  const SmallDisk disk(folder.path() / "disk", "1m");
+  if (!disk.mounted()) GTEST_SKIP() << "no mount of its own is permitted here: " << disk.reason();
+  folder.write("plan.toml", small_plan(2));
+  ASSERT_TRUE(completed(todbench({"simulate", "./plan.toml", "--out", "disk/s"}, {.folder = folder.path()})));
+  ASSERT_EQ(::mount(nullptr, (folder.path() / "disk").c_str(), nullptr, MS_REMOUNT | MS_RDONLY, nullptr), 0);
+  const std::vector<std::vector<std::string>> writers{
+      {"simulate", "./plan.toml", "--out", "disk/new"},
+      {"simulate", "./plan.toml", "--out", "disk/s", "--force"},
+      {"report", "disk/s"},
+      {"reproduce", "eo-vista", "--out", "disk/page"},
+      {"render", "--sensor", "sc2000", "--size-pitch", "3", "--tiff", "disk/a.tiff"},
+      {"record", "sim:sc2000", "--frames", "1", "--out", "disk/a.todrec"},
+      {"record", "sim:sc2000", "--frames", "1", "--format", "tiff", "--out", "disk/a.tif"}};
+
+  for (const auto& writer : writers) {
+    const Ended ended = todbench(writer, {.folder = folder.path()});
+
+    EXPECT_EQ(ended.code, 7) << writer.front() << " " << writer.back() << ": " << ended.err;
+    EXPECT_THAT(ended.err, HasSubstr("Read-only file system")) << writer.front() << " " << writer.back();
+  }
 }
 
 TEST(FullDisk, FromTheBeginningIsOneSentence) {

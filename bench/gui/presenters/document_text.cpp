@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "acquisition/core/safe_text.h"
+
 namespace todbench {
 namespace {
 
@@ -15,7 +17,7 @@ constexpr double room_to_sign_px = 40;
 const QColor ink(32, 32, 32), soft(80, 80, 80), rule(208, 208, 208), header_ground(240, 240, 240);
 
 QString qt(const std::string& text) {
-  return QString::fromStdString(text);
+  return QString::fromStdString(valid_text(text));
 }
 
 QColor colour_of(Mood mood) {

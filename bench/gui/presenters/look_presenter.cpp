@@ -41,7 +41,7 @@ Result<OpenedBench> open_for_looking(const Plan& plan, const std::stop_token& st
       return tl::unexpected(shown.error());
     return bench;
   }
-  auto camera = camera_registry().open(plan.camera.id);
+  auto camera = camera_registry(stop).open(plan.camera.id);
   if (!camera) return tl::unexpected(camera.error());
   OpenedBench bench;
   bench.camera = std::move(*camera);

@@ -41,7 +41,7 @@ Result<std::vector<ExpectedThreshold>> expected_thresholds(const LoadedPlan& loa
   std::vector<ExpectedThreshold> out;
   for (const double contrast : plan.target.delta_t_k) {
     ExpectedThreshold expected{.delta_t_k = contrast, .s75_mrad = {}};
-    const auto point = direct_estimate(as_planned(sensor, effects), effects, observer, {std::abs(contrast)},
+    const auto point = direct_estimate(as_planned(sensor, effects), effects, observer, {contrast},
                                        {.motion = plan.simulation.motion, .accuracy = Accuracy::draft(), .stop = stop});
     if (!point && point.error().code == ErrorCode::interrupted) return tl::unexpected(point.error());
     if (point) expected.s75_mrad = point->front().s75_pitch * sensor.ifov_mrad();

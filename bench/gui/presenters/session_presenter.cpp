@@ -6,11 +6,12 @@
 #include <utility>
 
 #include "bench/gui/presenters/pdf_report.h"
-#include "bench/plan/plan_options.h"
 #include "bench/report/tod_figures.h"
+#include "bench/run/rebuild_report.h"
 #include "bench/run/recorded_bench.h"
 #include "bench/run/report_data.h"
-#include "bench/text/files.h"
+#include "bench/session/open_session.h"
+#include "bench/session/session_comparison.h"
 #include "bench/text/text.h"
 
 namespace todbench {
@@ -33,7 +34,10 @@ Result<SessionEntry> entry_of(const std::filesystem::path& folder) {
   entry.folder = folder;
   entry.name = short_name(QString::fromStdString(session_name(folder)));
   entry.when = QString::fromStdString(provenance->started_utc).replace('T', ' ').remove('Z');
-  entry.state = QString::fromUtf8(to_string(provenance->state).data());
+  // What the list shows comes from this one file; the others are checked when the session is opened.
+  const auto listed = is_listed(folder, "provenance.json");
+  const bool cut_off = provenance->state == SessionState::running;
+  entry.state = cut_off || listed.value_or(false) ? QString::fromUtf8(to_string(provenance->state).data()) : "changed";
   if (provenance->camera)
     entry.unit = QString::fromStdString(provenance->camera->model + ", serial " + provenance->camera->serial);
   if (!provenance->camera) entry.unit = "simulation";
@@ -43,35 +47,36 @@ Result<SessionEntry> entry_of(const std::filesystem::path& folder) {
 }  // namespace
 
 Result<Exported> export_reports(const OpenedSession& opened) {
-  const auto html = opened.folder / "report.html";
+  // Since it was opened the files may have been changed.
+  if (!opened.session.cut_off) {
+    if (auto intact = require_intact(opened.folder); !intact) return tl::unexpected(intact.error());
+  }
   const auto pdf = opened.folder / "report.pdf";
-  if (auto written = write_file_atomically(html, render_report(opened.report)); !written)
-    return tl::unexpected(written.error());
-  if (auto written = write_pdf_report(opened.report, pdf); !written) return tl::unexpected(written.error());
-  if (!opened.session.verdict) {
-    if (auto kept = keep_verdict(opened.folder, *opened.report.verdict); !kept) return tl::unexpected(kept.error());
-  }
-  std::error_code none;
-  if (std::filesystem::exists(opened.folder / "manifest.json", none)) {
-    if (auto refreshed = refresh_manifest(opened.folder, {"report.html", "report.pdf"}); !refreshed)
-      return tl::unexpected(refreshed.error());
-  }
-  return Exported{QString::fromStdString(html.string()), QString::fromStdString(pdf.string())};
+  const auto write_both = [&](const ReportData& data) -> Result<std::vector<std::string>> {
+    auto pages = html_page(opened.folder)(data);
+    if (!pages) return pages;
+    if (auto written = write_pdf_report(data, pdf); !written) return tl::unexpected(written.error());
+    pages->emplace_back("report.pdf");
+    return pages;
+  };
+  if (auto rebuilt = rebuild_report(opened.session, opened.folder, write_both); !rebuilt)
+    return tl::unexpected(rebuilt.error());
+  return Exported{QString::fromStdString((opened.folder / "report.html").string()),
+                  QString::fromStdString(pdf.string())};
 }
 
 Result<OpenedSession> read_opened_session(const std::filesystem::path& folder) {
-  auto session = read_session(folder);
+  auto session = open_session(folder, {.accept_changed = false, .accept_cut_off = true});
   if (!session) return tl::unexpected(session.error());
-  const std::string name = session_name(folder);
-  auto data = report_data(*session, name);
+  auto data = report_data_of(*session, folder);
   if (!data) return tl::unexpected(data.error());
   auto human = read_human(folder);
   if (!human) return tl::unexpected(human.error());
-  if (*human) data->human = (*human)->curve;
   std::error_code none;
   const bool recorded = std::filesystem::exists(recorded_frames(folder), none);
-  return OpenedSession{folder,  QString::fromStdString(name), *std::move(session), *std::move(data), *std::move(human),
-                       recorded};
+  return OpenedSession{
+      folder,  QString::fromStdString(session_name(folder)), *std::move(session), *std::move(data), *std::move(human),
+      recorded};
 }
 
 std::vector<SessionEntry> sessions_below(const std::filesystem::path& folder) {
@@ -128,15 +133,13 @@ void SessionPresenter::compare_with(const std::filesystem::path& other) {
     return;
   }
   in_background<ComparedSessions>(
-      [a = current_->name, curve = *current_->session.curve, options = comparison_options(current_->session.plan),
-       other]() -> Result<ComparedSessions> {
-        auto session = read_session(other);
-        if (!session) return tl::unexpected(session.error());
-        if (!session->curve) return fail(ErrorCode::invalid_input, other.string() + ": the session holds no curve");
-        auto comparison = compare(curve, *session->curve, options);
-        if (!comparison) return tl::unexpected(comparison.error());
-        return ComparedSessions{a, QString::fromStdString(session_name(other)), curve, *session->curve,
-                                *std::move(comparison)};
+      [name = current_->name, a = current_->session, other]() -> Result<ComparedSessions> {
+        const auto b = open_session(other, {});
+        if (!b) return tl::unexpected(b.error());
+        auto compared = compare_sessions(a, *b, std::nullopt);
+        if (!compared) return fail(other.string(), compared.error());
+        return ComparedSessions{name, QString::fromStdString(session_name(other)), std::move(compared->a),
+                                std::move(compared->b), std::move(compared->comparison)};
       },
       [this](ComparedSessions sessions) {
         compared_ = std::move(sessions);

@@ -78,13 +78,13 @@ class SessionPresenter final : public QObject {
   JobRunner list_jobs_, jobs_;
 };
 
-/// Reads a session with everything that is shown of it. Errors: as read_session(), report_data(), read_human().
+/// Reads a session with everything that is shown of it. Errors: as open_session(), report_data(), read_human().
 [[nodiscard]] Result<OpenedSession> read_opened_session(const std::filesystem::path& folder);
 struct Exported {
   QString html, pdf;
 };
 /// Writes report.html and report.pdf into the session's folder and their sums into its manifest. Any thread. `io` with
-/// the path.
+/// the path; `invalid_input` when files of the session were changed.
 [[nodiscard]] Result<Exported> export_reports(const OpenedSession& opened);
 /// Sessions directly below a folder, newest first; unreadable ones are left out.
 [[nodiscard]] std::vector<SessionEntry> sessions_below(const std::filesystem::path& folder);

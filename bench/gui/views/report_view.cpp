@@ -29,6 +29,8 @@ QString verdict_text(ReportVerdict verdict) {
       return "? INCONCLUSIVE: a limit is not decided";
     case ReportVerdict::interrupted:
       return "? INTERRUPTED: the run ended early";
+    case ReportVerdict::changed:
+      return "✗ FILES CHANGED: no verdict";
     case ReportVerdict::not_judged:
       return "Not judged: no limits were asked for";
   }
@@ -215,9 +217,11 @@ void ReportView::show_session() {
 
 void ReportView::show_comparison() {
   const ComparedSessions& compared = *presenter_.compared_sessions();
+  const std::string reasons = reasons_unfit(compared.comparison.adequacy.value_or(Adequacy{}));
   title_->setText(compared.a + " against " + compared.b);
   verdict_->setText("Acuity ratio " + compared.a + " / " + compared.b + ": " +
-                    text_of(to_string(compared.comparison.verdict)));
+                    text_of(to_string(compared.comparison.verdict)) +
+                    (reasons.empty() ? QString() : ": " + QString::fromStdString(reasons)));
   fill_table(*ratios_, ratio_rows(compared.comparison));
   fill_table(*limits_, {});
   show_plot();

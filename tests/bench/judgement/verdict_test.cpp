@@ -390,6 +390,25 @@ TEST(ExitCode, FollowsTheCommandLineContract) {
   EXPECT_EQ(exit_code(ErrorCode::interrupted), 130);
 }
 
+TEST(Judge, ANumberThatIsUnfitDecidesNothingWhateverItsInterval) {
+  for (const double low_mrad : {1.5, 5.0}) {
+    TodPoint point = point_with(FitVerdict::ok, low_mrad, low_mrad + 0.3);
+    const VerdictKind before = judged(one_limit(), {"o", "s", {point}}, std::nullopt).decision;
+    ASSERT_NE(before, VerdictKind::inconclusive);
+    point.adequacy = Adequacy{{{FindingKind::rounding, 0.3, 0.5, "rounding is no white noise", false}}};
+    EXPECT_EQ(judged(one_limit(), {"o", "s", {point}}, std::nullopt).decision, before);
+
+    point.adequacy->findings.push_back({FindingKind::clipping, 0.2, 0, "pixels are saturated", true});
+    const Verdict limited = judged(one_limit(), {"o", "s", {point}}, std::nullopt);
+    const Verdict unlimited = judged({}, {"o", "s", {point}}, std::nullopt);
+
+    EXPECT_EQ(limited.decision, VerdictKind::inconclusive);
+    EXPECT_THAT(limited.demands.at(0).reason, HasSubstr("not fit for a decision: pixels are saturated; "));
+    EXPECT_EQ(unlimited.decision, VerdictKind::inconclusive);
+    EXPECT_EQ(exit_code(point.fit, *point.adequacy), 3);
+  }
+}
+
 TEST(ExitCode, OfAFitIsThreeWhereTheThresholdCannotBeIdentified) {
   EXPECT_EQ(exit_code(point_with(FitVerdict::ok, 1.5, 1.8).fit), 0);
   EXPECT_EQ(exit_code(point_with(FitVerdict::extrapolated, 1.5, 1.8).fit), 0);

@@ -360,6 +360,24 @@ TEST(Report, AFreeLapseThatFitsBetterIsSaidAndDrawn) {
   EXPECT_TRUE(contains(page, "measured, free lapse"));
 }
 
+TEST(Report, WhatSpeaksAgainstANumberStandsBesideItAndInASentence) {
+  ReportData data = sample_report();
+  ASSERT_FALSE(contains(render_report(data), "not fit for a decision"));
+  data.measured->points[1].adequacy =
+      Adequacy{{{FindingKind::lapse, 20, 6, "lapses <that> the fit does not allow for", true}}};
+  data.simulated->points[0].adequacy =
+      Adequacy{{{FindingKind::rounding, 0.3, 0.5, "rounding is no white noise", false}}};
+  data.comparison->adequacy = Adequacy{{{FindingKind::identity, {}, {}, "other plates were used", true}}};
+
+  const std::string page = render_report(data);
+
+  EXPECT_EQ(complaint(page), "");
+  EXPECT_TRUE(contains(page, "lapses &lt;that&gt; the fit does not allow for"));
+  EXPECT_TRUE(contains(page, "not fit for a decision"));
+  EXPECT_TRUE(contains(page, "rounding is no white noise"));
+  EXPECT_TRUE(contains(page, "other plates were used"));
+}
+
 TEST(Report, CatchTrialsAreInTheAppendixAndNotOnTheLogarithmicAxis) {
   ReportData data = sample_report();
   data.measured->points[0].levels.push_back({0, 5, 20, -1});

@@ -206,6 +206,17 @@ TEST_F(ReconnectingSourceTest, RefusesAnotherCameraAtTheSamePlace) {
   EXPECT_THAT(back.error().message, HasSubstr("serial number was 1 and is 2"));
 }
 
+TEST_F(ReconnectingSourceTest, RefusesACameraWithoutASerialNumberBecauseAnotherWouldBeTheSame) {
+  script_->serial = "";
+  auto& source = lost_source();
+
+  const auto back = source.recover({});
+
+  ASSERT_FALSE(back);
+  EXPECT_EQ(back.error().code, ErrorCode::disconnected);
+  EXPECT_THAT(back.error().message, HasSubstr("no serial number"));
+}
+
 TEST_F(ReconnectingSourceTest, IsAbortedWithinASecondInEveryState) {
   const auto abort_while = [this](bool Script::*hanging, LinkState during) {
     script_ = std::make_shared<Script>();

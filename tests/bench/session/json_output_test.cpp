@@ -41,7 +41,7 @@ TEST(FitJson, HasExactlyThePublishedKeys) {
 
   EXPECT_EQ(
       to_line(fit_json(fit)),
-      R"({"verdict":"ok","threshold":2.0,"ci95":[1.5,2.5],"slope":3.5,"lapse":0.01,"log_likelihood":-14.25,"deviance":5.5,)"
+      R"({"verdict":"ok","threshold":2.0,"ci95":[1.5,2.5],"slope":3.5,"slope_at_cap":false,"lapse":0.01,"log_likelihood":-14.25,"deviance":5.5,)"
       R"("degrees_of_freedom":8,"posterior":{"median":2.25,"ci95":[1.75,2.75],"prior_bound":false}})");
 }
 
@@ -52,7 +52,7 @@ TEST(FitJson, WhatDoesNotExistIsNull) {
 
   EXPECT_EQ(
       to_line(fit_json(fit)),
-      R"({"verdict":"above_range","threshold":null,"ci95":[1.5,null],"slope":null,"lapse":0.0,"log_likelihood":null,)"
+      R"({"verdict":"above_range","threshold":null,"ci95":[1.5,null],"slope":null,"slope_at_cap":false,"lapse":0.0,"log_likelihood":null,)"
       R"("deviance":null,"degrees_of_freedom":0,"posterior":null})");
 }
 
@@ -70,7 +70,7 @@ TEST(CurveJson, HasExactlyThePublishedKeys) {
   EXPECT_EQ(
       to_line(curve_json(curve, plan, {2.5, 100, {{"incomplete", 3}}})),
       R"({"observer":"hvs-1","sensor":"sc2000","points":[{"delta_t_k":16.9,"s75_mrad":2.0,"s75_ci95_mrad":[1.5,2.5],)"
-      R"("s75_direct_mrad":2.125,"s75_direct_se_mrad":0.25,"acuity_per_mrad":0.5,"trials":640,"verdict":"ok"}],)"
+      R"("s75_direct_mrad":2.125,"s75_direct_se_mrad":0.25,"acuity_per_mrad":0.5,"trials":640,"verdict":"ok","adequacy":null}],)"
       R"("plan":[{"name":"diffraction","decision":"skip","reason":"said so","predicted_change_percent":-1.5},)"
       R"({"name":"detector","decision":"simulate","reason":"never","predicted_change_percent":null}],)"
       R"("wall_s":2.5,"frames":{"used":100,"rejected":{"incomplete":3}}})");
@@ -167,6 +167,36 @@ TEST(CurveRecord, ComesBackWithEveryField) {
   ASSERT_EQ(point.levels.size(), 2u);
   EXPECT_EQ(point.levels[0].cluster, 3);
   EXPECT_EQ(point.levels[0].correct, 10);
+}
+
+TEST(CurveRecord, KeepsWhatSpeaksAgainstANumberAndReadsRecordsThatKnowNothingOfIt) {
+  TodCurve curve = testing::full_curve();
+  TodPoint& point = curve.points[0];
+  point.fit.slope_at_cap = true;
+  point.adequacy = Adequacy{{{FindingKind::clipping, 0.25, 0, "saturated", true},
+                             {FindingKind::identity, std::nullopt, std::nullopt, "other plates", false}}};
+  point.saturated_share = 0.25;
+  point.noise_counts = 0.5;
+  point.lag1_correlation = -0.125;
+  Json old = curve_record(curve);
+  for (const char* key : {"adequacy", "saturated_share", "noise_counts", "lag1_correlation"})
+    old["points"][0].erase(key);
+  old["points"][0]["fit"].erase("slope_at_cap");
+
+  const Result<TodCurve> back = curve_from(Json::parse(to_page(curve_record(curve))));
+  const Result<TodCurve> from_old = curve_from(old);
+
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->points[0].adequacy, point.adequacy);
+  EXPECT_EQ(back->points[1].adequacy, std::nullopt);
+  EXPECT_TRUE(back->points[0].fit.slope_at_cap);
+  EXPECT_EQ(back->points[0].saturated_share, 0.25);
+  EXPECT_EQ(back->points[0].noise_counts, 0.5);
+  EXPECT_EQ(back->points[0].lag1_correlation, -0.125);
+  EXPECT_EQ(adequacy_json(back->points[0].adequacy)["adequate"], false);
+  ASSERT_TRUE(from_old) << from_old.error().message;
+  EXPECT_EQ(from_old->points[0].adequacy, std::nullopt);
+  EXPECT_EQ(from_old->points[0].saturated_share, 0);
 }
 
 TEST(CurveRecord, AMissingKeyIsNamedWithItsPlace) {

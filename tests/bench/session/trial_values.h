@@ -16,7 +16,7 @@ namespace todbench::testing {
 inline auto values_of(const Trial& t) {
   return std::make_tuple(t.presentation, t.plate, t.mounting, t.triangle, t.set_delta_t_k, t.delta_t_k, t.size_mm,
                          t.size_mrad, t.size_px, t.truth, t.answer, t.scores, t.phase_x_px, t.phase_y_px, t.frame,
-                         t.device_time_ns, t.host_time_ns, t.since_nuc_s);
+                         t.device_time_ns, t.host_time_ns, t.since_nuc_s, t.saturated_pixels);
 }
 
 /// A presentation in which nothing is missing and no two numbers are the same.
@@ -61,6 +61,7 @@ inline std::vector<Trial> random_trials(int count) {
     t.device_time_ns = -i;
     t.host_time_ns = 9223372036854775807 - i;
     t.since_nuc_s = i % 3 == 0 ? -1 : stream.uniform(draw++);
+    t.saturated_pixels = i % 4 == 0 ? 0 : 100 * i;
     trials.push_back(std::move(t));
   }
   return trials;
@@ -97,6 +98,9 @@ inline TodPoint full_point(double delta_t_k, double threshold_mrad) {
   point.lapse_warning = true;
   point.direct_s75_mrad = threshold_mrad * 1.002;
   point.direct_s75_se_mrad = 0.004;
+  point.saturated_share = 0.0625;
+  point.noise_counts = 7.25;
+  point.lag1_correlation = -0.125;
   return point;
 }
 

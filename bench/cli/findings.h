@@ -1,0 +1,14 @@
+// Findings of adequacy as text for people.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "bench/cli/console.h"
+
+namespace todbench {
+
+/// One line for each finding, behind `about`; nothing where there are none. What makes a number unfit says so.
+void print_findings(const Console& console, const std::optional<Adequacy>& adequacy, std::string_view about);
+
+}  // namespace todbench

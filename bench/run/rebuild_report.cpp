@@ -1,0 +1,47 @@
+#include "bench/run/rebuild_report.h"
+
+#include <utility>
+
+#include "bench/run/report_data.h"
+#include "bench/session/human_record.h"
+#include "bench/session/manifest.h"
+#include "bench/text/files.h"
+
+namespace todbench {
+
+Result<ReportData> report_data_of(const Session& session, const std::filesystem::path& folder) {
+  auto data = report_data(session, session_name(folder));
+  if (!data) return data;
+  auto human = read_human(folder);
+  if (!human) return tl::unexpected(human.error());
+  if (*human) data->human = std::move((*human)->curve);
+  return data;
+}
+
+Result<ReportData> rebuild_report(const Session& session, const std::filesystem::path& folder,
+                                  const PageWriter& write_pages) {
+  auto data = report_data_of(session, folder);
+  if (!data) return data;
+  const bool vouched_for = session.accepted_changes.empty() && !session.cut_off;
+  if (vouched_for && !session.verdict) {
+    if (auto kept = keep_verdict(folder, *data->verdict); !kept) return tl::unexpected(kept.error());
+    auto digest = manifest_digest(folder);
+    if (!digest) return tl::unexpected(digest.error());
+    data->manifest_sha256 = *std::move(digest);
+  }
+  const auto pages = write_pages(*data);
+  if (!pages) return tl::unexpected(pages.error());
+  if (!vouched_for) return data;
+  if (auto refreshed = refresh_manifest(folder, *pages); !refreshed) return tl::unexpected(refreshed.error());
+  return data;
+}
+
+PageWriter html_page(std::filesystem::path folder) {
+  return [folder = std::move(folder)](const ReportData& data) -> Result<std::vector<std::string>> {
+    if (auto written = write_file_atomically(folder / "report.html", render_report(data)); !written)
+      return tl::unexpected(written.error());
+    return std::vector<std::string>{"report.html"};
+  };
+}
+
+}  // namespace todbench

@@ -1,0 +1,119 @@
+#include "bench/run/session_frame.h"
+
+#include <utility>
+
+#include "bench/report/report.h"
+#include "bench/run/report_data.h"
+#include "bench/session/ending_reserve.h"
+#include "bench/session/manifest.h"
+
+namespace todbench {
+namespace {
+
+/// Remembers the first thing that the disk refused.
+class Refusals {
+ public:
+  void keep(const Result<void>& written) {
+    if (!written && !first_) first_ = written.error();
+  }
+  [[nodiscard]] const std::optional<Error>& first() const { return first_; }
+
+ private:
+  std::optional<Error> first_;
+};
+
+/// Writes report.html from what the folder holds, which is all but the manifest.
+Result<void> write_report_of(SessionFolder& folder, const ManifestEntries& entries) {
+  auto session = read_session(folder.path());
+  if (!session) return tl::unexpected(session.error());
+  session->manifest_sha256 = digest_of(entries);
+  auto data = report_data(*session, session_name(folder.path()));
+  if (!data) return tl::unexpected(data.error());
+  return folder.write_report(render_report(*data));
+}
+
+/// What is known of the run when it ends.
+Provenance ended(Provenance provenance, const SessionClock& clock, const std::optional<Error>& ended_by) {
+  provenance.state = ended_by ? SessionState::interrupted : SessionState::complete;
+  provenance.ended_utc = clock.now_utc();
+  provenance.clock_jump_s = clock.jump_s();
+  if (ended_by && provenance.run && provenance.run->ended_by.empty()) provenance.run->ended_by = ended_by->message;
+  return provenance;
+}
+
+/// State, verdict, report and manifest. The result is the first thing that was refused; what follows it is written
+/// nevertheless as far as there is room.
+Result<void> close_session(const SessionFrame& frame, const Provenance& provenance, const Verdict& verdict,
+                           const std::optional<Error>& ended_by) {
+  SessionFolder& folder = frame.folder;
+  Refusals refused;
+  free_ending_room(folder.path(), EndingRoom::state);
+  const Provenance last = ended(provenance, folder.clock(), ended_by);
+  if (last.clock_jump_s != 0) note(folder, frame.listener, jump_sentence(last.clock_jump_s));
+  refused.keep(folder.log(ended_by ? "ended early: " + ended_by->message : "complete"));
+  refused.keep(folder.write_provenance(last));
+  refused.keep(folder.write_verdict(verdict));
+  auto entries = manifest_entries(folder.path());
+  if (!entries) {
+    refused.keep(tl::unexpected(entries.error()));
+  } else if (last.run) {
+    const auto written = write_report_of(folder, *entries);
+    refused.keep(written);
+    if (written) refused.keep(update_entries(folder.path(), {"report.html"}, *entries));
+  }
+  free_ending_room(folder.path(), EndingRoom::manifest);
+  if (entries) refused.keep(write_manifest(folder.path(), *entries));
+  if (refused.first()) return tl::unexpected(*refused.first());
+  return {};
+}
+
+}  // namespace
+
+void phase(SessionFolder& folder, const ExperimentListener& listener, const std::string& text) {
+  (void)folder.log(text);
+  if (listener.on_phase) listener.on_phase(text);
+}
+
+void note(SessionFolder& folder, const ExperimentListener& listener, const std::string& sentence) {
+  (void)folder.log(sentence);
+  if (listener.on_note) listener.on_note(sentence);
+}
+
+Result<SessionFolder> begin_session(const LoadedPlan& loaded, const ExperimentOptions& options,
+                                    Provenance& provenance) {
+  auto folder = SessionFolder::create(options.folder, options.existing, options.host.clocks);
+  if (!folder) return folder;
+  provenance.started_utc = folder->clock().started_utc();
+  auto begun = take_ending_rooms(folder->path());
+  if (begun) begun = folder->write_plan(loaded);
+  if (begun) begun = folder->write_provenance(provenance);
+  if (begun) return folder;
+  free_ending_rooms(folder->path());
+  return tl::unexpected(begun.error());
+}
+
+tl::unexpected<Error> abandon(const SessionFrame& frame, const Plan& plan, const Provenance& provenance, Error error) {
+  free_ending_room(frame.folder.path(), EndingRoom::results);
+  const Verdict verdict =
+      judge({.limits = plan.limits, .curve = {}, .comparison = std::nullopt, .ended_early = error.message});
+  (void)close_session(frame, provenance, verdict, error);
+  return tl::unexpected<Error>(std::move(error));
+}
+
+ExperimentOutcome concluded(ExperimentOutcome outcome, const Plan& plan, const SessionFrame& frame,
+                            const Provenance& provenance) {
+  Refusals refused;
+  free_ending_room(frame.folder.path(), EndingRoom::results);
+  refused.keep(frame.folder.write_curves(outcome.curve, outcome.twin, provenance.side));
+  if (outcome.comparison) refused.keep(frame.folder.write_comparison(*outcome.comparison));
+  if (!outcome.ended_by) outcome.ended_by = refused.first();
+  outcome.verdict = judge({.limits = plan.limits,
+                           .curve = outcome.curve,
+                           .comparison = outcome.comparison,
+                           .ended_early = outcome.ended_by ? std::optional(outcome.ended_by->message) : std::nullopt});
+  auto closed = close_session(frame, provenance, outcome.verdict, outcome.ended_by);
+  if (!closed && !outcome.ended_by) outcome.ended_by = closed.error();
+  return outcome;
+}
+
+}  // namespace todbench

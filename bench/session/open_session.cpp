@@ -1,0 +1,118 @@
+#include "bench/session/open_session.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "bench/text/text.h"
+
+namespace todbench {
+namespace {
+
+constexpr std::size_t files_in_a_sentence = 4;
+
+bool is_there(const std::filesystem::path& file) {
+  std::error_code problem;
+  return std::filesystem::exists(file, problem);
+}
+
+/// The state that provenance.json states, whatever else is wrong with it.
+bool says_running(const std::filesystem::path& folder) {
+  const Result<std::string> text = read_text_file(folder / "provenance.json");
+  if (!text) return false;
+  const Json json = Json::parse(*text, nullptr, false);
+  return json.is_object() && json.contains("state") && json["state"] == to_string(SessionState::running);
+}
+
+/// "a, b and 3 more".
+std::string listed(const std::vector<std::string>& files) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(files.size(), files_in_a_sentence); ++i) text += (i == 0 ? "" : ", ") + files[i];
+  if (files.size() > files_in_a_sentence)
+    text += " and " + std::to_string(files.size() - files_in_a_sentence) + " more";
+  return text;
+}
+
+struct Kind {
+  std::vector<std::string> files;
+  std::string_view one, more;  ///< what happened to them, for one and for several
+};
+
+std::string sentence_of(const std::vector<Kind>& kinds) {
+  std::string text;
+  for (const Kind& kind : kinds) {
+    if (kind.files.empty()) continue;
+    text += (text.empty() ? "" : ", ") + listed(kind.files) + " " +
+            std::string(kind.files.size() == 1 ? kind.one : kind.more);
+  }
+  return text + " after the session ended";
+}
+
+}  // namespace
+
+std::string_view to_string(SessionCondition condition) {
+  switch (condition) {
+    case SessionCondition::intact:
+      return "intact";
+    case SessionCondition::changed:
+      return "changed";
+    case SessionCondition::cut_off:
+      return "cut_off";
+  }
+  return "";
+}
+
+Result<SessionCheck> check_session(const std::filesystem::path& folder) {
+  if (!is_there(folder / "session.toml") && !is_there(folder / manifest_name)) {
+    return fail(ErrorCode::invalid_input, folder.string() + ": not a session folder (there is no session.toml)");
+  }
+  Result<ManifestCheck> files = check_manifest(folder);
+  if (!files) return tl::unexpected(files.error());
+  SessionCheck check{
+      .condition = SessionCondition::intact, .files = *std::move(files), .not_vouched_for = {}, .sentence = {}};
+  if (!is_there(folder / manifest_name) && says_running(folder)) {
+    check.condition = SessionCondition::cut_off;
+    check.not_vouched_for = check.files.missing;
+    check.sentence = "the run goes on or was cut off: there is no manifest, so nothing vouches for the files";
+    return check;
+  }
+  Kind changed{check.files.changed, "was changed", "were changed"};
+  Kind missing{{}, "was removed", "were removed"};
+  Kind added{{}, "was added", "were added"};
+  std::copy_if(check.files.missing.begin(), check.files.missing.end(), std::back_inserter(missing.files),
+               [](const std::string& path) { return !is_report_page(path); });
+  std::copy_if(check.files.foreign.begin(), check.files.foreign.end(), std::back_inserter(added.files),
+               is_session_file);
+  for (const Kind* kind : {&changed, &missing, &added})
+    check.not_vouched_for.insert(check.not_vouched_for.end(), kind->files.begin(), kind->files.end());
+  std::sort(check.not_vouched_for.begin(), check.not_vouched_for.end());
+  if (!check.files.intact()) check.condition = SessionCondition::changed;
+  if (!check.not_vouched_for.empty()) check.sentence = sentence_of({changed, missing, added});
+  return check;
+}
+
+Result<Session> open_session(const std::filesystem::path& folder, const Opening& opening) {
+  const Result<SessionCheck> check = check_session(folder);
+  if (!check) return tl::unexpected(check.error());
+  const bool cut_off = check->condition == SessionCondition::cut_off;
+  const bool vouched_for = check->not_vouched_for.empty();
+  const bool taken = vouched_for || opening.accept_changed || (cut_off && opening.accept_cut_off);
+  if (!taken) {
+    return fail(ErrorCode::invalid_input, folder.string() + ": " + (cut_off ? "" : "the session was changed: ") +
+                                              check->sentence + " (--accept-changed reads it nevertheless)");
+  }
+  Result<Session> session = read_session(folder);
+  if (!session) return session;
+  session->cut_off = cut_off;
+  session->manifest_sha256 = check->files.manifest_sha256;
+  if (!cut_off || !opening.accept_cut_off) session->accepted_changes = check->not_vouched_for;
+  return session;
+}
+
+Result<void> require_intact(const std::filesystem::path& folder) {
+  const Result<SessionCheck> check = check_session(folder);
+  if (!check) return tl::unexpected(check.error());
+  if (check->not_vouched_for.empty()) return {};
+  return fail(ErrorCode::invalid_input, folder.string() + ": the session was changed: " + check->sentence);
+}
+
+}  // namespace todbench

@@ -1,0 +1,108 @@
+#include "bench/session/session_comparison.h"
+
+#include <algorithm>
+
+#include "bench/plan/plan_options.h"
+#include "bench/text/text.h"
+#include "tod/adequacy/adequacy.h"
+
+namespace todbench {
+namespace {
+
+/// The same exposure of the same triangle: scores of two exposures differ in their last digits at least.
+bool same_trial(const Trial& a, const Trial& b) {
+  return a.plate == b.plate && a.mounting == b.mounting && a.triangle == b.triangle &&
+         a.set_delta_t_k == b.set_delta_t_k && a.size_mrad == b.size_mrad && a.answer == b.answer &&
+         a.scores == b.scores;
+}
+
+/// All trials of the shorter session are the first of the other: the same folder, a copy, a replay, the same seed.
+bool same_trials(const std::vector<Trial>& a, const std::vector<Trial>& b) {
+  const std::size_t both = std::min(a.size(), b.size());
+  return both > 0 && std::equal(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(both), b.begin(), same_trial);
+}
+
+std::string in_words(const FitOptions& fit) {
+  return "the " + std::string(to_string(fit.form)) + " form with " +
+         (fit.fixed_lapse ? "a lapse of " + number_text(*fit.fixed_lapse) : std::string("a free lapse"));
+}
+
+bool same_shape(const TargetPlate& a, const TargetPlate& b) {
+  const auto same = [](const PlateTriangle& x, const PlateTriangle& y) {
+    return x.name == y.name && x.position_mm == y.position_mm && x.size_mm == y.size_mm && x.apex == y.apex;
+  };
+  return a.width_mm == b.width_mm && a.height_mm == b.height_mm &&
+         std::equal(a.triangles.begin(), a.triangles.end(), b.triangles.begin(), b.triangles.end(), same);
+}
+
+/// What differs between the plates of two sessions, in words; empty where nothing does.
+std::string difference_of_plates(std::vector<TargetPlate> a, std::vector<TargetPlate> b) {
+  const auto by_name = [](const TargetPlate& x, const TargetPlate& y) { return x.name < y.name; };
+  std::sort(a.begin(), a.end(), by_name);
+  std::sort(b.begin(), b.end(), by_name);
+  const auto names = [](const std::vector<TargetPlate>& plates) {
+    std::string text;
+    for (const TargetPlate& plate : plates) text += (text.empty() ? "" : ", ") + plate.name;
+    return text;
+  };
+  if (names(a) != names(b)) return "the triangles were shown on other plates (" + names(a) + " and " + names(b) + ")";
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (!same_shape(a[i], b[i])) return "both sessions have a plate " + a[i].name + ", but with other triangles";
+  return "";
+}
+
+Result<void> check_comparable(const Session& a, const Session& b) {
+  if (!a.curve || !b.curve)
+    return fail(ErrorCode::invalid_input,
+                std::string("the ") + (a.curve ? "second" : "first") + " session holds no curve");
+  if (same_trials(a.trials, b.trials))
+    return fail(ErrorCode::invalid_input,
+                "both sessions hold the same trials: comparing a session with itself shows nothing");
+  const FitOptions fit_a = fit_options(a.plan), fit_b = fit_options(b.plan);
+  if (fit_a.form != fit_b.form || fit_a.fixed_lapse != fit_b.fixed_lapse)
+    return fail(ErrorCode::invalid_input,
+                "the curves were fitted differently: " + in_words(fit_a) + ", and " + in_words(fit_b));
+  const TemplateObserverSpec &observer_a = a.parts.observer, &observer_b = b.parts.observer;
+  if (observer_a.name != observer_b.name)
+    return fail(ErrorCode::invalid_input,
+                "the sessions have different observers: " + observer_a.name + " and " + observer_b.name);
+  if (!(observer_a == observer_b))
+    return fail(ErrorCode::invalid_input,
+                "the observers of both sessions are named " + observer_a.name + ", but their parameters differ");
+  return {};
+}
+
+double margin_of(const Session& a, const Session& b) {
+  const auto& of_a = a.plan.limits.equivalence_margin_percent;
+  const auto& of_b = b.plan.limits.equivalence_margin_percent;
+  if (of_a && of_b) return std::min(*of_a, *of_b);
+  return of_a ? *of_a : of_b.value_or(ComparisonOptions{}.margin_percent);
+}
+
+TodCurve examined(const Session& session) {
+  TodCurve curve = *session.curve;
+  const bool known =
+      std::all_of(curve.points.begin(), curve.points.end(), [](const TodPoint& p) { return p.adequacy.has_value(); });
+  if (!known) examine(curve, fit_options(session.plan));
+  return curve;
+}
+
+}  // namespace
+
+Result<SessionComparison> compare_sessions(const Session& a, const Session& b, std::optional<double> margin_percent) {
+  if (auto comparable = check_comparable(a, b); !comparable) return tl::unexpected(comparable.error());
+  ComparisonOptions options = comparison_options(a.plan);
+  options.margin_percent = margin_percent.value_or(margin_of(a, b));
+  SessionComparison result{examined(a), examined(b), {}};
+  auto comparison = compare(result.a, result.b, options);
+  if (!comparison) return tl::unexpected(comparison.error());
+  result.comparison = *std::move(comparison);
+  if (const std::string difference = difference_of_plates(a.parts.plates, b.parts.plates); !difference.empty()) {
+    add_finding(
+        result.comparison,
+        {.kind = FindingKind::identity, .sentence = difference + ": what differs may be the plates", .unfit = true});
+  }
+  return result;
+}
+
+}  // namespace todbench

@@ -1,0 +1,25 @@
+#include "bench/text/folders.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+
+namespace todbench {
+
+ErrorCode code_of_path(const std::error_code& problem) {
+  for (const std::errc of_the_path : {std::errc::not_a_directory, std::errc::file_exists, std::errc::is_a_directory,
+                                      std::errc::filename_too_long, std::errc::too_many_symbolic_link_levels}) {
+    if (problem == of_the_path) return ErrorCode::invalid_input;
+  }
+  return ErrorCode::io;
+}
+
+Result<void> make_folder(const std::filesystem::path& folder) {
+  std::error_code problem;
+  std::filesystem::create_directories(folder, problem);
+  if (problem) return fail(code_of_path(problem), folder.string() + ": cannot be created: " + problem.message());
+  if (::access(folder.c_str(), W_OK | X_OK) == 0) return {};
+  return fail(ErrorCode::io, folder.string() + ": cannot be written to: " + std::generic_category().message(errno));
+}
+
+}  // namespace todbench
