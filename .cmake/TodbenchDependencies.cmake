@@ -28,11 +28,12 @@ find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
 
 if(TODBENCH_WITH_ARAVIS)
   pkg_check_modules(ARAVIS REQUIRED IMPORTED_TARGET aravis-0.8)
+  pkg_check_modules(LIBXML2 REQUIRED IMPORTED_TARGET libxml-2.0)
 endif()
 if(TODBENCH_WITH_V4L2)
   pkg_check_modules(LIBUDEV REQUIRED IMPORTED_TARGET libudev)
 endif()
-if(TODBENCH_WITH_USB)
+if(TODBENCH_WITH_USB OR TODBENCH_WITH_ARAVIS)
   pkg_check_modules(LIBUSB REQUIRED IMPORTED_TARGET libusb-1.0)
 endif()
 # Emulated USB and video devices; tests of them are left out without it.

@@ -39,6 +39,20 @@ BENCHMARK_CAPTURE(observer_decision, size_1_6, 1.6)->Unit(benchmark::kMicrosecon
 BENCHMARK_CAPTURE(observer_decision, size_2_6, 2.6)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(observer_decision, size_5, 5.0)->Unit(benchmark::kMicrosecond);
 
+/// Probabilities of the answers, 32 draws of the observer's noise.
+void observer_graded(benchmark::State& state, double size_samples) {
+  TemplateObserver observer({}, triangle_alternatives());
+  const auto prepared = observer.prepare(size_samples, 1).value();
+  const Patch patch = noisy_patch(prepared->window_samples());
+  const RandomStream noise(1, "benchmark.observer");
+  std::uint64_t trial = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(prepared->judge(patch, 1.0, noise.sub(trial++), 32));
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK_CAPTURE(observer_graded, size_1_6, 1.6)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(observer_graded, size_2_6, 2.6)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(observer_graded, size_5, 5.0)->Unit(benchmark::kMicrosecond);
+
 void template_bank(benchmark::State& state, double size_samples) {
   const TemplateObserverSpec spec;
   const Alternatives alternatives = triangle_alternatives();

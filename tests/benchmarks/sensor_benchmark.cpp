@@ -1,6 +1,7 @@
 // The simulated sensor: pictures of single triangles, whole frames, and the 75 % size without trials.
 #include <benchmark/benchmark.h>
 
+#include <cmath>
 #include <memory>
 
 #include "sim_devices/prediction/direct_estimate.h"
@@ -30,7 +31,9 @@ void degraded_triangle_256_phases(benchmark::State& state, Accuracy accuracy, do
   const ImageChain chain = chain_of(accuracy);
   const Polygon shape = triangle(size_pitch, Apex::up);
   benchmark::DoNotOptimize(chain.image(shape));  // the table of optics and detector is there from now on
-  for (auto _ : state) benchmark::DoNotOptimize(chain.image(shape).fine_image(chain.points_per_pitch()));
+  // As far as the window of an observer reaches (hvs-1), and a pitch for the phases.
+  const int reach = static_cast<int>(std::ceil(1.05 * size_pitch + 2)) + 2;
+  for (auto _ : state) benchmark::DoNotOptimize(chain.image(shape).fine_image(chain.points_per_pitch(), reach));
 }
 BENCHMARK_CAPTURE(degraded_triangle_256_phases, draft_size_2_6, Accuracy::draft(), 2.6)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(degraded_triangle_256_phases, normal_size_1_6, Accuracy::normal(), 1.6)

@@ -20,7 +20,7 @@ namespace {
 using namespace std::chrono_literals;
 
 /// A virtual machine without hardware support is thirty times slower than its host.
-constexpr auto patience = 60s;
+constexpr auto patience = 180s;
 
 cv::Mat1w picture(std::uint64_t index, int width, int height) {
   cv::Mat1w out(height, width);

@@ -10,7 +10,8 @@ BEGIN {
   may["acquisition/core"] = ""
   may["acquisition/pixel_formats"] = core
   may["acquisition/recording"] = core " acquisition/pixel_formats"
-  may["acquisition/aravis"] = core " acquisition/pixel_formats"
+  may["acquisition/description"] = core
+  may["acquisition/aravis"] = core " acquisition/pixel_formats acquisition/description"
   may["acquisition/v4l2"] = core " acquisition/pixel_formats"
   may["acquisition/usb"] = core " acquisition/pixel_formats"
   may["hvs/shape"] = core
@@ -21,12 +22,13 @@ BEGIN {
   may["tod/registration"] = hvs " tod/plate"
   may["tod/psychometric"] = core " tod/presentation"
   may["tod/schedule"] = core " tod/plate tod/presentation tod/psychometric"
-  may["tod/measurement"] = hvs " tod/plate tod/presentation tod/registration tod/schedule"
+  may["tod/measurement"] = hvs " tod/plate tod/presentation tod/registration tod/schedule tod/measures"
   may["tod/comparison"] = core " tod/psychometric"
+  may["tod/adequacy"] = core " tod/psychometric"
   may["tod/range"] = core " tod/psychometric"
   may["tod/measures"] = core
   may["tod/instruments"] = core " tod/plate tod/presentation"
-  tod = hvs " tod/plate tod/presentation tod/registration tod/psychometric tod/schedule tod/measurement tod/comparison tod/range tod/measures"
+  tod = hvs " tod/plate tod/presentation tod/registration tod/psychometric tod/schedule tod/measurement tod/comparison tod/adequacy tod/range tod/measures"
   may["sim_devices/scene"] = hvs " tod/plate"
   may["sim_devices/sensor"] = hvs " tod/plate tod/presentation sim_devices/scene"
   may["sim_devices/prediction"] = tod " sim_devices/scene sim_devices/sensor"
@@ -58,10 +60,11 @@ BEGIN {
   home["^linux/videodev2.h"] = "^(acquisition/v4l2|sim_devices/lab/video)/"
   home["^libudev.h"] = "^acquisition/v4l2/"
   home["^umockdev.h"] = "^sim_devices/lab/(device_nodes|video|usb)/"
-  home["^libusb"] = "^acquisition/usb/"
+  home["^libusb"] = "^acquisition/(aravis|usb)/"
   home["^(Q[A-Z]|qcustomplot.h)"] = "^bench/gui/"
   home["^toml\\+\\+/"] = "^bench/plan/"
   home["^CLI/"] = "^bench/cli/"
+  home["^libxml/"] = "^acquisition/description/"
   home["^tiffio.h"] = "^acquisition/recording/"
   home["^fftw3.h"] = "^hvs/shape/"
 }
