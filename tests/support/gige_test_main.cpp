@@ -10,6 +10,7 @@
 
 #include "tests/support/gige_test_support.h"
 #include "tests/support/private_network.h"
+#include "tests/support/timed_tests.h"
 
 namespace {
 
@@ -32,5 +33,5 @@ int main(int argc, char** argv) {
   if (argc == 3 && std::string_view(argv[1]) == "--serve-camera") return serve_camera(std::atof(argv[2]));
   testing::InitGoogleMock(&argc, argv);
   todbench::testing_support::enter_private_network();
-  return RUN_ALL_TESTS();
+  return todbench::testing_support::run_timed_tests(argv);
 }

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "sim_devices/lab/device_nodes/mock_system.h"
+#include "tests/support/timed_tests.h"
 
 int main(int argc, char** argv) {
   todbench::MockSystem::enter();
@@ -12,5 +13,5 @@ int main(int argc, char** argv) {
     return 1;
   }
   testing::InitGoogleMock(&argc, argv);
-  return RUN_ALL_TESTS();
+  return todbench::testing_support::run_timed_tests(argv);
 }

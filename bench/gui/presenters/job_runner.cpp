@@ -22,23 +22,32 @@ void JobRunner::shut_down() {
 void JobRunner::start(Job job) {
   {
     const std::lock_guard lock(mutex_);
-    waiting_ = std::move(job);
+    waiting_.clear();
+    waiting_.push_back(std::move(job));
     if (running_) running_->request_stop();
+  }
+  wake_.notify_all();
+}
+
+void JobRunner::queue(Job job) {
+  {
+    const std::lock_guard lock(mutex_);
+    waiting_.push_back(std::move(job));
   }
   wake_.notify_all();
 }
 
 JobRunner::Waiting JobRunner::stop() {
   const std::lock_guard lock(mutex_);
-  const Waiting waiting = waiting_ ? Waiting::dropped : Waiting::none;
-  waiting_.reset();
+  const Waiting waiting = waiting_.empty() ? Waiting::none : Waiting::dropped;
+  waiting_.clear();
   if (running_) running_->request_stop();
   return waiting;
 }
 
 bool JobRunner::busy() const {
   const std::lock_guard lock(mutex_);
-  return waiting_ || running_;
+  return !waiting_.empty() || running_;
 }
 
 void JobRunner::run(const std::stop_token& end) {
@@ -47,8 +56,9 @@ void JobRunner::run(const std::stop_token& end) {
     std::stop_token stop;
     {
       std::unique_lock lock(mutex_);
-      if (!wake_.wait(lock, end, [this] { return waiting_.has_value(); })) return;
-      job = *std::exchange(waiting_, std::nullopt);
+      if (!wake_.wait(lock, end, [this] { return !waiting_.empty(); })) return;
+      job = std::move(waiting_.front());
+      waiting_.pop_front();
       running_.emplace();
       stop = running_->get_token();
     }

@@ -4,6 +4,7 @@
 #include <QObject>
 #include <QThread>
 #include <condition_variable>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -12,7 +13,8 @@
 
 namespace todbench {
 
-/// A new job asks the running one to stop and begins when it has ended; a job that waits is dropped for a newer one.
+/// A started job asks the running one to stop and begins when it has ended; jobs that wait are dropped for it. A queued
+/// job leaves the others alone and begins after them.
 /// Methods are called from the thread that owns the object and return at once; jobs run on the runner's own thread.
 class JobRunner final : public QObject {
   Q_OBJECT
@@ -24,9 +26,10 @@ class JobRunner final : public QObject {
   ~JobRunner() override;
 
   void start(Job job);
-  /// What became of a job that had not begun.
+  void queue(Job job);
+  /// What became of jobs that had not begun.
   enum class Waiting { none, dropped };
-  /// Asks the running job to stop and drops the waiting one.
+  /// Asks the running job to stop and drops those that wait.
   Waiting stop();
   /// Stops and waits for the end of the running job; nothing runs after it.
   void shut_down();
@@ -38,7 +41,7 @@ class JobRunner final : public QObject {
 
   mutable std::mutex mutex_;
   std::condition_variable_any wake_;
-  std::optional<Job> waiting_;
+  std::deque<Job> waiting_;
   std::optional<std::stop_source> running_;
   std::stop_source end_;
   std::unique_ptr<QThread> thread_;  ///< Qt's own: documents of a report have timers

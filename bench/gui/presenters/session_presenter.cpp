@@ -95,15 +95,11 @@ std::vector<SessionEntry> sessions_below(const std::filesystem::path& folder) {
 SessionPresenter::SessionPresenter(Workbench& bench, QObject* parent) : QObject(parent), bench_(bench) {}
 
 template <typename T>
-void SessionPresenter::in_background(std::function<Result<T>()> work, std::function<void(T)> done) {
-  jobs_.start([this, work = std::move(work), done = std::move(done)](const std::stop_token&) {
-    auto result = work();
-    bench_.post([this, result = std::move(result), done] {
-      if (result) {
-        done(*result);
-      } else {
-        emit problem(QString::fromStdString(result.error().message));
-      }
+void SessionPresenter::in_background(std::function<Result<T>()> work, std::function<void(Result<T>)> done) {
+  jobs_.queue([this, work = std::move(work), done = std::move(done)](const std::stop_token&) {
+    bench_.post([this, result = work(), done] {
+      if (!result) emit problem(QString::fromStdString(result.error().message));
+      done(result);
     });
   });
 }
@@ -118,16 +114,31 @@ void SessionPresenter::refresh() {
 }
 
 void SessionPresenter::open(const std::filesystem::path& folder) {
+  ++opening_;
+  compare_when_opened_.reset();
   in_background<OpenedSession>([folder] { return read_opened_session(folder); },
-                               [this](OpenedSession session) {
-                                 current_ = std::move(session);
-                                 compared_.reset();
-                                 emit opened();
+                               [this](Result<OpenedSession> session) {
+                                 const bool last = --opening_ == 0;
+                                 if (session) {
+                                   current_ = *std::move(session);
+                                   compared_.reset();
+                                   emit opened();
+                                 }
+                                 if (!last || !compare_when_opened_) return;
+                                 const auto other = *std::exchange(compare_when_opened_, std::nullopt);
+                                 if (session) compare(other);
                                });
 }
 
 void SessionPresenter::compare_with(const std::filesystem::path& other) {
-  if (!current_) return;
+  if (opening_ > 0) {
+    compare_when_opened_ = other;
+  } else if (current_) {
+    compare(other);
+  }
+}
+
+void SessionPresenter::compare(const std::filesystem::path& other) {
   if (!current_->session.curve) {
     emit problem(current_->name + ": the session holds no curve");
     return;
@@ -141,8 +152,9 @@ void SessionPresenter::compare_with(const std::filesystem::path& other) {
         return ComparedSessions{name, QString::fromStdString(session_name(other)), std::move(compared->a),
                                 std::move(compared->b), std::move(compared->comparison)};
       },
-      [this](ComparedSessions sessions) {
-        compared_ = std::move(sessions);
+      [this](Result<ComparedSessions> sessions) {
+        if (!sessions) return;
+        compared_ = *std::move(sessions);
         emit compared();
       });
 }
@@ -150,7 +162,9 @@ void SessionPresenter::compare_with(const std::filesystem::path& other) {
 void SessionPresenter::export_reports() {
   if (!current_) return;
   in_background<Exported>([opened = *current_] { return todbench::export_reports(opened); },
-                          [this](const Exported& files) { emit exported(files.html, files.pdf); });
+                          [this](const Result<Exported>& files) {
+                            if (files) emit exported(files->html, files->pdf);
+                          });
 }
 
 void SessionPresenter::use_plan_again() {

@@ -36,7 +36,7 @@ struct ComparedSessions {
   Comparison comparison;
 };
 
-/// Reads and writes in the background. In the window's thread.
+/// Reads and writes in the background, in the order in which it is asked. In the window's thread.
 class SessionPresenter final : public QObject {
   Q_OBJECT
 
@@ -49,7 +49,8 @@ class SessionPresenter final : public QObject {
   /// Reads a session; opened() or problem() follows.
   void open(const std::filesystem::path& folder);
   [[nodiscard]] const std::optional<OpenedSession>& current() const { return current_; }
-  /// The session that is open against another, with the margin of its plan; compared() or problem() follows.
+  /// The session that is open, or the one that is being opened, against another with the margin of its plan; compared()
+  /// or problem() follows.
   void compare_with(const std::filesystem::path& other);
   [[nodiscard]] const std::optional<ComparedSessions>& compared_sessions() const { return compared_; }
   /// Writes report.html and report.pdf into the session that is open; exported() or problem() follows.
@@ -69,12 +70,15 @@ class SessionPresenter final : public QObject {
 
  private:
   template <typename T>
-  void in_background(std::function<Result<T>()> work, std::function<void(T)> done);
+  void in_background(std::function<Result<T>()> work, std::function<void(Result<T>)> done);
+  void compare(const std::filesystem::path& other);
 
   Workbench& bench_;
   std::vector<SessionEntry> sessions_;
   std::optional<OpenedSession> current_;
   std::optional<ComparedSessions> compared_;
+  int opening_ = 0;  ///< sessions that are on their way to be current_
+  std::optional<std::filesystem::path> compare_when_opened_;
   JobRunner list_jobs_, jobs_;
 };
 

@@ -4,6 +4,7 @@
 
 #include "tests/bench/gui/watched_application.h"
 #include "tests/support/private_network.h"
+#include "tests/support/timed_tests.h"
 
 int main(int argc, char** argv) {
   testing::InitGoogleMock(&argc, argv);
@@ -11,5 +12,5 @@ int main(int argc, char** argv) {
   todbench::testing_support::enter_private_network();
   if (!qEnvironmentVariableIsSet("QT_QPA_PLATFORM")) qputenv("QT_QPA_PLATFORM", "offscreen");
   const todbench::testing::WatchedApplication application(argc, argv);
-  return RUN_ALL_TESTS();
+  return todbench::testing_support::run_timed_tests(argv);
 }

@@ -56,6 +56,23 @@ TEST(SessionPresenter, ListsOpensAndComparesWhatIsOnDisk) {
   EXPECT_EQ(b.problem, "");
 }
 
+TEST(SessionPresenter, ComparesWhatIsStillBeingOpenedAndForgetsNothingThatWasAsked) {
+  SessionBench b;
+  const auto first = b.measure(1), second = b.measure(2);
+  b.presenter.open(first);
+  ASSERT_TRUE(wait_until([&] { return b.presenter.current().has_value(); }));
+
+  b.presenter.export_reports();
+  b.presenter.open(second);
+  b.presenter.compare_with(first);
+
+  ASSERT_TRUE(wait_until([&] { return b.presenter.compared_sessions().has_value(); }));
+  EXPECT_EQ(b.presenter.current()->folder, second);
+  EXPECT_EQ(b.presenter.compared_sessions()->b, QString::fromStdString(first.filename().string()));
+  EXPECT_TRUE(std::filesystem::exists(first / "report.pdf"));
+  EXPECT_EQ(b.problem, "");
+}
+
 TEST(SessionPresenter, SaysWhatIsWrongWithAFolderAndKeepsWhatIsOpen) {
   SessionBench b;
   const auto folder = b.measure(1);

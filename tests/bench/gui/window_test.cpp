@@ -179,7 +179,9 @@ TEST(Window, ComparesTwoSessionsAndWritesBothReports) {
   plan.seed = 7;
   window->bench().set_plan(plan);
   window.measure();
-  ASSERT_TRUE(wait_until([&] { return window->sessions().current().has_value(); }));
+  const auto second = window->measure().folder();
+  ASSERT_TRUE(wait_until(
+      [&] { return window->sessions().current().has_value() && window->sessions().current()->folder == second; }));
   window->show_view(View::report);
   ASSERT_TRUE(wait_until([&] { return window->sessions().sessions().size() == 2; }));
 
