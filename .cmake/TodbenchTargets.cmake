@@ -61,8 +61,8 @@ endfunction()
 # name in such a library do not compile there; a source that must keep its names is named APART.
 option(TODBENCH_UNITY "Compile the sources of a library together" OFF)
 if(TODBENCH_UNITY)
-  # A local name is not to be compared with those of another source.
-  target_compile_options(todbench_options INTERFACE -Wno-shadow)
+  # A local name is not to be compared with those of another source, and a source is not a header because another includes it.
+  target_compile_options(todbench_options INTERFACE -Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endif()
 
 function(todbench_together target)

@@ -136,7 +136,9 @@ Result<void> AravisSource::refresh() {
   info_.significant_bits = format_.significant_bits;
   info_.frame_rate_hz = read_frame_rate(camera_.get(), family_);
   info_.scale = *scale_;
-  info_.settings = read_settings(device);
+  auto settings = read_settings(device);
+  if (!settings) return tl::unexpected(settings.error());
+  info_.settings = *std::move(settings);
   info_.settings["CameraFamily"] = family_.name;
   if (stated_kelvin_per_count_) info_.settings[scale_feature] = control_text(*stated_kelvin_per_count_);
   if (stated_offset_k_) info_.settings[offset_feature] = control_text(*stated_offset_k_);

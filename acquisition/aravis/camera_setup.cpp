@@ -9,6 +9,7 @@
 
 #include "acquisition/aravis/genicam_features.h"
 #include "acquisition/aravis/object_parameters.h"
+#include "acquisition/aravis/u3v_registers.h"
 
 namespace todbench {
 namespace {
@@ -20,7 +21,6 @@ constexpr std::array usable_formats{PixelFormat::mono14, PixelFormat::mono16, Pi
 /// Larger than any thermal camera's picture; a camera that states more would have this program reserve memory without
 /// bound.
 constexpr int most_pixels_per_side = 16384;
-constexpr std::size_t most_payload_bytes = 64U << 20U;
 
 constexpr std::array recorded_features{
     "PixelFormat",
@@ -238,14 +238,21 @@ double read_frame_rate(ArvCamera* camera, const CameraFamily& family) {
   return 0;
 }
 
-std::map<std::string, std::string> read_settings(ArvDevice* device) {
+Result<std::map<std::string, std::string>> read_settings(ArvDevice* device) {
   std::map<std::string, std::string> settings;
+  std::optional<Error> lost;
   const auto read = [&](const char* feature) {
-    if (!has_feature(device, feature)) return;
-    if (auto value = get_feature(device, feature)) settings[feature] = std::move(*value);
+    if (lost) return;
+    auto value = get_feature(device, feature);
+    if (value) {
+      settings[feature] = *std::move(value);
+    } else if (value.error().code == ErrorCode::disconnected) {
+      lost = std::move(value.error());
+    }
   };
   for (const char* feature : recorded_features) read(feature);
   for (const char* feature : object_parameters()) read(feature);
+  if (lost) return tl::unexpected(*std::move(lost));
   return settings;
 }
 

@@ -48,8 +48,9 @@ struct StreamFormat {
 /// Frames per second, 0 when the camera does not say.
 [[nodiscard]] double read_frame_rate(ArvCamera* camera, const CameraFamily& family);
 
-/// Everything that may influence a measurement, by feature name.
-[[nodiscard]] std::map<std::string, std::string> read_settings(ArvDevice* device);
+/// Everything that may influence a measurement, by feature name; what the camera does not have or refuses is left out.
+/// `disconnected` at the first read that is not answered.
+[[nodiscard]] Result<std::map<std::string, std::string>> read_settings(ArvDevice* device);
 
 /// Commands that correct the non-uniformity, best first: those of the family, or by name where it has none.
 [[nodiscard]] std::vector<std::string> nonuniformity_commands(ArvDevice* device, const CameraFamily& family);

@@ -15,7 +15,6 @@ constexpr std::size_t abrm_text_bytes = 64;
 constexpr std::uint64_t abrm_sbrm = 0x1D8, sbrm_sirm = 0x20;
 constexpr std::uint64_t sirm_info = 0x00, sirm_payload = 0x08, sirm_leader = 0x10, sirm_trailer = 0x14;
 
-constexpr std::uint64_t most_payload_bytes = 64U << 20U;
 /// Leaders and trailers have tens of bytes.
 constexpr std::uint32_t most_leader_bytes = 64U << 10U;
 /// Payloads are aligned to transfers of USB, which end at 1 KiB; Aravis sends no transfer above 1 MiB.

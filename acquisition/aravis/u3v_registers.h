@@ -9,6 +9,9 @@
 
 namespace todbench {
 
+/// A camera that states more bytes for a frame is not opened.
+inline constexpr std::uint64_t most_payload_bytes = 64U << 20U;
+
 /// The strings of the bootstrap registers (GenCP 1.1, section 4.3: ABRM), empty where a camera has none. They do not
 /// depend on the camera's description.
 struct U3vIdentity {

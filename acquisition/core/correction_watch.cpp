@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "acquisition/core/median.h"
+
 namespace todbench {
 namespace {
 
@@ -52,10 +54,6 @@ Difference difference(const std::vector<std::uint16_t>& now, const std::vector<s
 double range_of(std::vector<std::uint16_t> pixels) {
   const double low = quantile(pixels, 0.01);
   return quantile(pixels, 0.99) - low;
-}
-
-double median(std::vector<double> values) {
-  return quantile(values, 0.5);
 }
 
 }  // namespace

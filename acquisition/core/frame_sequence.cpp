@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "acquisition/core/median.h"
+
 namespace todbench {
 namespace {
 
@@ -24,12 +26,6 @@ constexpr std::size_t remembered_arrivals = 32, enough_arrivals = 16;
 constexpr int frames_after_silence = 4;
 /// A shorter silence of the host is nothing.
 constexpr double least_silence_ns = 0.3e9;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 bool is_period(double ns) {
   return ns > 0 && std::isfinite(ns);

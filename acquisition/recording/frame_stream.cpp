@@ -13,10 +13,10 @@
 #include <cstring>
 #include <memory>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "acquisition/core/camera_id.h"
+#include "acquisition/core/system_reason.h"
 #include "acquisition/recording/stream_header.h"
 
 namespace todbench {
@@ -59,10 +59,6 @@ std::uint32_t crc_of(const void* data, std::size_t bytes, std::uint32_t start = 
 
 std::uint32_t crc_of(const RecordHead& head) {
   return crc_of(&head, offsetof(RecordHead, head_crc));
-}
-
-std::string reason() {
-  return std::generic_category().message(errno);
 }
 
 /// An open file that closes itself.
@@ -310,7 +306,7 @@ bool is_frame_stream(const std::filesystem::path& path) {
 Result<FrameStream> open_frame_stream(const std::filesystem::path& path) {
   const std::string name = path.string();
   const auto file = std::make_shared<const File>(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (!file->open()) return fail(ErrorCode::io, name + ": " + reason());
+  if (!file->open()) return fail(ErrorCode::io, name + ": " + system_reason());
   if (!is_frame_stream(path)) return fail(ErrorCode::invalid_input, name + ": not a recording of this program");
   StreamIndex index(*file, file->size());
   if (auto walked = index.walk(); !walked) return fail(name, walked.error());

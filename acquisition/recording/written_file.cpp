@@ -5,21 +5,14 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <system_error>
 #include <utility>
 
+#include "acquisition/core/system_reason.h"
+
 namespace todbench {
-namespace {
-
-std::string reason() {
-  return std::generic_category().message(errno);
-}
-
-}  // namespace
-
 Result<WrittenFile> WrittenFile::create(const std::filesystem::path& path) {
   const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (descriptor < 0) return fail(ErrorCode::io, path.string() + ": cannot be created: " + reason());
+  if (descriptor < 0) return fail(ErrorCode::io, path.string() + ": cannot be created: " + system_reason());
   return WrittenFile(path, descriptor);
 }
 
@@ -46,7 +39,7 @@ Result<void> WrittenFile::append(const void* data, std::size_t bytes) {
   while (bytes > 0) {
     const ssize_t done = ::write(descriptor_, at, bytes);
     if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) return failed(done < 0 ? reason() : "the disk is full");
+    if (done <= 0) return failed(done < 0 ? system_reason() : "the disk is full");
     at += done;
     bytes -= static_cast<std::size_t>(done);
     bytes_ += static_cast<std::uint64_t>(done);
@@ -59,7 +52,7 @@ Result<void> WrittenFile::overwrite(std::uint64_t offset, const void* data, std:
   while (bytes > 0) {
     const ssize_t done = ::pwrite(descriptor_, at, bytes, static_cast<off_t>(offset));
     if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) return failed(done < 0 ? reason() : "the disk is full");
+    if (done <= 0) return failed(done < 0 ? system_reason() : "the disk is full");
     at += done;
     offset += static_cast<std::uint64_t>(done);
     bytes -= static_cast<std::size_t>(done);
@@ -76,13 +69,13 @@ void WrittenFile::cut(std::uint64_t bytes) {
 
 Result<void> WrittenFile::check_present() const {
   struct stat facts {};
-  if (::fstat(descriptor_, &facts) != 0) return failed(reason());
+  if (::fstat(descriptor_, &facts) != 0) return failed(system_reason());
   if (facts.st_nlink == 0) return failed("was deleted while it was written");
   return {};
 }
 
 Result<void> WrittenFile::sync() const {
-  if (::fsync(descriptor_) != 0) return failed(reason());
+  if (::fsync(descriptor_) != 0) return failed(system_reason());
   const auto parent = path_.has_parent_path() ? path_.parent_path() : std::filesystem::path(".");
   const int folder = ::open(parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder >= 0) {
@@ -93,8 +86,8 @@ Result<void> WrittenFile::sync() const {
   if (auto present = check_present(); !present) return present;
   struct stat mine {
   }, there{};
-  if (::fstat(descriptor_, &mine) != 0) return failed(reason());
-  if (::stat(path_.c_str(), &there) != 0) return failed("is not there any more: " + reason());
+  if (::fstat(descriptor_, &mine) != 0) return failed(system_reason());
+  if (::stat(path_.c_str(), &there) != 0) return failed("is not there any more: " + system_reason());
   if (mine.st_dev != there.st_dev || mine.st_ino != there.st_ino) {
     return failed("another file is in the place of the one that was written");
   }

@@ -4,6 +4,8 @@
 
 #include <cerrno>
 
+#include "acquisition/core/system_reason.h"
+
 namespace todbench {
 
 ErrorCode code_of_path(const std::error_code& problem) {
@@ -19,7 +21,7 @@ Result<void> make_folder(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder, problem);
   if (problem) return fail(code_of_path(problem), folder.string() + ": cannot be created: " + problem.message());
   if (::access(folder.c_str(), W_OK | X_OK) == 0) return {};
-  return fail(ErrorCode::io, folder.string() + ": cannot be written to: " + std::generic_category().message(errno));
+  return fail(ErrorCode::io, folder.string() + ": cannot be written to: " + system_reason());
 }
 
 }  // namespace todbench

@@ -8,7 +8,7 @@
 namespace todbench {
 namespace {
 
-constexpr std::size_t block = TemplateBank::block;
+constexpr std::size_t score_block = TemplateBank::block;
 
 /// Columns of the factor, one per number.
 std::vector<std::vector<double>> cholesky_columns(const TemplateBank& bank) {
@@ -41,7 +41,7 @@ std::vector<std::vector<double>> cholesky_columns(const TemplateBank& bank) {
 
 ScoreNoise::ScoreNoise(const TemplateBank& bank)
     : places_(static_cast<std::size_t>(bank.places())),
-      row_((places_ + block - 1) / block * block),
+      row_((places_ + score_block - 1) / score_block * score_block),
       alternatives_(static_cast<std::size_t>(bank.alternatives())) {
   const std::vector<std::vector<double>> columns = cholesky_columns(bank);
   rank_ = columns.size();
@@ -49,7 +49,7 @@ ScoreNoise::ScoreNoise(const TemplateBank& bank)
   for (std::size_t k = 0; k < rank_; ++k) {
     for (std::size_t t = 0; t < alternatives_ * places_; ++t) {
       const std::size_t at = t / places_ * row_ + t % places_;
-      values_[(at / block * rank_ + k) * block + at % block] = static_cast<float>(columns[k][t]);
+      values_[(at / score_block * rank_ + k) * score_block + at % score_block] = static_cast<float>(columns[k][t]);
     }
   }
 }
@@ -65,13 +65,13 @@ void ScoreNoise::in_rows(std::span<const float> scores, float padding, std::span
 
 void ScoreNoise::copy_factor(std::size_t index, std::span<float> numbers) const {
   CV_Assert(numbers.size() == rank_ && index < size());
-  const float* own = factor(index / block * block) + index % block;
-  for (std::size_t k = 0; k < rank_; ++k) numbers[k] = own[k * block];
+  const float* own = factor(index / score_block * score_block) + index % score_block;
+  for (std::size_t k = 0; k < rank_; ++k) numbers[k] = own[k * score_block];
 }
 
 void ScoreNoise::scores(std::span<const float> numbers, std::span<float> out) const {
   CV_Assert(numbers.size() == rank_ && out.size() == size());
-  for (std::size_t first = 0; first < size(); first += block)
+  for (std::size_t first = 0; first < size(); first += score_block)
     block_product(factor(first), numbers.data(), rank_, &out[first]);
 }
 

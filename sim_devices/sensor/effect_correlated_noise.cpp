@@ -26,7 +26,7 @@ std::vector<double> weights(double rho) {
 }
 
 /// The picture has its white noise already: what is added turns that into noise that remembers.
-void add(cv::Mat1f& picture, const SensorSpec& spec, const NoiseStreams& streams, double weight) {
+void add_correlated_noise(cv::Mat1f& picture, const SensorSpec& spec, const NoiseStreams& streams, double weight) {
   std::vector<double> terms = weights(spec.noise_correlation);
   terms[0] -= 1;
   constexpr std::size_t strip = 4096;  // stays in the first-level cache
@@ -66,7 +66,7 @@ EffectRow effect_rows::correlated_noise() {
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) { return spec.noise_correlation == 0 || spec.netd_k == 0; };
   row.neutralise = [](SensorSpec& spec) { spec.noise_correlation = 0; };
   row.neutral = "noise_correlation or netd_k is 0";
-  row.stage = stage::Noise{stage::Colour::white, stage::Recurrence::every_exposure, add};
+  row.stage = stage::Noise{stage::Colour::white, stage::Recurrence::every_exposure, add_correlated_noise};
   row.white_variance_k2 = [](const SensorSpec& spec, double noise_factor) {
     const double sd = spec.netd_k * noise_factor;
     return sd * sd * excess(spec);

@@ -4,7 +4,7 @@
 namespace todbench {
 namespace {
 
-void add(cv::Mat1f& picture, const SensorSpec& spec, const NoiseStreams& streams, double weight) {
+void add_fixed_pattern(cv::Mat1f& picture, const SensorSpec& spec, const NoiseStreams& streams, double weight) {
   const int n = spec.samples_per_pitch();
   cv::Mat1f detectors(picture.rows / n, picture.cols / n);
   streams("fixed", 0).fill_normal(std::span(detectors.ptr<float>(), detectors.total()));
@@ -24,7 +24,7 @@ EffectRow effect_rows::fixed_pattern() {
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) { return spec.fixed_pattern_k == 0; };
   row.neutralise = [](SensorSpec& spec) { spec.fixed_pattern_k = 0; };
   row.neutral = "fixed_pattern_k is 0";
-  row.stage = stage::Noise{stage::Colour::coloured, stage::Recurrence::fixed, add};
+  row.stage = stage::Noise{stage::Colour::coloured, stage::Recurrence::fixed, add_fixed_pattern};
   // The bound for a pattern shared by n x n samples.
   row.coloured_variance = [](const NoiseScope& scope) {
     const double n2 = scope.spec.samples_per_pitch() * scope.spec.samples_per_pitch();

@@ -14,7 +14,7 @@ std::vector<float> normals(const RandomStream& stream, int count) {
   return out;
 }
 
-void add(cv::Mat1f& picture, const SensorSpec& spec, const NoiseStreams& streams, double weight) {
+void add_row_column_noise(cv::Mat1f& picture, const SensorSpec& spec, const NoiseStreams& streams, double weight) {
   const int n = spec.samples_per_pitch();
   if (spec.row_noise_k > 0) {
     // One number per sample row and position along it.
@@ -57,7 +57,7 @@ EffectRow effect_rows::row_column_noise() {
   row.neutralise = [](SensorSpec& spec) { spec.row_noise_k = spec.column_noise_k = 0; };
   row.neutral = "row_noise_k and column_noise_k are 0";
   row.directions = Directions::different;
-  row.stage = stage::Noise{stage::Colour::coloured, stage::Recurrence::every_exposure, add};
+  row.stage = stage::Noise{stage::Colour::coloured, stage::Recurrence::every_exposure, add_row_column_noise};
   row.coloured_variance = [](const NoiseScope& scope) {
     return as_white(scope, scope.spec.row_noise_k, SharedBy::row) +
            as_white(scope, scope.spec.column_noise_k, SharedBy::column);

@@ -7,7 +7,7 @@
 namespace todbench {
 namespace {
 
-void add(cv::Mat1f& picture, const SensorSpec& spec, const NoiseStreams& streams, double weight) {
+void add_temporal_noise(cv::Mat1f& picture, const SensorSpec& spec, const NoiseStreams& streams, double weight) {
   const RandomStream stream = streams("temporal", 0);
   const auto sd = static_cast<float>(weight * spec.netd_k);
   constexpr std::size_t strip = 4096;  // stays in the first-level cache
@@ -31,7 +31,7 @@ EffectRow effect_rows::temporal_noise() {
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) { return spec.netd_k == 0; };
   row.neutralise = [](SensorSpec& spec) { spec.netd_k = 0; };
   row.neutral = "netd_k is 0";
-  row.stage = stage::Noise{stage::Colour::white, stage::Recurrence::every_exposure, add};
+  row.stage = stage::Noise{stage::Colour::white, stage::Recurrence::every_exposure, add_temporal_noise};
   row.white_variance_k2 = [](const SensorSpec& spec, double noise_factor) {
     const double sd = spec.netd_k * noise_factor / std::sqrt(spec.exposures_per_sample());
     return sd * sd;

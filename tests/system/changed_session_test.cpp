@@ -1,5 +1,6 @@
 // Sessions that somebody changed after they had ended: refused by every command that reads one, or read and said.
 #include <algorithm>
+#include <memory>
 #include <random>
 
 #include "bench/session/manifest.h"
@@ -18,9 +19,17 @@ const std::vector<std::string> range_of_m{"range", "--tod", "m", "--size-m", "5"
 /// A measured session with recorded frames, its twin and its targets; and a copy of it to compare with.
 class ChangedSessions : public ::testing::Test {
  protected:
+  /// Measured once for all cases of a process.
+  static void SetUpTestSuite() {
+    measured_ = std::make_unique<TemporaryFolder>();
+    measured_->write("plan.toml", small_measurement(8, "[measurement]\nrecord_frames = true\n"));
+    ChildOptions options;
+    options.folder = measured_->path();
+    ASSERT_TRUE(completed(todbench({"measure", "./plan.toml", "--out", "m"}, options)));
+  }
+  static void TearDownTestSuite() { measured_.reset(); }
   ChangedSessions() {
-    folder_.write("plan.toml", small_measurement(8, "[measurement]\nrecord_frames = true\n"));
-    EXPECT_TRUE(completed(run({"measure", "./plan.toml", "--out", "m"})));
+    std::filesystem::copy(measured_->path(), folder_.path(), std::filesystem::copy_options::recursive);
     std::filesystem::copy(at("m"), at("other"), std::filesystem::copy_options::recursive);
   }
   Ended run(const std::vector<std::string>& arguments) const {
@@ -43,6 +52,7 @@ class ChangedSessions : public ::testing::Test {
     write(file, content);
   }
 
+  static inline std::unique_ptr<TemporaryFolder> measured_;
   TemporaryFolder folder_;
 };
 

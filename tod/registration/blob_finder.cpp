@@ -4,15 +4,10 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "acquisition/core/median.h"
+
 namespace todbench {
 namespace {
-
-/// Centre of the values, by partial ordering: a picture is mostly background.
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// What stands above a surround wider than any blob: white top-hat (picture minus its opening) with the level of the
 /// noise at zero.

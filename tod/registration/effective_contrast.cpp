@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "acquisition/core/median.h"
 #include "tod/plate/plate_outlines.h"
 #include "tod/registration/registration.h"
 
@@ -28,12 +29,6 @@ double depth(const Polygon& polygon, cv::Point2d at) {
     nearest = std::min(nearest, cv::norm(to - t * edge));
   }
   return inside >= 0 ? inside : -nearest;
-}
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  const std::size_t n = values.size();
-  return n % 2 == 1 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
 }
 
 /// Standard error of a median of white noise whose spread the median absolute deviation gives: sqrt(pi / 2) sigma /

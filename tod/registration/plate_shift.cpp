@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/core/median.h"
 #include "tod/plate/plate_outlines.h"
 #include "tod/registration/registration.h"
 #include "tod/registration/shift_fit.h"
@@ -12,13 +13,7 @@ namespace {
 /// Below this the joint contrast could be the best of all searched offsets in noise alone: with 500 offsets the largest
 /// |t| is about 3.5.
 constexpr double significance_needed = 6;
-constexpr double agreement_needed = 0.75;
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  const std::size_t n = values.size();
-  return n % 2 == 1 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
-}
+constexpr double share_of_common_contrast_needed = 0.75;
 
 /// Share of the triangles whose contrast is the common one within a half of it and four standard errors: a hot pipe
 /// that happens to correlate with one triangle is not the plate.
@@ -55,7 +50,8 @@ Result<cv::Point2d> measure_shift(const cv::Mat1d& picture, const TargetPlate& m
   if (!coarse) return fail(ErrorCode::calibration, doing + "its large triangles are at the edge of the picture");
   // From the nearest whole pixel the answer is at most 0.71 px away; 1.5 px leave room for noise.
   const auto fit = fit_shift(picture, outlines, registration.blur_px, cv::Point2d(*coarse), 1.5);
-  if (!fit || std::abs(fit->joint_significance) < significance_needed || agreement(*fit) < agreement_needed) {
+  if (!fit || std::abs(fit->joint_significance) < significance_needed ||
+      agreement(*fit) < share_of_common_contrast_needed) {
     return fail(ErrorCode::calibration, doing + "its " + std::to_string(outlines.size()) +
                                             " large triangles were not found within " + fixed(search_px, 1) +
                                             " px of where they were" +
