@@ -94,7 +94,8 @@ Result<Manifest> read_written_manifest(const std::filesystem::path& folder) {
   return fail(ErrorCode::invalid_input, (folder / manifest_name).string() + ": changed since the session was written");
 }
 
-bool is_there(const std::filesystem::path& file) {
+/// A link that leads nowhere has one, too.
+bool has_a_name(const std::filesystem::path& file) {
   std::error_code problem;
   return std::filesystem::exists(std::filesystem::symlink_status(file, problem));
 }
@@ -224,7 +225,7 @@ Result<void> refresh_manifest(const std::filesystem::path& folder, const std::ve
 
 Result<ManifestCheck> check_manifest(const std::filesystem::path& folder) {
   ManifestCheck check;
-  if (!is_there(folder / manifest_name)) {
+  if (!has_a_name(folder / manifest_name)) {
     check.missing.emplace_back(manifest_name);
     return check;
   }

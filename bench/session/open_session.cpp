@@ -3,17 +3,13 @@
 #include <algorithm>
 #include <iterator>
 
+#include "bench/text/files.h"
 #include "bench/text/text.h"
 
 namespace todbench {
 namespace {
 
 constexpr std::size_t files_in_a_sentence = 4;
-
-bool is_there(const std::filesystem::path& file) {
-  std::error_code problem;
-  return std::filesystem::exists(file, problem);
-}
 
 /// The state that provenance.json states, whatever else is wrong with it.
 bool says_running(const std::filesystem::path& folder) {

@@ -90,11 +90,6 @@ Result<Json> read_json(const std::filesystem::path& file) {
   return json;
 }
 
-bool is_there(const std::filesystem::path& file) {
-  std::error_code problem;
-  return std::filesystem::exists(file, problem);
-}
-
 /// A record that need not be there.
 template <typename T>
 Result<std::optional<T>> read_record(const std::filesystem::path& file, Result<T> (*from)(const Json&)) {

@@ -70,6 +70,11 @@ Result<void> write_file_atomically(const std::filesystem::path& file, std::strin
   return io_error(file, "cannot be written", problem);
 }
 
+bool is_there(const std::filesystem::path& file) {
+  std::error_code problem;
+  return std::filesystem::exists(file, problem);
+}
+
 std::string sha256_of(std::string_view text) {
   const DigestContext context = sha256_context();
   EVP_DigestUpdate(context.get(), text.data(), text.size());

@@ -13,6 +13,9 @@ namespace todbench {
 /// the path and the reason (disk full, access denied); the old file is then still there.
 [[nodiscard]] Result<void> write_file_atomically(const std::filesystem::path& file, std::string_view content);
 
+/// Whether something has that path; false as well where the path cannot be looked up.
+[[nodiscard]] bool is_there(const std::filesystem::path& file);
+
 /// SHA-256 of a text in lower-case hexadecimal.
 [[nodiscard]] std::string sha256_of(std::string_view text);
 /// SHA-256 of a file in lower-case hexadecimal, read in pieces. `io` when it cannot be read.
