@@ -180,8 +180,7 @@ Result<StreamFormat> read_stream_format(ArvCamera* camera) {
   const auto known = pixel_format_of_pfnc(arv_camera_get_pixel_format(camera, error.out()));
   if (error) return error.failure(ErrorCode::not_found, "reading the pixel format");
   if (!known || std::find(usable_formats.begin(), usable_formats.end(), *known) == usable_formats.end()) {
-    return fail(ErrorCode::not_found, "pixel format " +
-                                          text_or_empty(arv_camera_get_pixel_format_as_string(camera, nullptr)) +
+    return fail(ErrorCode::not_found, "pixel format " + get_feature(device, "PixelFormat").value_or("") +
                                           " is not an unpacked 10 ... 16 bit monochrome format");
   }
   format.pixel_format = *known;

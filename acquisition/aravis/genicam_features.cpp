@@ -162,9 +162,12 @@ Result<std::string> get_feature(ArvDevice* device, const std::string& name) {
       text = arv_device_get_boolean_feature_value(device, name.c_str(), error.out()) != 0 ? "true" : "false";
       break;
     case Kind::enumeration:
-    case Kind::text:
-      text = text_or_empty(arv_device_get_string_feature_value(device, name.c_str(), error.out()));
+    case Kind::text: {
+      // Where the camera does not answer, Aravis returns memory that nobody wrote, without an end.
+      const char* value = arv_device_get_string_feature_value(device, name.c_str(), error.out());
+      if (!error) text = text_or_empty(value);
       break;
+    }
     case Kind::command:
       return fail(ErrorCode::invalid_input, name + " is a command and has no value");
   }

@@ -22,8 +22,10 @@ constexpr std::size_t remembered_periods = 15;
 /// Periods seen before they are believed more than the stated one.
 constexpr std::size_t enough_periods = 3;
 constexpr std::size_t remembered_arrivals = 32, enough_arrivals = 16;
-/// Frames after a silence that show whether they had only been waiting.
-constexpr int frames_after_silence = 4;
+/// Frames after a silence that show whether they had only been waiting. Those that waited come as fast as the program
+/// takes them; the others at the camera's rate, give or take what a busy host delays each by.
+constexpr int frames_after_silence = 12;
+constexpr double least_pace = 0.6;
 /// A shorter silence of the host is nothing.
 constexpr double least_silence_ns = 0.3e9;
 
@@ -202,14 +204,16 @@ std::uint64_t FrameSequence::dropped_on_arrival(std::int64_t step, const Elapsed
   if (!is_gvsp(kind_) || !period || !passed.host) return 0;
   if (silence_) {
     ++silence_->frames;
-    const double since = static_cast<double>(stamp.host_time_ns - silence_->host_time_ns) / *period;
-    if (since < 0.5 * silence_->frames) silence_.reset();
-    if (!silence_ || silence_->frames < frames_after_silence) return 0;
-    return steps_in(std::exchange(silence_, std::nullopt)->missing, stamp);
+    if (silence_->frames < frames_after_silence) return 0;
+    const Silence over = *std::exchange(silence_, std::nullopt);
+    const double since = static_cast<double>(stamp.host_time_ns - over.host_time_ns) / *period;
+    return since < least_pace * over.frames ? 0 : steps_in(over.missing, stamp);
   }
   const double missing = *passed.host - static_cast<double>(step);
   const auto number = static_cast<double>(*stamp.number);
-  const bool as_long_as_the_numbers = number <= arrival_window + 1 && missing > number - 3 && missing < 2 * number + 3;
+  // The frame before the silence may have been told late, which makes the silence shorter.
+  const bool as_long_as_the_numbers =
+      number <= arrival_window + 1 && missing > 0.8 * number - 3 && missing < 2 * number + 3;
   if (step == 1 && !stamp.may_pause && missing * *period > least_silence_ns && as_long_as_the_numbers) {
     silence_ = Silence{.missing = missing, .host_time_ns = stamp.host_time_ns, .frames = 0};
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <string>
 #include <tuple>
 
@@ -224,6 +225,53 @@ INSTANTIATE_TEST_SUITE_P(Gvsp, DroppedRestarts,
 INSTANTIATE_TEST_SUITE_P(Short, DroppedRestarts,
                          testing::Combine(testing::Values(FrameNumberKind::gvsp16, FrameNumberKind::wide),
                                           testing::Values(Clock::goes_on), testing::Values(1, 2, 5, 14)));
+
+/// The host learns of every frame up to two periods late, in order.
+TEST(DroppedRestarts, AreSeenByABusyHost) {
+  for (const std::uint64_t last : {30, 45, 59, 88}) {
+    for (unsigned seed = 1; seed <= 100; ++seed) {
+      std::mt19937 random(seed);
+      std::uniform_int_distribution<std::int64_t> delay_ns(0, 2 * period_ns);
+      FrameSequence sequence(FrameNumberKind::gvsp16, rate_hz);
+      std::int64_t told_ns = 0;
+      FramePlace place;
+      bool told = false;
+      for (std::uint64_t exposure = 1; exposure <= 2 * last + 20; ++exposure) {
+        if (exposure > last && exposure <= 2 * last) continue;  // dropped
+        const std::uint64_t number = exposure <= last ? exposure : exposure - last;
+        told_ns = std::max(told_ns, static_cast<std::int64_t>(exposure) * period_ns + delay_ns(random));
+        place = sequence.next({.number = number,
+                               .device_time_ns = static_cast<std::int64_t>(number) * period_ns,
+                               .host_time_ns = power_up_ns + told_ns,
+                               .may_pause = false});
+        told = told || place.numbering == Numbering::timed;
+      }
+
+      EXPECT_TRUE(told) << last << ", seed " << seed;
+      EXPECT_NEAR(static_cast<double>(place.sequence), static_cast<double>(2 * last + 19), 3) << last << ", " << seed;
+    }
+  }
+}
+
+/// After a stall the frames that had been waiting are taken slowly, too.
+TEST(FrameSequence, ABusyHostThatStalledHasLostNothing) {
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_int_distribution<std::int64_t> taken_ns(0, period_ns / 2);
+    FrameSequence sequence(FrameNumberKind::gvsp16, rate_hz);
+    std::int64_t told_ns = 0;
+    for (std::uint64_t k = 1; k <= 160; ++k) {
+      const auto exposed_ns = static_cast<std::int64_t>(k) * period_ns;
+      const std::int64_t stalled_until_ns = k > 40 ? 80 * period_ns : 0;
+      told_ns = std::max({exposed_ns, stalled_until_ns, told_ns + taken_ns(random)});
+
+      const FramePlace place = sequence.next(
+          {.number = k, .device_time_ns = exposed_ns, .host_time_ns = power_up_ns + told_ns, .may_pause = false});
+
+      ASSERT_EQ(place, counted(k - 1)) << k << ", seed " << seed;
+    }
+  }
+}
 
 TEST(FrameSequence, AHostThatStalledHasLostNothing) {
   for (const Clock clock : {Clock::none, Clock::goes_on}) {

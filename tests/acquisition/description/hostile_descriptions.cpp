@@ -31,8 +31,9 @@ std::string chain(int links, MakeNode make) {
   return out + integer(name(links), "<Value>1</Value>");
 }
 
+/// Little-endian; bytes beyond the value are 0.
 void append(std::string& out, std::uint64_t value, int bytes) {
-  for (int i = 0; i < bytes; ++i) out += static_cast<char>(value >> (8 * i));
+  for (int i = 0; i < bytes; ++i, value >>= 8U) out += static_cast<char>(value);
 }
 
 }  // namespace
