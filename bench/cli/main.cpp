@@ -130,6 +130,7 @@ int run(int argc, char** argv) {
   add_render_command(app, program);
   add_mtf_command(app, program);
   add_noise_command(app, program);
+  add_pattern_command(app, program);
   add_range_command(app, program);
   add_reproduce_command(app, program);
   try {

@@ -18,6 +18,7 @@ BEGIN {
   may["hvs/observer"] = core " hvs/shape"
   hvs = core " hvs/shape hvs/observer"
   may["tod/plate"] = hvs
+  may["tod/pattern"] = hvs " tod/plate"
   may["tod/presentation"] = core " tod/plate"
   may["tod/registration"] = hvs " tod/plate"
   may["tod/psychometric"] = core " tod/presentation"
@@ -28,7 +29,7 @@ BEGIN {
   may["tod/range"] = core " hvs/shape tod/psychometric"
   may["tod/measures"] = core
   may["tod/instruments"] = core " tod/plate tod/presentation"
-  tod = hvs " tod/plate tod/presentation tod/registration tod/psychometric tod/schedule tod/measurement tod/comparison tod/adequacy tod/range tod/measures"
+  tod = hvs " tod/plate tod/pattern tod/presentation tod/registration tod/psychometric tod/schedule tod/measurement tod/comparison tod/adequacy tod/range tod/measures"
   may["sim_devices/scene"] = hvs " tod/plate"
   may["sim_devices/atmosphere"] = core " tod/range"
   may["sim_devices/sensor"] = hvs " tod/plate tod/presentation sim_devices/scene"
