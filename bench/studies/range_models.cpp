@@ -180,8 +180,10 @@ Result<void> answer(Prepared& model, const RangeSources& sources, const RangeQue
   model.head.reason = found.reason;
   if (found.at_least_m) model.head.r75_ci95_m.low = found.at_least_m;
   // The curve is a formula without an error of its own; what the air does to it is known.
-  if (found.range_m && question.extinction_u_percent > 0)
+  if (found.range_m && question.extinction_u_percent > 0) {
     model.head.r75_ci95_m = joined_with_air(model, question, *found.range_m, {found.range_m, found.range_m});
+    model.head.notes.emplace_back("the interval is that of the air alone: the curve has no stated uncertainty");
+  }
   return {};
 }
 

@@ -5,8 +5,8 @@
 #include <signal.h>
 #include <unistd.h>
 
-#include <array>
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <map>
 #include <utility>
@@ -65,7 +65,9 @@ bool is_alive(const std::filesystem::path& lock) {
   const auto text = read_text_file(lock);
   if (!text) return false;
   const auto end = text->find('\n');
-  const auto process = end == std::string::npos ? std::nullopt : parse_number(text->substr(end + 1, text->find('\n', end + 1) - end - 1));
+  const auto process = end == std::string::npos
+                           ? std::nullopt
+                           : parse_number(text->substr(end + 1, text->find('\n', end + 1) - end - 1));
   if (!process) {
     // Just being written, or by a process that was killed then.
     std::error_code problem;
@@ -101,8 +103,8 @@ Json result_json(const RunnableSweep& runnable, const SweepTask& task, const Jso
 std::optional<std::string> foreign_result(const std::filesystem::path& folder, const SweepTask& task) {
   const std::string prefix = task.name.substr(0, task.name.find('-') + 1);
   std::error_code problem;
-  for (auto entry = std::filesystem::directory_iterator(folder, problem); !problem && entry != std::filesystem::directory_iterator();
-       entry.increment(problem)) {
+  for (auto entry = std::filesystem::directory_iterator(folder, problem);
+       !problem && entry != std::filesystem::directory_iterator(); entry.increment(problem)) {
     const std::string name = entry->path().filename().string();
     if (name.starts_with(prefix) && name.ends_with(".json") && name != task.name + ".json") return name;
   }
@@ -152,8 +154,8 @@ SweepStatus sweep_status(const Sweep& sweep) {
     // What stands in the folder by index: the name without its ending, and the endings.
     std::error_code problem;
     const auto folder = folder_of(sweep, begin);
-    for (auto entry = std::filesystem::directory_iterator(folder, problem); !problem && entry != std::filesystem::directory_iterator();
-         entry.increment(problem)) {
+    for (auto entry = std::filesystem::directory_iterator(folder, problem);
+         !problem && entry != std::filesystem::directory_iterator(); entry.increment(problem)) {
       const std::string stem = entry->path().stem().string(), ending = entry->path().extension().string();
       const auto number = parse_number(stem.starts_with('i') ? stem.substr(1, stem.find('-') - 1) : "");
       if (!number || *number < 0 || *number >= static_cast<double>(sweep.count())) continue;

@@ -122,8 +122,8 @@ Result<Sweep> Sweep::expand(SweepFile file, std::string fingerprint, const Numbe
     for (const auto& name : constraint.names()) {
       const bool known = std::find(keys.begin(), keys.end(), name) != keys.end() || number_of(name).has_value();
       if (!known)
-        return fail(ErrorCode::invalid_input, fmt::format("condition '{}': '{}' is no number that is known",
-                                                          constraint.text(), one_line(name)));
+        return fail(ErrorCode::invalid_input,
+                    fmt::format("condition '{}': '{}' is no number that is known", constraint.text(), one_line(name)));
     }
   }
   for (std::size_t i = 0; i < count; ++i) {
@@ -153,8 +153,8 @@ SweepTask Sweep::task(std::size_t index) const {
   task.repeat = index % file_.repeats;
   task.parameters = parameters_of(combinations_[index / file_.repeats]);
   const std::string what = canonical(task.parameters) + base_text_;
-  task.seed = number_from(sha256_of(fmt::format("sweep seed {} repeat {}\n{}", file_.seed, task.repeat,
-                                                file_.paired ? std::string() : what)));
+  task.seed = number_from(sha256_of(
+      fmt::format("sweep seed {} repeat {}\n{}", file_.seed, task.repeat, file_.paired ? std::string() : what)));
   task.name = fmt::format("i{:06d}-{}", index,
                           sha256_of(fmt::format("{}seed={} repeat={}", what, task.seed, task.repeat)).substr(0, 8));
   return task;

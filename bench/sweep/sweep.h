@@ -25,9 +25,9 @@ struct SweepTask {
 /// A number that a name has where a task does not say it: the sensor's.
 using NumberOfName = std::function<std::optional<double>(std::string_view name)>;
 
-/// All tasks of a sweep. Seeds depend on content (the sweep's seed, the parameters, the repeat), not on the index: a value
-/// that is added or moved leaves the numbers of every other task as they were. With `paired` they depend on the repeat
-/// alone. Immutable, thread-safe.
+/// All tasks of a sweep. Seeds depend on content (the sweep's seed, the parameters, the repeat), not on the index: a
+/// value that is added or moved leaves the numbers of every other task as they were. With `paired` they depend on the
+/// repeat alone. Immutable, thread-safe.
 class Sweep {
  public:
   /// `fingerprint`: whatever else decides results (contents of files that are named); part of the hash of a task.
@@ -56,8 +56,8 @@ class Sweep {
   std::size_t refused_ = 0;
 };
 
-/// Draws in the unit cube: a Latin hypercube, or the Sobol sequence (directions of Joe and Kuo 2008) with a shift by the
-/// seed. `n` rows of `dimensions` numbers in (0, 1).
+/// Draws in the unit cube: a Latin hypercube, or the Sobol sequence (directions of Joe and Kuo 2008) with a shift by
+/// the seed. `n` rows of `dimensions` numbers in (0, 1).
 [[nodiscard]] std::vector<std::vector<double>> unit_sample(SampleKind kind, std::size_t n, std::size_t dimensions,
                                                            std::uint64_t seed);
 

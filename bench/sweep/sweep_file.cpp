@@ -119,7 +119,8 @@ void read_sample(const toml::table& table, Reading& reading, SweepFile& sweep) {
   if (kind != "latin-hypercube" && kind != "sobol") reading.wrong(table, "kind: expected 'latin-hypercube' or 'sobol'");
   sweep.sample_kind = kind == "sobol" ? SampleKind::sobol : SampleKind::latin_hypercube;
   const auto count = table["n"].value<std::int64_t>();
-  if (!count || *count < 1 || static_cast<std::size_t>(*count) > most_values) reading.wrong(table, "n: expected a whole number of 1 or more");
+  if (!count || *count < 1 || static_cast<std::size_t>(*count) > most_values)
+    reading.wrong(table, "n: expected a whole number of 1 or more");
   sweep.sample_count = static_cast<std::size_t>(count.value_or(1));
   const auto seed = table["seed"].value_or<std::int64_t>(1);
   if (seed < 0) reading.wrong(table, "seed: expected 0 or more");
@@ -135,7 +136,8 @@ void read_sample(const toml::table& table, Reading& reading, SweepFile& sweep) {
     sweep.sample.push_back({key, low.value_or(0), high.value_or(1)});
   });
   for (const auto& [key, node] : in_order(table)) {
-    if (key != "kind" && key != "n" && key != "seed" && key != "ranges") reading.wrong(*node, "unknown key '" + one_line(key) + "' in [sample]");
+    if (key != "kind" && key != "n" && key != "seed" && key != "ranges")
+      reading.wrong(*node, "unknown key '" + one_line(key) + "' in [sample]");
   }
 }
 
@@ -219,7 +221,8 @@ void read_entry(const std::string& key, const toml::node& node, Reading& reading
   } else if (key == "base" || key == "grid" || key == "zip" || key == "sample" || key == "repeat") {
     read_section(key, node, reading, sweep);
   } else {
-    static const std::vector<std::string> known{"name", "seed", "paired", "kind", "results", "where", "base", "grid", "zip", "sample", "repeat"};
+    static const std::vector<std::string> known{"name", "seed", "paired", "kind",   "results", "where",
+                                                "base", "grid", "zip",    "sample", "repeat"};
     reading.wrong(node, "unknown key '" + one_line(key) + "'" + nearest_name_hint(key, known));
   }
 }
@@ -246,8 +249,8 @@ Result<SweepFile> parse_sweep(std::string_view text, const std::filesystem::path
   try {
     root = toml::parse(text, name);
   } catch (const toml::parse_error& error) {
-    return fail(ErrorCode::invalid_input, fmt::format("{}:{}: {}", name, error.source().begin.line,
-                                                      one_line(std::string(error.description()))));
+    return fail(ErrorCode::invalid_input,
+                fmt::format("{}:{}: {}", name, error.source().begin.line, one_line(std::string(error.description()))));
   }
   SweepFile sweep;
   std::error_code problem;

@@ -52,7 +52,8 @@ void add_rows(SweepTable& table, const Sweep& sweep, const Json& result) {
     std::map<std::string, Json> cells;
     for (const auto& [key, value] : cells_of(point)) {
       cells[key] = value;
-      if (std::find(table.columns.begin(), table.columns.end(), key) == table.columns.end()) table.columns.push_back(key);
+      if (std::find(table.columns.begin(), table.columns.end(), key) == table.columns.end())
+        table.columns.push_back(key);
     }
     for (const auto& key : sweep.keys()) {
       if (result["parameters"].contains(key)) cells[key] = cell_of(result["parameters"][key].get<std::string>());
@@ -67,16 +68,17 @@ void add_rows(SweepTable& table, const Sweep& sweep, const Json& result) {
 Result<void> check_versions(const Sweep& sweep, const Json& result, SweepTable& table) {
   const auto text = [&](const char* key) { return result[key].get<std::string>(); };
   if (text("sweep_sha256") != sweep.hash())
-    return fail(ErrorCode::invalid_input, "result " + one_line(text("task")) + ": is of another version of the sweep file");
+    return fail(ErrorCode::invalid_input,
+                "result " + one_line(text("task")) + ": is of another version of the sweep file");
   if (table.version.empty()) {
     table.version = text("version");
     table.commit = text("commit");
   }
   if (table.version == text("version") && table.commit == text("commit")) return {};
-  return fail(ErrorCode::invalid_input,
-              fmt::format("the results are of several versions of the program: {} ({}) and, from {} on, {} ({})",
-                          table.version, table.commit, one_line(text("task")), one_line(text("version")),
-                          one_line(text("commit"))));
+  return fail(
+      ErrorCode::invalid_input,
+      fmt::format("the results are of several versions of the program: {} ({}) and, from {} on, {} ({})", table.version,
+                  table.commit, one_line(text("task")), one_line(text("version")), one_line(text("commit"))));
 }
 
 std::string csv_cell(const Json& cell) {
@@ -145,8 +147,9 @@ Result<SweepTable> collected(const Sweep& sweep, MissingTasks missing) {
   }
   table.missing = status.states.size() - status.count(TaskState::done);
   if (table.missing > 0 && missing == MissingTasks::refused) {
-    return fail(ErrorCode::not_identifiable,
-                fmt::format("{} of {} tasks have no result yet (--partial leaves them out)", table.missing, table.tasks));
+    return fail(
+        ErrorCode::not_identifiable,
+        fmt::format("{} of {} tasks have no result yet (--partial leaves them out)", table.missing, table.tasks));
   }
   std::vector<Json> results;
   for (std::size_t i = 0; i < status.states.size(); ++i) {
@@ -181,12 +184,8 @@ Json to_json(const SweepTable& table) {
     for (std::size_t i = 0; i < table.columns.size(); ++i) object[table.columns[i]] = row[i];
     rows.push_back(std::move(object));
   }
-  return {{"columns", table.columns},
-          {"rows", rows},
-          {"tasks", table.tasks},
-          {"missing", table.missing},
-          {"version", table.version},
-          {"commit", table.commit}};
+  return {{"columns", table.columns}, {"rows", rows},          {"tasks", table.tasks}, {"missing", table.missing},
+          {"version", table.version}, {"commit", table.commit}};
 }
 
 Result<void> write_sqlite(const SweepTable& table, const std::filesystem::path& file) {

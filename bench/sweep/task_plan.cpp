@@ -34,8 +34,8 @@ std::optional<std::string> plan_path(std::string_view name) {
     if (section.repeated()) continue;
     for (const auto& key : section.keys) {
       const std::string path = path_of(section, key);
-      const bool option = key.option.of == OptionOf::simulations && !key.option.name.empty() &&
-                          key_of_option(key.option.name) == name;
+      const bool option =
+          key.option.of == OptionOf::simulations && !key.option.name.empty() && key_of_option(key.option.name) == name;
       if (path == name || option) return path;
     }
   }
@@ -97,7 +97,8 @@ Result<void> set_plan(const SweepParameter& parameter, const std::string& path, 
   if (std::holds_alternative<ResourceKey>(at.key->type))
     value = KeyValue(absolute_reference(std::get<std::string>(*value), folder));
   if (std::holds_alternative<ResourcesKey>(at.key->type)) {
-    for (auto& reference : std::get<std::vector<std::string>>(*value)) reference = absolute_reference(reference, folder);
+    for (auto& reference : std::get<std::vector<std::string>>(*value))
+      reference = absolute_reference(reference, folder);
   }
   at.key->place.set(plan, 0, *value);
   return {};

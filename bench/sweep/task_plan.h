@@ -21,8 +21,8 @@ struct RunnableSweep {
 };
 /// Keys are those of a plan by path ("simulation.accuracy"), by the name of the option of `todbench simulate`
 /// ("delta_t_k", "observer", "sensor"), those of a sensor ("netd_k"), and "plan" in [base], a name or a file. Without a
-/// plan there is no unit under test and the plates stand at a distance that suits each sensor. Every value of every key is
-/// checked here, once. `invalid_input` in one sentence.
+/// plan there is no unit under test and the plates stand at a distance that suits each sensor. Every value of every key
+/// is checked here, once. `invalid_input` in one sentence.
 [[nodiscard]] Result<RunnableSweep> load_sweep(const std::filesystem::path& file);
 
 /// The plan of a task, seed included. Errors: `invalid_input` for values that do not go together.

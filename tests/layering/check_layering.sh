@@ -51,8 +51,9 @@ BEGIN {
   devices = "acquisition/recording acquisition/aravis acquisition/v4l2 acquisition/usb tod/instruments sim_devices/lab"
   may["bench/run"] = science " " devices " bench/text bench/plan bench/judgement bench/session bench/report"
   may["bench/studies"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
+  may["bench/sweep"] = science " bench/text bench/plan bench/judgement bench/session bench/run"
   may["bench/doctor"] = core " bench/text"
-  bench = "bench/text bench/plan bench/judgement bench/session bench/report bench/run bench/studies"
+  bench = "bench/text bench/plan bench/judgement bench/session bench/report bench/run bench/studies bench/sweep"
   may["bench/cli"] = science " acquisition/recording bench/doctor " bench
   may["bench/gui/presenters"] = science " " bench
   may["bench/gui/views"] = science " " bench " bench/gui/presenters"
@@ -64,7 +65,8 @@ BEGIN {
   home["^umockdev.h"] = "^sim_devices/lab/(device_nodes|video|usb)/"
   home["^libusb"] = "^acquisition/(aravis|usb)/"
   home["^(Q[A-Z]|qcustomplot.h)"] = "^bench/gui/"
-  home["^toml\\+\\+/"] = "^bench/plan/"
+  home["^toml\\+\\+/"] = "^bench/(plan|sweep)/"
+  home["^sqlite3.h"] = "^bench/sweep/"
   home["^CLI/"] = "^bench/cli/"
   home["^libxml/"] = "^acquisition/description/"
   home["^tiffio.h"] = "^acquisition/recording/"
