@@ -1,14 +1,20 @@
 # cmake -D SOURCE_DIR=... -D OUTPUT=... -P EmbedResources.cmake
-# Writes the C++ source that holds every shipped plate, sensor, observer and plan.
+# Writes the C++ source that holds every shipped plate, sensor, observer, plan and table of the air.
 
 set(content "#include <array>\n\n#include \"bench/plan/resources.h\"\n\nnamespace todbench {\n\nnamespace {\n\n")
 set(rows "")
 set(count 0)
-foreach(entry "plate:tod/plate" "sensor:sim_devices/sensors" "observer:hvs/observers" "plan:bench/plans")
+foreach(entry "plate:tod/plate" "sensor:sim_devices/sensors" "observer:hvs/observers" "plan:bench/plans"
+        "atmosphere:sim_devices/atmosphere:json")
   string(REPLACE ":" ";" entry "${entry}")
   list(GET entry 0 kind)
   list(GET entry 1 folder)
-  file(GLOB files "${SOURCE_DIR}/${folder}/*.toml")
+  set(ending toml)
+  list(LENGTH entry parts)
+  if(parts GREATER 2)
+    list(GET entry 2 ending)
+  endif()
+  file(GLOB files "${SOURCE_DIR}/${folder}/*.${ending}")
   list(SORT files)
   foreach(file IN LISTS files)
     get_filename_component(name "${file}" NAME_WLE)

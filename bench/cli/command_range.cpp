@@ -1,8 +1,11 @@
 // todbench range
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
 
 #include "bench/cli/commands.h"
+#include "bench/cli/range_options.h"
 #include "bench/cli/session_argument.h"
 #include "bench/judgement/verdict.h"
 #include "bench/text/text.h"
@@ -15,7 +18,15 @@ struct RangeArguments {
   std::string tod;
   RangeTask task;
   std::optional<double> v50;
+  RangeOptions more;
   Opening opening{};
+};
+
+/// What the TOD model answers, and whose curve it read.
+struct TodAnswer {
+  RangePrediction prediction;
+  std::string observer, sensor;
+  std::optional<double> twin_r75_m;
 };
 
 /// Where the TOD curve says something about the target at all.
@@ -24,7 +35,8 @@ bool any_probability(const RangePrediction& prediction) {
                      [](const RangePoint& point) { return point.probability.has_value(); });
 }
 
-Json range_json(const RangePrediction& prediction, const TodCurve& tod, const RangeTask& task) {
+Json range_json(const TodAnswer& tod, const RangeTask& task) {
+  const RangePrediction& prediction = tod.prediction;
   Json points = Json::array();
   const std::vector<RangePoint> none;
   for (const auto& point : any_probability(prediction) ? prediction.curve : none) {
@@ -46,10 +58,13 @@ Json range_json(const RangePrediction& prediction, const TodCurve& tod, const Ra
           {"curve", points}};
 }
 
-void print_range(Console& console, const RangePrediction& prediction, const TodCurve& tod, const RangeTask& task) {
+void print_range(Console& console, const TodAnswer& tod, const RangeTask& task, const Atmosphere& air) {
+  const RangePrediction& prediction = tod.prediction;
   console.text("identification range, TOD of " + tod.sensor + ", observer " + tod.observer);
+  const std::string through =
+      task.air ? "air: " + air.source : "extinction " + number_text(task.extinction_per_km) + " per km";
   console.text("target " + number_text(task.size_m) + " m, " + number_text(task.delta_t_k) + " K, M75 " +
-               number_text(task.m75) + ", extinction " + number_text(task.extinction_per_km) + " per km");
+               number_text(task.m75) + ", " + through);
   std::vector<TableRow> rows;
   for (const auto& p : prediction.curve) {
     if (!p.probability) continue;
@@ -66,43 +81,102 @@ void print_range(Console& console, const RangePrediction& prediction, const TodC
   if (!prediction.reason.empty()) console.text(prediction.reason);
 }
 
+/// Of the thresholds; the reason why there is none where there are no thresholds.
+Result<RangePrediction> predicted(const ThresholdSelection& selection, const RangeTask& task) {
+  RangePrediction prediction;
+  if (!selection.thresholds.empty()) return predict_range(selection.thresholds, task);
+  prediction.reason = "the TOD curve has no threshold";
+  return prediction;
+}
+
+Result<TodAnswer> tod_answer(const Session& session, const ThresholdSelection& selection, const RangeTask& task) {
+  auto prediction = predicted(selection, task);
+  if (!prediction) return tl::unexpected(prediction.error());
+  prediction->notes.insert(prediction->notes.begin(), selection.notes.begin(), selection.notes.end());
+  TodAnswer answer{*std::move(prediction), session.curve->observer, session.curve->sensor, {}};
+  if (session.twin) {
+    const auto twin = predicted(thresholds_of(*session.twin, task.delta_t_k), task);
+    if (twin) answer.twin_r75_m = twin->r75_m;
+  }
+  return answer;
+}
+
+Result<std::optional<Session>> session_of(Console& console, const RangeArguments& arguments) {
+  if (arguments.tod.empty()) {
+    if (!arguments.more.asks(RangeModel::tod)) return std::nullopt;
+    return fail(ErrorCode::invalid_input, "range: --tod is required for the TOD model");
+  }
+  auto session = opened(console, arguments.tod, arguments.opening);
+  if (!session) return tl::unexpected(session.error());
+  if (!session->curve && arguments.more.asks(RangeModel::tod))
+    return fail(ErrorCode::invalid_input, arguments.tod + ": the session holds no curve");
+  return std::optional(*std::move(session));
+}
+
+/// The contrast at the scale of the NETD and the air, in the task.
+Result<Atmosphere> into_task(RangeTask& task, const RangeOptions& options, const std::optional<SensorSpec>& sensor) {
+  auto air = options.air(sensor, task.extinction_per_km);
+  if (!air) return air;
+  if (options.has_table()) task.air = air->air;
+  const auto contrast = options.equivalent_contrast_k(task.delta_t_k, sensor, *air);
+  if (!contrast) return tl::unexpected(contrast.error());
+  task.delta_t_k = *contrast;
+  return air;
+}
+
 int run_range(Console& console, const RangeArguments& arguments) {
   RangeTask task = arguments.task;
+  RangeOptions options = arguments.more;
+  options.asked_delta_t_k = task.delta_t_k;
   if (arguments.v50) task.m75 = m75_from_v50(*arguments.v50);
-  auto session = opened(console, arguments.tod, arguments.opening);
+  const auto session = session_of(console, arguments);
   if (!session) return report_error(console, session.error());
-  if (!session->curve) {
-    return report_error(console, {ErrorCode::invalid_input, arguments.tod + ": the session holds no curve"});
-  }
-  const ThresholdSelection selection = thresholds_of(*session->curve, task.delta_t_k);
-  for (const auto& sentence : selection.notes) console.note(sentence);
-  RangePrediction prediction;
-  if (selection.thresholds.empty()) {
-    prediction.reason = "the TOD curve has no threshold";
+  const auto sensor = options.sensor_of(*session);
+  if (!sensor) return report_error(console, sensor.error());
+  const auto air = into_task(task, options, *sensor);
+  if (!air) return report_error(console, air.error());
+  for (const auto& sentence : air->notes) console.note(sentence);
+  TodAnswer tod;
+  ThresholdSelection selection;
+  if (*session && (*session)->curve) {
+    selection = thresholds_of(*(*session)->curve, task.delta_t_k);
+    auto answer = tod_answer(**session, selection, task);
+    if (!answer) return report_error(console, answer.error());
+    tod = *std::move(answer);
   } else {
-    auto predicted = predict_range(selection.thresholds, task);
-    if (!predicted) return report_error(console, predicted.error());
-    prediction = *predicted;
+    tod.prediction.reason = "there is no TOD curve";
   }
-  for (const auto& sentence : prediction.notes) console.note(sentence);
-  prediction.notes.insert(prediction.notes.begin(), selection.notes.begin(), selection.notes.end());
+  for (const auto& sentence : tod.prediction.notes) console.note(sentence);
+  const RangeQuestion question = options.question(task, arguments.v50, *air);
+  auto sources = options.sources(selection.thresholds, *sensor);
+  if (!sources) return report_error(console, sources.error());
+  const auto models = range_models(options.models, *sources, question);
+  if (!models) return report_error(console, models.error());
+  if (auto written = options.write(*models, question); !written) return report_error(console, written.error());
   if (console.json()) {
-    Json json = range_json(prediction, *session->curve, task);
-    add_accepted_changes(json, arguments.opening, session->accepted_changes);
+    Json json = range_json(tod, task);
+    json["delta_t_k"] = options.asked_delta_t_k;
+    json["atmosphere"] = atmosphere_json(*air, task, tod.prediction.r75_m, options, *sensor);
+    json["models"] = models_json(*models, *sources, question, tod.twin_r75_m);
+    if (*session) add_accepted_changes(json, arguments.opening, (*session)->accepted_changes);
     console.object(json);
   } else {
-    print_range(console, prediction, *session->curve, task);
-    if (const auto sentence = accepted_sentence(arguments.tod, *session); !sentence.empty()) console.text(sentence);
+    if (arguments.more.asks(RangeModel::tod)) print_range(console, tod, task, *air);
+    if (arguments.more.models.size() > 1 || !arguments.more.asks(RangeModel::tod)) print_models(console, *models);
+    if (*session) {
+      if (const auto sentence = accepted_sentence(arguments.tod, **session); !sentence.empty()) console.text(sentence);
+    }
   }
-  return exit_code(prediction.r75_m ? VerdictKind::pass : VerdictKind::inconclusive);
+  const bool all = std::all_of(models->begin(), models->end(), [](const auto& model) { return model.r75_m; });
+  return exit_code(all ? VerdictKind::pass : VerdictKind::inconclusive);
 }
 
 }  // namespace
 
 void add_range_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand("range", "predicts the range of identification from a TOD curve");
+  auto* command = app.add_subcommand("range", "predicts ranges from a TOD curve, and by other models beside it");
   auto a = std::make_shared<RangeArguments>();
-  command->add_option("--tod", a->tod, "session folder with the curve")->required();
+  command->add_option("--tod", a->tod, "session folder with the curve; may be left out where no model asks for it");
   command->add_option("--size-m", a->task.size_m, "square root of the target's projected area")
       ->required()
       ->check(number_in(1e-6, 1e6));
@@ -118,6 +192,7 @@ void add_range_command(CLI::App& app, Program& program) {
   command->add_option("--extinction-per-km", a->task.extinction_per_km, "of the apparent contrast")
       ->check(number_in(0, 1e4))
       ->capture_default_str();
+  a->more.add_to(*command);
   add_accept_changed(*command, a->opening.accept_changed);
   finish_command(*command, program, [a](Console& console) { return run_range(console, *a); });
 }

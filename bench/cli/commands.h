@@ -52,7 +52,9 @@ void add_compare_command(CLI::App& app, Program& program);
 void add_report_command(CLI::App& app, Program& program);
 void add_verify_command(CLI::App& app, Program& program);
 void add_noise_command(CLI::App& app, Program& program);
+void add_pattern_command(CLI::App& app, Program& program);
 void add_range_command(CLI::App& app, Program& program);
 void add_reproduce_command(CLI::App& app, Program& program);
+void add_sweep_command(CLI::App& app, Program& program);
 
 }  // namespace todbench

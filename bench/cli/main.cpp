@@ -84,8 +84,12 @@ std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, co
   }
   const CLI::App* command = app.get_subcommand(asked);
   std::vector<std::string> options;
-  for (const CLI::Option* option : command->get_options()) {
-    for (const auto& name : option->get_lnames()) options.push_back("--" + name);
+  std::vector<const CLI::App*> parts{command};
+  for (const CLI::App* part : command->get_subcommands([](const CLI::App*) { return true; })) parts.push_back(part);
+  for (const CLI::App* part : parts) {
+    for (const CLI::Option* option : part->get_options()) {
+      for (const auto& name : option->get_lnames()) options.push_back("--" + name);
+    }
   }
   for (const auto& word : words) {
     const std::string name = word.substr(0, word.find('='));
@@ -130,8 +134,10 @@ int run(int argc, char** argv) {
   add_render_command(app, program);
   add_mtf_command(app, program);
   add_noise_command(app, program);
+  add_pattern_command(app, program);
   add_range_command(app, program);
   add_reproduce_command(app, program);
+  add_sweep_command(app, program);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

@@ -8,17 +8,6 @@
 namespace todbench {
 namespace {
 
-/// Without a plan file there is no unit under test, so no limits.
-Plan of_nobody(Plan plan) {
-  plan.name = "simulate";
-  plan.description = plan.operator_name = plan.place = plan.unit = "";
-  plan.limits = {};
-  plan.camera = {};
-  plan.target.kind = TargetKind::scene;
-  plan.target.black_body = plan.target.stage = "";
-  return plan;
-}
-
 /// The effects of the command line behind those of the plan.
 void add_effects(std::vector<Effect>& list, const std::vector<Effect>& before) {
   std::vector<Effect> all = before;
@@ -33,7 +22,7 @@ void add_effects(std::vector<Effect>& list, const std::vector<Effect>& before) {
 Result<LoadedPlan> simulation_plan(const SimulationOverrides& overrides, std::stop_token stop) {
   auto loaded = read_plan(overrides.plan.empty() ? "demo" : overrides.plan);
   if (!loaded) return loaded;
-  const Plan before = overrides.plan.empty() ? of_nobody(loaded->plan()) : loaded->plan();
+  const Plan before = overrides.plan.empty() ? plan_of_nobody(loaded->plan()) : loaded->plan();
   Plan plan = before;
   if (overrides.seed) plan.seed = *overrides.seed;
   if (auto applied = apply(overrides.keys, plan); !applied) return tl::unexpected(applied.error());

@@ -76,6 +76,7 @@ std::vector<ValueMistake> read_parts(ResourceKind kind, const Plan& plan, const 
     case ResourceKind::sensor:
       return keep(read_part(kind, plan.simulation.sensor, find, parts, parse_sensor), parts.sensor);
     case ResourceKind::plan:
+    case ResourceKind::atmosphere:
       break;
   }
   return {};

@@ -14,6 +14,8 @@ std::string_view to_string(ResourceKind kind) {
       return "observer";
     case ResourceKind::plan:
       return "plan";
+    case ResourceKind::atmosphere:
+      return "atmosphere";
   }
   return "";
 }

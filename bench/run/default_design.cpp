@@ -9,6 +9,16 @@
 
 namespace todbench {
 
+Plan plan_of_nobody(Plan plan) {
+  plan.name = "simulate";
+  plan.description = plan.operator_name = plan.place = plan.unit = "";
+  plan.limits = {};
+  plan.camera = {};
+  plan.target.kind = TargetKind::scene;
+  plan.target.black_body = plan.target.stage = "";
+  return plan;
+}
+
 Result<LoadedPlan> with_suitable_distance(const LoadedPlan& loaded, std::stop_token stop) {
   Plan plan = loaded.plan();
   const SensorSpec& sensor = loaded.sensor();

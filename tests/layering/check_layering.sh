@@ -18,6 +18,7 @@ BEGIN {
   may["hvs/observer"] = core " hvs/shape"
   hvs = core " hvs/shape hvs/observer"
   may["tod/plate"] = hvs
+  may["tod/pattern"] = hvs " tod/plate"
   may["tod/presentation"] = core " tod/plate"
   may["tod/registration"] = hvs " tod/plate"
   may["tod/psychometric"] = core " tod/presentation"
@@ -25,11 +26,12 @@ BEGIN {
   may["tod/measurement"] = hvs " tod/plate tod/presentation tod/registration tod/schedule tod/measures"
   may["tod/comparison"] = core " tod/psychometric"
   may["tod/adequacy"] = core " tod/psychometric"
-  may["tod/range"] = core " tod/psychometric"
+  may["tod/range"] = core " hvs/shape tod/psychometric"
   may["tod/measures"] = core
   may["tod/instruments"] = core " tod/plate tod/presentation"
-  tod = hvs " tod/plate tod/presentation tod/registration tod/psychometric tod/schedule tod/measurement tod/comparison tod/adequacy tod/range tod/measures"
+  tod = hvs " tod/plate tod/pattern tod/presentation tod/registration tod/psychometric tod/schedule tod/measurement tod/comparison tod/adequacy tod/range tod/measures"
   may["sim_devices/scene"] = hvs " tod/plate"
+  may["sim_devices/atmosphere"] = core " tod/range"
   may["sim_devices/sensor"] = hvs " tod/plate tod/presentation sim_devices/scene"
   may["sim_devices/prediction"] = tod " sim_devices/scene sim_devices/sensor"
   may["sim_devices/lab/device_nodes"] = core
@@ -40,7 +42,7 @@ BEGIN {
   may["sim_devices/lab/usb"] = core " acquisition/usb acquisition/pixel_formats sim_devices/lab/device_nodes sim_devices/lab/genicam sim_devices/lab/video"
   lab = "sim_devices/lab/device_nodes sim_devices/lab/genicam sim_devices/lab/instruments sim_devices/lab/gige sim_devices/lab/video sim_devices/lab/usb"
   may["sim_devices/lab"] = core " acquisition/aravis acquisition/v4l2 tod/plate sim_devices/scene sim_devices/sensor " lab
-  science = tod " sim_devices/scene sim_devices/sensor sim_devices/prediction"
+  science = tod " sim_devices/scene sim_devices/atmosphere sim_devices/sensor sim_devices/prediction"
   may["bench/text"] = core " tod/psychometric"
   may["bench/plan"] = science " bench/text"
   may["bench/judgement"] = science " bench/text bench/plan"
@@ -49,8 +51,9 @@ BEGIN {
   devices = "acquisition/recording acquisition/aravis acquisition/v4l2 acquisition/usb tod/instruments sim_devices/lab"
   may["bench/run"] = science " " devices " bench/text bench/plan bench/judgement bench/session bench/report"
   may["bench/studies"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
+  may["bench/sweep"] = science " bench/text bench/plan bench/judgement bench/session bench/run"
   may["bench/doctor"] = core " bench/text"
-  bench = "bench/text bench/plan bench/judgement bench/session bench/report bench/run bench/studies"
+  bench = "bench/text bench/plan bench/judgement bench/session bench/report bench/run bench/studies bench/sweep"
   may["bench/cli"] = science " acquisition/recording bench/doctor " bench
   may["bench/gui/presenters"] = science " " bench
   may["bench/gui/views"] = science " " bench " bench/gui/presenters"
@@ -62,7 +65,8 @@ BEGIN {
   home["^umockdev.h"] = "^sim_devices/lab/(device_nodes|video|usb)/"
   home["^libusb"] = "^acquisition/(aravis|usb)/"
   home["^(Q[A-Z]|qcustomplot.h)"] = "^bench/gui/"
-  home["^toml\\+\\+/"] = "^bench/plan/"
+  home["^toml\\+\\+/"] = "^bench/(plan|sweep)/"
+  home["^sqlite3.h"] = "^bench/sweep/"
   home["^CLI/"] = "^bench/cli/"
   home["^libxml/"] = "^acquisition/description/"
   home["^tiffio.h"] = "^acquisition/recording/"

@@ -70,8 +70,11 @@ class TargetLine {
  public:
   TargetLine(const std::vector<Node>& nodes, const RangeTask& task) : nodes_(nodes), task_(task) {}
 
+  /// Minus infinity beyond the end of a table.
   [[nodiscard]] double ln_contrast(double range_m) const {
-    return std::log(std::abs(task_.delta_t_k)) - task_.extinction_per_km * range_m / 1000;
+    const double at_target = std::log(std::abs(task_.delta_t_k));
+    if (task_.air) return at_target - task_.air->optical_depth(range_m).value_or(infinity);
+    return at_target - task_.extinction_per_km * range_m / 1000;
   }
   /// ln(M / M75): the angle in mrad is 1000 size / range.
   [[nodiscard]] std::optional<double> ln_m_over_m75(double range_m, Side side) const {
@@ -79,11 +82,10 @@ class TargetLine {
     if (!acuity) return std::nullopt;
     return std::log(1000 * task_.size_m / task_.m75) - std::log(range_m) + side_of(*acuity, side);
   }
-  /// Where the apparent contrast leaves the TOD curve at its low end; infinite without extinction.
-  [[nodiscard]] double end_m() const {
-    if (task_.extinction_per_km <= 0) return infinity;
-    return 1000 * (std::log(std::abs(task_.delta_t_k)) - nodes_.front().ln_contrast) / task_.extinction_per_km;
-  }
+  /// Where the apparent contrast leaves the TOD curve at its low end, or the table of the air ends; infinite without
+  /// extinction, negative where the target's contrast lies below the curve.
+  [[nodiscard]] double end_m() const;
+  [[nodiscard]] bool ends_with_the_table() const { return task_.air && end_m() >= task_.air->end_m(); }
   /// The range at which a TOD curve of constant acuity would be met.
   [[nodiscard]] double range_of(double ln_acuity) const {
     return 1000 * task_.size_m / task_.m75 * std::exp(ln_acuity);
@@ -96,6 +98,22 @@ class TargetLine {
   const std::vector<Node>& nodes_;
   RangeTask task_;
 };
+
+double TargetLine::end_m() const {
+  const double depth = std::log(std::abs(task_.delta_t_k)) - nodes_.front().ln_contrast;
+  if (!task_.air) return task_.extinction_per_km > 0 ? 1000 * depth / task_.extinction_per_km : infinity;
+  if (depth < 0) return -1;
+  const auto seen = [&](double range_m) { return task_.air->optical_depth(range_m).value_or(infinity) <= depth; };
+  double outside = std::min(task_.air->end_m(), std::numeric_limits<double>::max());
+  if (seen(outside)) return task_.air->end_m();
+  double inside = 0;
+  for (int i = 0; i < 2200; ++i) {
+    const double middle = inside + (outside - inside) / 2;
+    if (!(middle > inside && middle < outside)) break;
+    (seen(middle) ? inside : outside) = middle;
+  }
+  return inside;
+}
 
 double TargetLine::bisected(double inside, double outside, Side side) const {
   for (int i = 0; i < 200 && inside < outside; ++i) {
@@ -143,6 +161,8 @@ Result<void> check(std::span<const TodThreshold> thresholds, const RangeTask& ta
   if (!positive(task.m75)) return fail(ErrorCode::invalid_input, "M75 must be above 0");
   if (!std::isfinite(task.extinction_per_km) || task.extinction_per_km < 0)
     return fail(ErrorCode::invalid_input, "the extinction must be 0 or more per km");
+  if (task.air && task.extinction_per_km > 0)
+    return fail(ErrorCode::invalid_input, "the air has its own extinction: none may stand beside it");
   if (thresholds.empty()) return fail(ErrorCode::invalid_input, "the TOD curve has no threshold");
   for (std::size_t i = 0; i < thresholds.size(); ++i) {
     const auto& t = thresholds[i];
@@ -174,7 +194,9 @@ std::vector<RangePoint> probabilities(const TargetLine& line, double up_to_m) {
   for (int i = 1; i * step <= up_to_m * (1 + 1e-12); ++i) {
     RangePoint point;
     point.range_m = i * step;
-    point.apparent_delta_t_k = std::exp(line.ln_contrast(point.range_m));
+    const double ln_contrast = line.ln_contrast(point.range_m);
+    if (std::isinf(ln_contrast)) break;  // the table of the air has ended
+    point.apparent_delta_t_k = std::exp(ln_contrast);
     point.probability = probability(line.ln_m_over_m75(point.range_m, Side::estimate));
     point.probability_ci95 = {probability(line.ln_m_over_m75(point.range_m, Side::low)),
                               probability(line.ln_m_over_m75(point.range_m, Side::high))};
@@ -187,6 +209,11 @@ std::string why_not(const TargetLine& line, const RangeTask& task, double lowest
   if (line.end_m() < 0 || line.ln_contrast(0) < std::log(lowest_k)) {
     return fmt::format("the target's contrast of {:g} K lies below the lowest contrast of the TOD curve, {:g} K",
                        std::abs(task.delta_t_k), lowest_k);
+  }
+  if (line.ends_with_the_table()) {
+    return fmt::format(
+        "the table of transmittances ends at {:g} m, where M is still above M75 = {:g}; the range is at least that",
+        line.end_m(), task.m75);
   }
   return fmt::format(
       "the target line does not meet the TOD curve: the apparent contrast falls below the lowest contrast of "

@@ -10,6 +10,7 @@
 #include "acquisition/core/result.h"
 #include "tod/psychometric/acuity.h"
 #include "tod/psychometric/tod_curve.h"
+#include "tod/range/transmittance.h"
 
 namespace todbench {
 
@@ -24,10 +25,11 @@ struct TodThreshold {
 
 /// What is to be identified, through what air. Signal and criterion as in Bijl, Hogervorst and Vos (EO-VISTA), 4.2.3.
 struct RangeTask {
-  double size_m = 0;             ///< square root of the projected area, > 0
-  double delta_t_k = 0;          ///< contrast at the target; only the magnitude counts
-  double m75 = 5.1;              ///< M at which 75 % are correct, > 0; 5.1: small craft, side view
-  double extinction_per_km = 0;  ///< apparent contrast = contrast times exp(-extinction range), >= 0
+  double size_m = 0;                   ///< square root of the projected area, > 0
+  double delta_t_k = 0;                ///< contrast at the target; only the magnitude counts
+  double m75 = 5.1;                    ///< M at which 75 % are correct, > 0; 5.1: small craft, side view
+  double extinction_per_km = 0;        ///< apparent contrast = contrast times exp(-extinction range), >= 0
+  std::optional<Transmittance> air{};  ///< in place of the extinction, which then is 0
 };
 
 /// M75 = 0.6 V50: V50 = 8.5 and M75 = 5.1 belong together for small craft in side view (EO-VISTA, 4.2.3).
@@ -72,11 +74,11 @@ struct ThresholdSelection {
 /// other is what it is. Points without a set contrast name nothing.
 [[nodiscard]] double contrast_on_curve(std::span<const TodThreshold> thresholds, double delta_t_k);
 
-/// Solves M(R) = (size / R) acuity(contrast exp(-extinction R)) = M75 for the smallest R. The interval holds the R at
-/// which M75 is within the 95 % interval of M(R), the errors of neighbouring thresholds taken as independent. The
-/// target's contrast is that of contrast_on_curve().
-/// `invalid_input`: a parameter out of its range, no thresholds, thresholds that are not positive and finite, or two at
-/// one contrast.
+/// Solves M(R) = (size / R) acuity(contrast tau(R)) = M75 for the smallest R; tau is exp(-extinction R) or that of the
+/// air. The interval holds the R at which M75 is within the 95 % interval of M(R), the errors of neighbouring
+/// thresholds taken as independent. The target's contrast is that of contrast_on_curve(). `invalid_input`: a parameter
+/// out of its range, an extinction beside the air, no thresholds, thresholds that are not positive and finite, or two
+/// at one contrast.
 [[nodiscard]] Result<RangePrediction> predict_range(std::span<const TodThreshold> thresholds, const RangeTask& task);
 
 }  // namespace todbench

@@ -1,0 +1,161 @@
+// todbench pattern
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <opencv2/imgcodecs.hpp>
+
+#include "bench/cli/commands.h"
+#include "bench/text/files.h"
+#include "bench/text/npy.h"
+#include "bench/text/text.h"
+#include "tod/pattern/test_picture.h"
+
+namespace todbench {
+namespace {
+
+struct PatternArguments {
+  std::string kind, format = "png16", out;
+  std::vector<int> pixels;
+  double low = 0, high = 1, level = 0.5, angle_deg = 5;
+  int spokes = 36;
+  std::vector<double> sizes_px, frequencies_per_px;
+};
+
+PictureKind kind_of(const PatternArguments& a, std::uint64_t seed) {
+  if (a.kind == "tod") return TodPicture{a.sizes_px, seed};
+  if (a.kind == "mrtd") return a.frequencies_per_px.empty() ? MrtdPicture{} : MrtdPicture{a.frequencies_per_px};
+  if (a.kind == "edge") return EdgePicture{a.angle_deg};
+  if (a.kind == "ramp") return RampPicture{};
+  if (a.kind == "siemens") return SiemensPicture{a.spokes};
+  return FlatPicture{a.level};
+}
+
+Result<std::string> encoded(const cv::Mat1d& levels, const std::string& format) {
+  if (format == "npy") {
+    NpyArray array{{static_cast<std::size_t>(levels.rows), static_cast<std::size_t>(levels.cols)}, {}};
+    array.values.assign(levels.begin(), levels.end());
+    return to_npy(array);
+  }
+  cv::Mat stored;
+  if (format == "png16") {
+    levels.convertTo(stored, CV_16U, 65535);
+  } else {
+    levels.convertTo(stored, CV_32F);
+  }
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(format == "png16" ? ".png" : ".tiff", stored, bytes))
+    return fail(ErrorCode::internal, "the picture cannot be encoded");
+  return std::string(bytes.begin(), bytes.end());
+}
+
+std::string list(const std::vector<std::string>& words) {
+  return fmt::format("[{}]", fmt::join(words, ", "));
+}
+
+/// A plate that load_plate() reads: one pixel is one millimetre.
+std::string plate_toml(const TestPicture& picture) {
+  const TargetPlate& plate = picture.plate;
+  std::string text = fmt::format(
+      "name = \"{}\"\ndescription = \"test picture, 1 pixel = 1 mm, origin in the middle\"\nwidth_mm = {}\nheight_mm = "
+      "{}\n",
+      plate.name, number_text(plate.width_mm), number_text(plate.height_mm));
+  // Every triangle has a phase of its own, so a row of the file holds one.
+  for (const auto& triangle : plate.triangles) {
+    text += fmt::format(
+        "\n[[row]]\nsize_mm = {}\ny_mm = {}\nx_mm = {}\napex = {}\nnames = {}\n", number_text(triangle.size_mm),
+        number_text(triangle.position_mm.y), list({number_text(triangle.position_mm.x)}),
+        list({"\"" + std::string(to_string(triangle.apex)) + "\""}), list({"\"" + triangle.name + "\""}));
+  }
+  return text;
+}
+
+std::string other_toml(const PatternArguments& a, const TestPicture& picture) {
+  std::string text = fmt::format("pattern = \"{}\"\nwidth_px = {}\nheight_px = {}\nlow = {}\nhigh = {}\n", a.kind,
+                                 picture.levels.cols, picture.levels.rows, number_text(a.low), number_text(a.high));
+  if (a.kind == "edge") text += fmt::format("angle_deg = {}\n", number_text(a.angle_deg));
+  if (a.kind == "siemens") text += fmt::format("spokes = {}\n", a.spokes);
+  if (a.kind == "flat") text += fmt::format("level = {}\n", number_text(a.level));
+  for (const auto& group : picture.bars) {
+    text += fmt::format("\n[[bars]]\nfrequency_per_px = {}\nx_px = {}\ny_px = {}\nbars = \"{}\"\n",
+                        number_text(group.frequency_per_px), number_text(group.x_px), number_text(group.y_px),
+                        group.upright ? "upright" : "lying");
+  }
+  return text;
+}
+
+std::string truth(const PatternArguments& a, const TestPicture& picture) {
+  std::string text =
+      fmt::format("# Truth of {}: {} x {} pixels, levels from {} to {}; a pixel has the mean over its area.\n",
+                  std::filesystem::path(a.out).filename().string(), picture.levels.cols, picture.levels.rows,
+                  number_text(a.low), number_text(a.high));
+  return text + (a.kind == "tod" ? plate_toml(picture) : other_toml(a, picture));
+}
+
+int run_pattern(Console& console, const PatternArguments& a, std::uint64_t seed) {
+  const auto picture =
+      drawn_picture({.size = {a.pixels[0], a.pixels[1]}, .low = a.low, .high = a.high, .kind = kind_of(a, seed)});
+  if (!picture) return report_error(console, picture.error());
+  const auto bytes = encoded(picture->levels, a.format);
+  if (!bytes) return report_error(console, bytes.error());
+  const std::filesystem::path folder = std::filesystem::path(a.out).parent_path();
+  if (std::error_code problem; !folder.empty() && !std::filesystem::is_directory(folder, problem))
+    return report_error(console,
+                        {ErrorCode::invalid_input, "--out " + a.out + ": " + folder.string() + " is no folder"});
+  const std::string truth_file = std::filesystem::path(a.out).replace_extension(".toml").string();
+  if (truth_file == a.out)
+    return report_error(console, {ErrorCode::invalid_input, "--out " + a.out + ": the truth is written to this name"});
+  if (auto written = write_file_atomically(a.out, *bytes); !written) return report_error(console, written.error());
+  if (auto written = write_file_atomically(truth_file, truth(a, *picture)); !written)
+    return report_error(console, written.error());
+  if (console.json()) {
+    console.object({{"pattern", a.kind},
+                    {"picture", a.out},
+                    {"truth", truth_file},
+                    {"format", a.format},
+                    {"width_px", a.pixels[0]},
+                    {"height_px", a.pixels[1]},
+                    {"triangles", picture->plate.triangles.size()},
+                    {"bar_groups", picture->bars.size()}});
+    return 0;
+  }
+  console.text(a.out + ", its truth in " + truth_file);
+  return 0;
+}
+
+}  // namespace
+
+void add_pattern_command(CLI::App& app, Program& program) {
+  auto* command = app.add_subcommand("pattern", "draws a test picture with its truth, for projectors and monitors");
+  auto a = std::make_shared<PatternArguments>();
+  command->add_option("KIND", a->kind, "tod, mrtd, edge, ramp, siemens or flat")
+      ->required()
+      ->check(CLI::IsMember({"tod", "mrtd", "edge", "ramp", "siemens", "flat"}));
+  command->add_option("--pixels", a->pixels, "width and height")
+      ->required()
+      ->expected(2)
+      ->check(whole_number(1, 16384));
+  command->add_option("--format", a->format, "png16 (level 1 is 65535), tiff (32-bit floating point) or npy (64-bit)")
+      ->check(CLI::IsMember({"png16", "tiff", "npy"}))
+      ->capture_default_str();
+  command->add_option("--out", a->out, "file of the picture; its truth is beside it, ending in .toml")->required();
+  command->add_option("--low", a->low, "level of the ground")->check(number_in(0, 1))->capture_default_str();
+  command->add_option("--high", a->high, "level of the pattern")->check(number_in(0, 1))->capture_default_str();
+  command->add_option("--size-px", a->sizes_px, "tod: sizes, a row each; default: as many as fit")
+      ->delimiter(',')
+      ->check(number_in(0.1, 16384));
+  command->add_option("--frequency-per-px", a->frequencies_per_px, "mrtd: frequencies; default 0.05 to 0.5")
+      ->delimiter(',')
+      ->check(number_in(1e-4, 1));
+  command->add_option("--angle-deg", a->angle_deg, "edge: from the vertical")
+      ->check(number_in(-180, 180))
+      ->capture_default_str();
+  command->add_option("--spokes", a->spokes, "siemens")->check(whole_number(2, 1000))->capture_default_str();
+  command->add_option("--level", a->level, "flat")->check(number_in(0, 1))->capture_default_str();
+  finish_command(*command, program,
+                 [a, &program](Console& console) { return run_pattern(console, *a, program.common.seed); });
+}
+
+}  // namespace todbench

@@ -1,0 +1,475 @@
+// todbench sweep
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include "bench/cli/commands.h"
+#include "bench/judgement/verdict.h"
+#include "bench/sweep/result_store.h"
+#include "bench/sweep/schedulers.h"
+#include "bench/sweep/sweep_effects.h"
+#include "bench/sweep/sweep_table.h"
+#include "bench/text/files.h"
+#include "bench/text/folders.h"
+#include "bench/text/text.h"
+
+extern char** environ;
+
+namespace todbench {
+namespace {
+
+struct SweepArguments {
+  std::string file, scheduler = "parallel", engine = "local", options_file, csv, sqlite, response = "acuity_per_mrad";
+  std::optional<std::size_t> index, jobs;
+  std::string range;
+  std::size_t chunk = 0;  ///< 0: not said
+  std::string program = "todbench";
+  bool list = false, predict = false, partial = false, dry_run = false;
+};
+
+/// The indices from `first` to `last`, both included.
+struct IndexRange {
+  std::size_t first = 0, last = 0;
+};
+
+std::optional<std::size_t> index_from(const std::string& text) {
+  const auto value = parse_number(text);
+  if (!value || *value < 0 || *value > 1e9 || *value != std::floor(*value)) return std::nullopt;
+  return static_cast<std::size_t>(*value);
+}
+
+/// "3-17" or "3".
+Result<IndexRange> range_from(const std::string& text) {
+  const auto dash = text.find('-');
+  const auto first = index_from(text.substr(0, dash));
+  const auto last = dash == std::string::npos ? first : index_from(text.substr(dash + 1));
+  if (!first || !last || *last < *first)
+    return fail(ErrorCode::invalid_input, "--range: expected FIRST-LAST, found '" + one_line(text) + "'");
+  return IndexRange{*first, *last};
+}
+
+/// Chunk number `chunk` of tasks, as far as there are any.
+IndexRange chunk_of(std::size_t number, std::size_t chunk) {
+  return {number * chunk, number * chunk + chunk - 1};
+}
+
+Json parameters_json(const SweepTask& task) {
+  Json json = Json::object();
+  for (const auto& [key, value] : task.parameters) json[key] = value;
+  return json;
+}
+
+/// Tasks of 5 to 30 minutes a chunk: the sheet of what schedulers like.
+std::size_t suggested_chunk(double task_s, std::size_t tasks) {
+  constexpr double wanted_s = 900;
+  return std::clamp<std::size_t>(static_cast<std::size_t>(wanted_s / std::max(task_s, 1e-3)), 1,
+                                 std::max<std::size_t>(tasks, 1));
+}
+
+int run_expand(Console& console, const SweepArguments& a, const Program& program) {
+  const auto runnable = load_sweep(a.file);
+  if (!runnable) return report_error(console, runnable.error());
+  const Sweep& sweep = runnable->sweep;
+  std::optional<double> task_s;
+  if (a.predict) {
+    const auto predicted = predicted_task_s(*runnable, sweep.task(0), program.stop->token());
+    if (!predicted) return report_error(console, predicted.error());
+    task_s = *predicted;
+  }
+  // Every task is made, as it will be when it runs; names that differ are tasks that differ.
+  Json tasks = Json::array();
+  for (std::size_t i = 0; i < sweep.count(); ++i) {
+    const SweepTask task = sweep.task(i);
+    if (a.list)
+      tasks.push_back({{"index", i},
+                       {"task", task.name},
+                       {"seed", task.seed},
+                       {"repeat", task.repeat},
+                       {"parameters", parameters_json(task)}});
+  }
+  const auto chunk = task_s ? std::optional(suggested_chunk(*task_s, sweep.count())) : std::nullopt;
+  Json json{{"tasks", sweep.count()},
+            {"refused", sweep.refused()},
+            {"keys", sweep.keys()},
+            {"sweep_sha256", sweep.hash()},
+            {"results", sweep.file().results.string()},
+            {"predicted_task_s", json_number(task_s)},
+            {"suggested_chunk", chunk ? Json(*chunk) : Json()}};
+  if (a.list) json["list"] = std::move(tasks);
+  if (console.json()) {
+    console.object(json);
+    return 0;
+  }
+  console.text(fmt::format("{} tasks, {} combinations refused by a condition; results in {}", sweep.count(),
+                           sweep.refused(), sweep.file().results.string()));
+  if (task_s) {
+    console.text(fmt::format("about {:.3g} s a task, {:.3g} h on one core; {} tasks a job make about 15 minutes",
+                             *task_s, *task_s * static_cast<double>(sweep.count()) / 3600, *chunk));
+  }
+  if (a.list) {
+    for (const auto& task : json["list"])
+      console.text(task["task"].get<std::string>() + " " + to_line(task["parameters"]));
+  }
+  return 0;
+}
+
+/// What came of the tasks of one process.
+struct Counts {
+  std::size_t done = 0, already_done = 0, failed = 0, locked = 0;
+  std::optional<Error> first_failure;
+};
+
+Counts run_range_of_tasks(Console& console, const RunnableSweep& runnable, IndexRange range, std::stop_token stop) {
+  Counts counts;
+  const std::size_t last = std::min(range.last, runnable.sweep.count() - 1);
+  for (std::size_t i = range.first; i <= last && !stop.stop_requested(); ++i) {
+    const TaskOutcome outcome = run_and_store(runnable, i, stop);
+    switch (outcome.kind) {
+      case TaskOutcome::Kind::done:
+        ++counts.done;
+        break;
+      case TaskOutcome::Kind::already_done:
+        ++counts.already_done;
+        break;
+      case TaskOutcome::Kind::locked:
+        ++counts.locked;
+        console.note(fmt::format("task {} is being run by another process", i));
+        break;
+      case TaskOutcome::Kind::failed:
+        ++counts.failed;
+        if (!counts.first_failure) counts.first_failure = outcome.error;
+        if (outcome.error->code != ErrorCode::interrupted)
+          console.error(fmt::format("task {}: {}", i, outcome.error->message));
+        break;
+    }
+    console.progress(i + 1 - range.first, last + 1 - range.first);
+  }
+  console.end_progress();
+  return counts;
+}
+
+int code_of(const Counts& counts, std::stop_token stop) {
+  if (stop.stop_requested()) return exit_code(ErrorCode::interrupted);
+  return counts.first_failure ? exit_code(counts.first_failure->code) : 0;
+}
+
+/// Which tasks the command line or the environment names; nothing: all.
+Result<std::optional<IndexRange>> named_range(Console& console, const SweepArguments& a) {
+  const std::size_t chunk = std::max<std::size_t>(a.chunk, 1);
+  if (!a.range.empty()) {
+    auto range = range_from(a.range);
+    if (!range) return tl::unexpected(range.error());
+    return std::optional(*range);
+  }
+  if (a.index) return std::optional(chunk_of(*a.index, chunk));
+  if (a.jobs) return std::nullopt;
+  const auto found = index_from_environment();
+  if (!found) {
+    if (a.chunk == 0) return std::nullopt;
+    return fail(ErrorCode::invalid_input, "--chunk: says how many tasks belong to an index, and there is none");
+  }
+  console.note(fmt::format("{} says index {}", found->variable, found->index));
+  return std::optional(chunk_of(found->index, chunk));
+}
+
+/// One child process for a range of tasks.
+Result<pid_t> started(const SweepArguments& a, IndexRange range) {
+  std::error_code problem;
+  const std::string self = std::filesystem::read_symlink("/proc/self/exe", problem).string();
+  std::vector<std::string> words{
+      self, "sweep", "run", a.file, "--range", fmt::format("{}-{}", range.first, range.last), "--quiet"};
+  std::vector<char*> pointers;
+  for (auto& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  pid_t process = 0;
+  // Its standard output is not that of the command: there is one JSON object.
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", 1, 0);
+  const int failure = ::posix_spawn(&process, self.c_str(), &actions, nullptr, pointers.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failure != 0)
+    return fail(ErrorCode::internal, "a process cannot be started: " + std::string(std::strerror(failure)));
+  return process;
+}
+
+/// Several processes, each with the next range when it is free.
+Result<int> run_in_processes(Console& console, const SweepArguments& a, const Sweep& sweep, std::stop_token stop) {
+  const std::size_t tasks = sweep.count();
+  const std::size_t chunk = a.chunk > 0 ? a.chunk : std::clamp<std::size_t>(tasks / (*a.jobs * 8), 1, 500);
+  std::set<pid_t> running;
+  std::size_t next = 0, ended = 0;
+  int worst = 0;
+  while (next < tasks || !running.empty()) {
+    while (next < tasks && running.size() < *a.jobs && !stop.stop_requested()) {
+      const auto process = started(a, {next, std::min(next + chunk, tasks) - 1});
+      if (!process) return tl::unexpected(process.error());
+      running.insert(*process);
+      next += chunk;
+    }
+    if (running.empty()) break;
+    int status = 0;
+    const pid_t process = ::waitpid(-1, &status, 0);
+    if (process < 0 && errno == EINTR) continue;
+    if (process < 0) break;
+    if (running.erase(process) == 0) continue;
+    // A process that was killed leaves its tasks open; the next run does them.
+    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : exit_code(ErrorCode::internal);
+    worst = std::max(worst, code);
+    console.progress(std::min(++ended * chunk, tasks), tasks);
+  }
+  console.end_progress();
+  return stop.stop_requested() ? exit_code(ErrorCode::interrupted) : worst;
+}
+
+Json counts_json(const SweepStatus& status) {
+  return {{"tasks", status.states.size()},
+          {"done", status.count(TaskState::done)},
+          {"failed", status.count(TaskState::failed)},
+          {"running", status.count(TaskState::running)},
+          {"stale", status.count(TaskState::stale)},
+          {"missing", status.count(TaskState::missing)},
+          {"foreign", status.count(TaskState::foreign)}};
+}
+
+int run_sweep(Console& console, const SweepArguments& a, const Program& program) {
+  const auto runnable = load_sweep(a.file);
+  if (!runnable) return report_error(console, runnable.error());
+  const auto range = named_range(console, a);
+  if (!range) return report_error(console, range.error());
+  const auto stop = program.stop->token();
+  if (*range && (*range)->first >= runnable->sweep.count()) {
+    return report_error(console, {ErrorCode::invalid_input, fmt::format("index {} is beyond the {} tasks of the sweep",
+                                                                        (*range)->first, runnable->sweep.count())});
+  }
+  console.phase("running " + runnable->sweep.file().name);
+  if (!*range && a.jobs.value_or(1) > 1) {
+    const auto code = run_in_processes(console, a, runnable->sweep, stop);
+    if (!code) return report_error(console, code.error());
+    const Json json = counts_json(sweep_status(runnable->sweep));
+    if (console.json()) console.object(json);
+    console.text(fmt::format("{} of {} tasks have a result", json["done"].get<std::size_t>(), runnable->sweep.count()));
+    return *code;
+  }
+  const IndexRange all{0, runnable->sweep.count() - 1};
+  const Counts counts = run_range_of_tasks(console, *runnable, range->value_or(all), stop);
+  if (console.json()) {
+    console.object({{"run", counts.done},
+                    {"already_done", counts.already_done},
+                    {"failed", counts.failed},
+                    {"locked", counts.locked},
+                    {"results", runnable->sweep.file().results.string()}});
+  }
+  console.text(
+      fmt::format("{} run, {} were there already, {} failed", counts.done, counts.already_done, counts.failed));
+  return code_of(counts, stop);
+}
+
+int run_status(Console& console, const SweepArguments& a) {
+  const auto runnable = load_sweep(a.file);
+  if (!runnable) return report_error(console, runnable.error());
+  const SweepStatus status = sweep_status(runnable->sweep);
+  Json failures = Json::array();
+  constexpr std::size_t most_failures = 100;
+  for (std::size_t i = 0; i < status.states.size() && failures.size() < most_failures; ++i) {
+    if (status.states[i] == TaskState::failed)
+      failures.push_back({{"index", i}, {"reason", failure_of(runnable->sweep, i)}});
+  }
+  Json json = counts_json(status);
+  json["open"] = status.open_list();
+  json["failures"] = failures;
+  if (console.json()) {
+    console.object(json);
+    return 0;
+  }
+  std::vector<TableRow> rows;
+  for (const char* key : {"tasks", "done", "failed", "running", "stale", "missing", "foreign"})
+    rows.push_back({key, std::to_string(json[key].get<std::size_t>())});
+  console.table({"state", "tasks"}, rows);
+  if (const auto open = status.open_list(); !open.empty()) console.text("open: " + open);
+  for (const auto& failure : failures)
+    console.text(fmt::format("task {}: {}", failure["index"].get<std::size_t>(), failure["reason"].get<std::string>()));
+  return 0;
+}
+
+Result<std::vector<std::string>> site_options(const std::string& file) {
+  if (file.empty()) return std::vector<std::string>{};
+  const auto text = read_text_file(file);
+  if (!text) return tl::unexpected(text.error());
+  return site_options_from(*text, file);
+}
+
+Result<std::string> text_for(const SweepArguments& a, Scheduler scheduler, std::size_t tasks) {
+  const auto options = site_options(a.options_file);
+  if (!options) return tl::unexpected(options.error());
+  const JobList jobs{
+      .program = a.program, .sweep_file = a.file, .tasks = tasks, .chunk = std::max<std::size_t>(a.chunk, 1)};
+  return job_text(scheduler, jobs, *options);
+}
+
+int run_tasks(Console& console, const SweepArguments& a) {
+  const auto runnable = load_sweep(a.file);
+  if (!runnable) return report_error(console, runnable.error());
+  const auto scheduler = std::find_if(all_schedulers.begin(), all_schedulers.end(),
+                                      [&](Scheduler s) { return to_string(s) == a.scheduler; });
+  const auto text = text_for(a, *scheduler, runnable->sweep.count());
+  if (!text) return report_error(console, text.error());
+  if (console.json()) {
+    console.object({{"for", a.scheduler}, {"tasks", runnable->sweep.count()}, {"text", *text}});
+    return 0;
+  }
+  std::string_view rest = *text;
+  while (!rest.empty()) {
+    const auto end = std::min(rest.find('\n'), rest.size());
+    console.text(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return 0;
+}
+
+/// Runs sbatch on a script; its exit code, or why it cannot be started.
+Result<int> submitted(const std::string& script) {
+  std::vector<std::string> words{"sbatch", script};
+  std::vector<char*> pointers{words[0].data(), words[1].data(), nullptr};
+  pid_t process = 0;
+  if (const int failure = ::posix_spawnp(&process, "sbatch", nullptr, nullptr, pointers.data(), environ);
+      failure != 0) {
+    return fail(ErrorCode::not_found,
+                "sbatch cannot be started (" + std::string(std::strerror(failure)) + "): the script is " + script);
+  }
+  int status = 0;
+  while (::waitpid(process, &status, 0) < 0) {
+    if (errno != EINTR) return fail(ErrorCode::internal, "sbatch cannot be waited for");
+  }
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
+    return fail(ErrorCode::not_found, "sbatch is not there: the script is " + script);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+}
+
+int run_submit(Console& console, SweepArguments a, const Program& program) {
+  if (a.engine == "local") {
+    if (!a.jobs) a.jobs = 2;
+    return run_sweep(console, a, program);
+  }
+  const auto runnable = load_sweep(a.file);
+  if (!runnable) return report_error(console, runnable.error());
+  std::error_code problem;
+  a.file = std::filesystem::absolute(a.file, problem).string();
+  if (a.program == "todbench") a.program = std::filesystem::read_symlink("/proc/self/exe", problem).string();
+  const auto text = text_for(a, Scheduler::slurm, runnable->sweep.count());
+  if (!text) return report_error(console, text.error());
+  const auto script = runnable->sweep.file().results / "slurm.sh";
+  if (auto made = make_folder(script.parent_path()); !made) return report_error(console, made.error());
+  if (auto written = write_file_atomically(script, *text); !written) return report_error(console, written.error());
+  if (!a.dry_run) {
+    const auto code = submitted(script.string());
+    if (!code) return report_error(console, code.error());
+    if (*code != 0)
+      return report_error(console, {ErrorCode::not_found, fmt::format("sbatch ended with exit code {}", *code)});
+  }
+  if (console.json()) console.object({{"engine", a.engine}, {"script", script.string()}, {"submitted", !a.dry_run}});
+  console.text((a.dry_run ? "written, not submitted: " : "submitted: ") + script.string());
+  return 0;
+}
+
+int run_collect(Console& console, const SweepArguments& a) {
+  const auto runnable = load_sweep(a.file);
+  if (!runnable) return report_error(console, runnable.error());
+  const auto table = collected(runnable->sweep, a.partial ? MissingTasks::left_out : MissingTasks::refused);
+  if (!table) return report_error(console, table.error());
+  const auto folder = runnable->sweep.file().results;
+  if (auto made = make_folder(folder); !made) return report_error(console, made.error());
+  const std::string csv = a.csv.empty() ? (folder / "table.csv").string() : a.csv;
+  const std::string sqlite = a.sqlite.empty() ? (folder / "table.sqlite").string() : a.sqlite;
+  if (auto written = write_file_atomically(csv, to_csv(*table)); !written)
+    return report_error(console, written.error());
+  if (auto written = write_sqlite(*table, sqlite); !written) return report_error(console, written.error());
+  const auto effects = sweep_effects(runnable->sweep, *table, a.response);
+  if (console.json()) {
+    Json json = to_json(*table);
+    json["effects"] = to_json(effects);
+    console.object(json);
+    return 0;
+  }
+  console.text(
+      fmt::format("{} rows of {} tasks in {} and {}", table->rows.size(), table->tasks - table->missing, csv, sqlite));
+  for (const auto& response : effects) {
+    std::vector<TableRow> rows;
+    for (const auto& effect : response.parameters)
+      rows.push_back({effect.key, fixed(effect.first_order, 3), range(effect.first_order_ci95, 3),
+                      fixed(effect.total, 3), range(effect.total_ci95, 3)});
+    console.text(fmt::format("variance of {} at {:g} K", response.response, response.delta_t_k));
+    console.table({"parameter", "first order", "95 %", "total", "95 %"}, rows);
+  }
+  return 0;
+}
+
+CLI::App* add_part(CLI::App& sweep, const std::string& name, const std::string& what,
+                   const std::shared_ptr<SweepArguments>& a) {
+  auto* part = sweep.add_subcommand(name, what);
+  part->add_option("SWEEP.toml", a->file, "the sweep")->required();
+  return part;
+}
+
+void add_chunk(CLI::App& part, const std::shared_ptr<SweepArguments>& a) {
+  part.add_option("--chunk", a->chunk, "tasks that belong to one index")->check(whole_number(1, 10000000));
+}
+
+void add_run_parts(CLI::App& sweep, Program& program, const std::shared_ptr<SweepArguments>& a) {
+  auto* expand = add_part(sweep, "expand", "how many tasks there are, and which", a);
+  expand->add_flag("--list", a->list, "every task with its parameters and seed");
+  expand->add_flag("--predict", a->predict, "predicts the time of a task and the size of a chunk");
+  finish_command(*expand, program, [a, &program](Console& console) { return run_expand(console, *a, program); });
+  auto* run = add_part(sweep, "run", "runs tasks that have no result yet", a);
+  run->add_option("--index", a->index, "of the task, from 0; with --chunk of the chunk")
+      ->check(whole_number(0, 1000000000));
+  run->add_option("--range", a->range, "FIRST-LAST, both included");
+  run->add_option("--jobs", a->jobs, "processes side by side")->check(whole_number(1, 1024));
+  add_chunk(*run, a);
+  finish_command(*run, program, [a, &program](Console& console) { return run_sweep(console, *a, program); });
+  auto* status = add_part(sweep, "status", "what is done, failed, running, missing", a);
+  finish_command(*status, program, [a](Console& console) { return run_status(console, *a); });
+}
+
+}  // namespace
+
+void add_sweep_command(CLI::App& app, Program& program) {
+  auto* sweep = app.add_subcommand("sweep", "runs a simulation over many parameters, here or on a scheduler");
+  sweep->require_subcommand(1);
+  auto a = std::make_shared<SweepArguments>();
+  add_run_parts(*sweep, program, a);
+  auto* tasks = add_part(*sweep, "tasks", "prints the task list for a scheduler; submits nothing", a);
+  tasks->add_option("--for", a->scheduler, "parallel, slurm, gridengine, snakemake or make")
+      ->check(CLI::IsMember({"parallel", "slurm", "gridengine", "snakemake", "make"}))
+      ->capture_default_str();
+  tasks->add_option("--program", a->program, "how the program is called there")->capture_default_str();
+  tasks->add_option("--options", a->options_file, "file with options of the site, one a line");
+  add_chunk(*tasks, a);
+  finish_command(*tasks, program, [a](Console& console) { return run_tasks(console, *a); });
+  auto* submit = add_part(*sweep, "submit", "submits the tasks", a);
+  submit->add_option("--engine", a->engine, "local or slurm")
+      ->check(CLI::IsMember({"local", "slurm"}))
+      ->capture_default_str();
+  submit->add_option("--options", a->options_file, "file with options of the site for sbatch, one a line");
+  submit->add_option("--jobs", a->jobs, "local: processes side by side")->check(whole_number(1, 1024));
+  submit->add_option("--program", a->program, "how the program is called there; default: this one");
+  submit->add_flag("--dry-run", a->dry_run, "writes the script and submits nothing");
+  add_chunk(*submit, a);
+  finish_command(*submit, program, [a, &program](Console& console) { return run_submit(console, *a, program); });
+  auto* collect = add_part(*sweep, "collect", "one table of all results, as CSV and SQLite", a);
+  collect->add_option("--csv", a->csv, "file of the table; default: table.csv beside the results");
+  collect->add_option("--sqlite", a->sqlite, "file of the database; default: table.sqlite beside the results");
+  collect->add_option("--response", a->response, "column whose effects are computed")->capture_default_str();
+  collect->add_flag("--partial", a->partial, "leaves tasks without a result out");
+  finish_command(*collect, program, [a](Console& console) { return run_collect(console, *a); });
+}
+
+}  // namespace todbench

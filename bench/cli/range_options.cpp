@@ -1,0 +1,346 @@
+#include "bench/cli/range_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "bench/cli/commands.h"
+#include "bench/plan/descriptions.h"
+#include "bench/report/html.h"
+#include "bench/report/range_figure.h"
+#include "bench/text/csv_table.h"
+#include "bench/text/files.h"
+#include "bench/text/text.h"
+#include "sim_devices/atmosphere/radiative_path.h"
+
+namespace todbench {
+namespace {
+
+/// "tod,ttp" or "all".
+Result<std::vector<RangeModel>> models_from(const std::string& text) {
+  if (text == "all") return std::vector<RangeModel>(all_range_models.begin(), all_range_models.end());
+  std::vector<std::string> known{"all"};
+  for (const RangeModel model : all_range_models) known.emplace_back(to_string(model));
+  std::vector<RangeModel> models;
+  std::size_t begin = 0;
+  while (begin <= text.size()) {
+    const auto end = std::min(text.find(',', begin), text.size());
+    const std::string word = text.substr(begin, end - begin);
+    begin = end + 1;
+    const auto found = std::find_if(all_range_models.begin(), all_range_models.end(),
+                                    [&](RangeModel model) { return to_string(model) == word; });
+    if (found == all_range_models.end()) {
+      return fail(ErrorCode::invalid_input, "unknown model '" + one_line(word) + "'" + nearest_name_hint(word, known) +
+                                                " (known: " + quoted_list(known) + ")");
+    }
+    if (std::find(models.begin(), models.end(), *found) == models.end()) models.push_back(*found);
+  }
+  return models;
+}
+
+/// A curve over frequency_per_mrad from a CSV file.
+Result<LogLinearCurve> curve_from(const std::string& file, const std::string& column) {
+  const auto text = read_text_file(file);
+  if (!text) return tl::unexpected(text.error());
+  const auto table = parse_csv(*text, file);
+  if (!table) return tl::unexpected(table.error());
+  const auto place = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::find(table->header.begin(), table->header.end(), name) -
+                                    table->header.begin());
+  };
+  const std::size_t frequency = place("frequency_per_mrad"), value = place(column);
+  if (std::max(frequency, value) >= table->header.size()) {
+    return table->wrong(
+        1, "expected the columns frequency_per_mrad and " + column + ", found " + quoted_list(table->header));
+  }
+  std::vector<CurvePoint> points;
+  for (const auto& row : table->rows) {
+    const auto f = parse_number(row.fields[frequency]), y = parse_number(row.fields[value]);
+    if (!f || !y) return table->wrong(row.line, "expected two numbers");
+    points.push_back({*f, *y});
+  }
+  auto curve = LogLinearCurve::of(points, column);
+  if (!curve) return fail(file, curve.error());
+  return curve;
+}
+
+Result<void> read_curve(const std::string& file, const std::string& column, std::optional<LogLinearCurve>& into) {
+  if (file.empty()) return {};
+  auto curve = curve_from(file, column);
+  if (!curve) return tl::unexpected(curve.error());
+  into = *std::move(curve);
+  return {};
+}
+
+Json criterion_json(const ModelRange& model) {
+  return {{"name", model.criterion}, {"value", model.criterion_value}, {"probability_form", model.probability_form}};
+}
+
+/// Ranges of the TTP model by both forms of P.
+Json forms_json(const RangeSources& sources, const RangeQuestion& question, const ModelRange& ttp) {
+  Json forms = Json::object();
+  if (!ttp.r50_m) return forms;
+  // V is that of the answer: only the x for a probability differs.
+  for (const ProbabilityForm form : {ProbabilityForm::ttp_2004, ProbabilityForm::fixed_1_5}) {
+    const auto ranges = ttp_ranges(sources, question, form);
+    forms[std::string(to_string(form))] = {{"r50_m", json_number(ranges.r50_m)}, {"r75_m", json_number(ranges.r75_m)}};
+  }
+  return forms;
+}
+
+Json nominal_json(const NominalRanges& nominal) {
+  return {{"preset", "nominal static range after STANAG 4347: 1, 3 and 6 cycles, 50 %"},
+          {"size_m", nominal.size_m},
+          {"delta_t_k", nominal.delta_t_k},
+          {"extinction_per_km", nominal.extinction_per_km},
+          {"detection_m", json_number(nominal.detection_m)},
+          {"recognition_m", json_number(nominal.recognition_m)},
+          {"identification_m", json_number(nominal.identification_m)}};
+}
+
+}  // namespace
+
+void RangeOptions::add_to(CLI::App& command) {
+  command.add_option("--atmosphere", atmosphere,
+                     "clear, beer-lambert (with --extinction-per-km), us-standard, midlatitude-summer, "
+                     "midlatitude-winter, subarctic-winter, tropical; or FILE.csv, or a MODTRAN tape7");
+  command
+      .add_option("--haze", haze,
+                  "aerosol of the shipped tables: none, rural-23km, rural-5km, maritime-23km, fog-0.5km")
+      ->capture_default_str();
+  command.add_option("--band", band, "LOW-HIGH in um of the air's table; default: that of the sensor");
+  command
+      .add_option_function<std::string>(
+          "--models",
+          [this](const std::string& text) {
+            auto found = models_from(text);
+            if (!found) throw CLI::ValidationError("--models", found.error().message);
+            models = *std::move(found);
+          },
+          "tod, acquire, ttp, mtdp, several with commas, or all")
+      ->default_str("tod");
+  command.add_option("--sensor", sensor, "name or file, for the formula models; default: that of the session");
+  const auto kelvin = number_in(-1e6, 1e6);
+  command
+      .add_option("--background-k", background_k,
+                  "temperature behind the target: the contrast is then carried as radiance")
+      ->check(kelvin);
+  command.add_option("--emissivity", emissivity, "of target and background")
+      ->check(number_in(1e-6, 1))
+      ->capture_default_str();
+  command.add_option("--surround-k", surround_k, "radiation temperature that is reflected; default: the background")
+      ->check(kelvin);
+  command.add_option("--air-k", air_k, "temperature of the air; default: that of the model atmosphere")->check(kelvin);
+  const auto positive = number_in(1e-6, 1e6);
+  command.add_option("--n50", n50, "cycles of ACQUIRE (2-D) for 50 %: detection 0.75, recognition 3, identification 6")
+      ->check(positive)
+      ->capture_default_str();
+  command.add_option("--mtdp-n50", mtdp_n50, "cycles of the MTDP-like model for 50 %: 1, 3, 6")
+      ->check(positive)
+      ->capture_default_str();
+  command.add_option("--mrtd", mrtd_file, "CSV with frequency_per_mrad and mrtd_k in place of the formula");
+  command.add_option("--mtdp", mtdp_file, "CSV with frequency_per_mrad and mtdp_k in place of the formula");
+  command.add_option("--ctf", ctf_file, "CSV with frequency_per_mrad and ctf in place of the eye's and sensor's");
+  command
+      .add_option("--target-contrast", target_contrast, "of luminances, for TTP; default: |dT| / (2 scene contrast)")
+      ->check(number_in(1e-9, 1));
+  command.add_option("--scene-contrast-k", formula.scene_contrast_k, "kelvin that give the display its mean luminance")
+      ->check(positive)
+      ->capture_default_str();
+  command.add_option("--snr-threshold", formula.snr_threshold, "of the MRTD formula")
+      ->check(positive)
+      ->capture_default_str();
+  command.add_option("--eye-integration-s", formula.eye_integration_s, "of the MRTD formula")
+      ->check(number_in(1e-4, 10))
+      ->capture_default_str();
+  command
+      .add_option("--extinction-u-percent", extinction_u_percent,
+                  "relative standard uncertainty of the extinction: joins the intervals")
+      ->check(number_in(0, 50))
+      ->capture_default_str();
+  command.add_option("--svg", svg, "writes the figure of P against range to this file");
+  command.add_option("--page", page, "writes figure, table and assumptions to this HTML file");
+}
+
+bool RangeOptions::asks(RangeModel model) const {
+  return std::find(models.begin(), models.end(), model) != models.end();
+}
+
+bool RangeOptions::has_table() const {
+  return !atmosphere.empty() && atmosphere != "clear" && atmosphere != "beer-lambert";
+}
+
+Result<std::optional<SensorSpec>> RangeOptions::sensor_of(const std::optional<Session>& session) const {
+  if (!sensor.empty()) {
+    auto loaded = load_sensor(sensor);
+    if (!loaded) return tl::unexpected(loaded.error());
+    return std::optional(*std::move(loaded));
+  }
+  if (!session) return std::nullopt;
+  SensorSpec spec = session->parts.sensor;
+  spec.microscan = session->plan.simulation.microscan;
+  return std::optional(std::move(spec));
+}
+
+Result<SpectralBand> RangeOptions::band_of(const std::optional<SensorSpec>& spec) const {
+  if (band.empty()) return spec ? SpectralBand{spec->wavelength_min_um, spec->wavelength_max_um} : SpectralBand{};
+  const auto dash = band.find('-');
+  const auto low = parse_number(band.substr(0, dash));
+  const auto high = dash == std::string::npos ? std::nullopt : parse_number(band.substr(dash + 1));
+  if (!low || !high)
+    return fail(ErrorCode::invalid_input,
+                "--band: expected LOW-HIGH in um as in 7.5-13, found '" + one_line(band) + "'");
+  const SpectralBand found{*low, *high};
+  if (auto valid = validate(found); !valid) return fail("--band", valid.error());
+  return found;
+}
+
+Result<Atmosphere> RangeOptions::air(const std::optional<SensorSpec>& spec, double extinction_per_km) const {
+  if (!atmosphere.empty() && atmosphere != "beer-lambert" && extinction_per_km > 0) {
+    return fail(ErrorCode::invalid_input, "--atmosphere " + one_line(atmosphere) +
+                                              ": has its own extinction, --extinction-per-km may not stand beside it");
+  }
+  const auto wavelengths = band_of(spec);
+  if (!wavelengths) return tl::unexpected(wavelengths.error());
+  const AtmosphereRequest request{.band = *wavelengths,
+                                  .haze = haze,
+                                  .weight_temperature_k = spec ? spec->scene_temperature_k : 300,
+                                  .extinction_per_km = extinction_per_km};
+  auto found = load_atmosphere(atmosphere.empty() ? "beer-lambert" : atmosphere, request);
+  if (!found) return fail("--atmosphere", found.error());
+  return found;
+}
+
+RadiativeScene RangeOptions::scene(double delta_t_k, const Atmosphere& found) const {
+  const double background = background_k.value_or(300);
+  return {.target_k = background + delta_t_k,
+          .background_k = background,
+          .emissivity = emissivity,
+          .surround_k = surround_k.value_or(background),
+          .air_k = air_k.value_or(found.air_k.value_or(background))};
+}
+
+Result<double> RangeOptions::equivalent_contrast_k(double delta_t_k, const std::optional<SensorSpec>& spec,
+                                                   const Atmosphere& found) const {
+  // Each is looked at even where it is not needed: a temperature that cannot be is a slip.
+  if (auto valid = validate(scene(background_k ? delta_t_k : 0, found)); !valid) return tl::unexpected(valid.error());
+  if (!background_k) return delta_t_k;
+  const auto wavelengths = band_of(spec);
+  if (!wavelengths) return tl::unexpected(wavelengths.error());
+  return todbench::equivalent_contrast_k(*wavelengths, radiance_contrast(*wavelengths, scene(delta_t_k, found)),
+                                         spec ? spec->scene_temperature_k : 300);
+}
+
+RangeQuestion RangeOptions::question(const RangeTask& task, std::optional<double> v50, const Atmosphere& found) const {
+  return {.size_m = task.size_m,
+          .delta_t_k = task.delta_t_k,
+          .m75 = task.m75,
+          .n50 = n50,
+          .mtdp_n50 = mtdp_n50,
+          .v50 = v50.value_or(task.m75 / m75_from_v50(1)),
+          .air = found,
+          .extinction_u_percent = extinction_u_percent,
+          .formula = formula,
+          .target_contrast = target_contrast};
+}
+
+Result<RangeSources> RangeOptions::sources(std::vector<TodThreshold> thresholds,
+                                           const std::optional<SensorSpec>& spec) const {
+  RangeSources found{.thresholds = std::move(thresholds), .sensor = spec};
+  if (auto read = read_curve(mrtd_file, "mrtd_k", found.mrtd); !read) return tl::unexpected(read.error());
+  if (auto read = read_curve(mtdp_file, "mtdp_k", found.mtdp); !read) return tl::unexpected(read.error());
+  if (auto read = read_curve(ctf_file, "ctf", found.ctf); !read) return tl::unexpected(read.error());
+  return found;
+}
+
+Result<void> RangeOptions::write(const std::vector<ModelRange>& answers, const RangeQuestion& question) const {
+  if (!svg.empty()) {
+    const auto figure = range_svg(answers);
+    if (!figure) return tl::unexpected(figure.error());
+    if (auto written = write_file_atomically(svg, *figure); !written) return written;
+  }
+  if (page.empty()) return {};
+  const RangePage words{.target = fmt::format("{:g} m, {:.4g} K", question.size_m, question.delta_t_k),
+                        .air = question.air.source,
+                        .notes = question.air.notes};
+  return write_file_atomically(page, render_html(range_page(answers, words)));
+}
+
+Json atmosphere_json(const Atmosphere& air, const RangeTask& task, std::optional<double> r75_m,
+                     const RangeOptions& options, const std::optional<SensorSpec>& sensor) {
+  Json json{{"name", air.name},
+            {"source", air.source},
+            {"air_k", json_number(options.air_k ? options.air_k : air.air_k)},
+            {"end_m", json_number(air.air.end_m())},
+            {"equivalent_contrast_k", task.delta_t_k},
+            {"transmittance_at_r75", json_number(r75_m ? air.air.at(*r75_m) : std::nullopt)},
+            {"apparent_background_at_r75_k", nullptr},
+            {"apparent_contrast_at_r75_k", nullptr},
+            {"notes", air.notes}};
+  const auto band = options.band_of(sensor);
+  if (!r75_m || !options.background_k || !band) return json;
+  const auto tau = air.air.at(*r75_m);
+  // The target with its own contrast: task has the one at the scale of the NETD.
+  const double target_contrast_k = options.asked_delta_t_k;
+  const auto shown = tau ? apparent_temperatures(*band, options.scene(target_contrast_k, air), *tau) : std::nullopt;
+  if (!shown) return json;
+  json["apparent_background_at_r75_k"] = json_number(shown->background_k);
+  json["apparent_contrast_at_r75_k"] = json_number(shown->contrast_k());
+  return json;
+}
+
+Json models_json(const std::vector<ModelRange>& models, const RangeSources& sources, const RangeQuestion& question,
+                 std::optional<double> twin_r75_m) {
+  Json json = Json::object();
+  for (const auto& model : models) {
+    Json curve = Json::array();
+    for (const auto& point : model.curve)
+      curve.push_back({{"range_m", point.range_m}, {"probability", json_number(point.probability)}});
+    const auto limit = model.dominant();
+    Json entry{{"r75_m", json_number(model.r75_m)},
+               {"r75_ci95_m", json_interval(model.r75_ci95_m)},
+               {"r50_m", json_number(model.r50_m)},
+               {"criterion", criterion_json(model)},
+               {"dominant_limit", limit ? Json(to_string(*limit)) : Json()},
+               {"sensitivity_to_size",
+                json_number(model.sensitivity ? std::optional(model.sensitivity->to_size) : std::nullopt)},
+               {"sensitivity_to_contrast",
+                json_number(model.sensitivity ? std::optional(model.sensitivity->to_contrast) : std::nullopt)},
+               {"reads", model.reads},
+               {"reason", model.reason.empty() ? Json() : Json(model.reason)},
+               {"notes", model.notes},
+               {"curve", curve}};
+    if (model.name == "tod") {
+      entry["twin_r75_m"] = json_number(twin_r75_m);
+      entry["ratio_to_twin"] =
+          json_number(twin_r75_m && model.r75_m ? std::optional(*model.r75_m / *twin_r75_m) : std::nullopt);
+    }
+    if (model.name == "ttp") entry["forms"] = forms_json(sources, question, model);
+    if (model.name == "mtdp") {
+      const auto nominal = nominal_ranges(sources, question);
+      entry["nominal_target"] = nominal ? nominal_json(*nominal) : Json();
+    }
+    json[model.name] = std::move(entry);
+  }
+  return json;
+}
+
+void print_models(Console& console, const std::vector<ModelRange>& models) {
+  std::vector<TableRow> rows;
+  for (const auto& model : models) {
+    const auto limit = model.dominant();
+    rows.push_back({model.title, model.criterion + " = " + number_text(model.criterion_value), model.probability_form,
+                    fixed(model.r50_m, 1), fixed(model.r75_m, 1), range(model.r75_ci95_m, 1),
+                    limit ? std::string(to_string(*limit)) : "–"});
+  }
+  console.text("");
+  console.table({"model", "criterion", "form of P", "R50 [m]", "R75 [m]", "95 %", "limited by"}, rows);
+  for (const auto& model : models) {
+    console.text(model.title + " reads " + model.reads);
+    if (!model.reason.empty()) console.text(model.title + ": " + model.reason);
+    for (const auto& sentence : model.notes) console.note(model.title + ": " + sentence);
+  }
+}
+
+}  // namespace todbench

@@ -1,0 +1,57 @@
+// What `todbench range` takes beside the TOD curve: the air, other models, their curves, figures.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/cli/console.h"
+#include "bench/session/session_folder.h"
+#include "bench/studies/range_models.h"
+#include "sim_devices/atmosphere/radiative_path.h"
+
+namespace todbench {
+
+struct RangeOptions {
+  std::string atmosphere, haze = "rural-23km", band, sensor, mrtd_file, mtdp_file, ctf_file, svg, page;
+  std::vector<RangeModel> models{RangeModel::tod};
+  std::optional<double> background_k, air_k, surround_k, target_contrast;
+  double emissivity = 1;
+  double asked_delta_t_k = 0;  ///< as on the command line
+  double n50 = 6, mtdp_n50 = 6, extinction_u_percent = 0;
+  FormulaConditions formula{};
+
+  /// Adds the options; `this` outlives the parser.
+  void add_to(CLI::App& command);
+
+  [[nodiscard]] bool asks(RangeModel model) const;
+  /// Air that is more than one coefficient.
+  [[nodiscard]] bool has_table() const;
+  /// --sensor, or that of the session with its microscan.
+  [[nodiscard]] Result<std::optional<SensorSpec>> sensor_of(const std::optional<Session>& session) const;
+  [[nodiscard]] Result<Atmosphere> air(const std::optional<SensorSpec>& sensor, double extinction_per_km) const;
+  /// The target with its background as radiance, made kelvin once at the scale of the NETD; the contrast itself where
+  /// no background is named.
+  [[nodiscard]] Result<double> equivalent_contrast_k(double delta_t_k, const std::optional<SensorSpec>& sensor,
+                                                     const Atmosphere& air) const;
+  [[nodiscard]] RangeQuestion question(const RangeTask& task, std::optional<double> v50, const Atmosphere& air) const;
+  [[nodiscard]] Result<RangeSources> sources(std::vector<TodThreshold> thresholds,
+                                             const std::optional<SensorSpec>& sensor) const;
+  /// The figure and the page that were asked for.
+  [[nodiscard]] Result<void> write(const std::vector<ModelRange>& models, const RangeQuestion& question) const;
+
+  [[nodiscard]] Result<SpectralBand> band_of(const std::optional<SensorSpec>& sensor) const;
+  /// Precondition: a background is named.
+  [[nodiscard]] RadiativeScene scene(double delta_t_k, const Atmosphere& air) const;
+};
+
+/// "atmosphere": name, source, and what it does at the 75 % range of the TOD model.
+[[nodiscard]] Json atmosphere_json(const Atmosphere& air, const RangeTask& task, std::optional<double> r75_m,
+                                   const RangeOptions& options, const std::optional<SensorSpec>& sensor);
+/// "models": the answers by name.
+[[nodiscard]] Json models_json(const std::vector<ModelRange>& models, const RangeSources& sources,
+                               const RangeQuestion& question, std::optional<double> twin_r75_m);
+void print_models(Console& console, const std::vector<ModelRange>& models);
+
+}  // namespace todbench

@@ -1,0 +1,283 @@
+#include "bench/studies/range_models.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace todbench {
+namespace {
+
+/// A model with everything but the range.
+struct Prepared {
+  ModelRange head;
+  CriterionTarget target;
+  Criterion criterion;
+  ResolvedPerMrad resolved;  ///< empty: `head.reason` says why
+};
+
+std::string formula_words(const RangeQuestion& question) {
+  return fmt::format("SNR threshold {:g}, eye {:g} s", question.formula.snr_threshold,
+                     question.formula.eye_integration_s);
+}
+
+Prepared prepared_tod(const RangeSources& sources, const RangeQuestion& question) {
+  Prepared model;
+  model.head = {.name = "tod",
+                .title = "TOD",
+                .criterion = "M75",
+                .criterion_value = question.m75,
+                .probability_form = std::string(to_string(ProbabilityForm::ttp_2004)),
+                .reads = "1 / S75 of the session's TOD curve"};
+  std::vector<TodThreshold> sorted = sources.thresholds;
+  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.delta_t_k < b.delta_t_k; });
+  if (sorted.empty()) {
+    model.head.reason = "the TOD curve has no threshold";
+    return model;
+  }
+  model.target = {question.size_m, contrast_on_curve(sorted, question.delta_t_k)};
+  model.criterion = {question.m75 / ratio_for_probability(ProbabilityForm::ttp_2004, 0.75), ProbabilityForm::ttp_2004};
+  model.resolved = [sorted](double contrast) { return interpolated_acuity_per_mrad(sorted, contrast); };
+  return model;
+}
+
+/// Curves of an axis each, or one for both.
+Result<AxisCurves> cycle_curves(RangeModel which, const RangeSources& sources, const RangeQuestion& question) {
+  const auto& given = which == RangeModel::acquire ? sources.mrtd : sources.mtdp;
+  if (given) return AxisCurves{*given, *given};
+  if (!sources.sensor)
+    return fail(ErrorCode::invalid_input, "there is neither a curve nor a sensor to compute it from");
+  return which == RangeModel::acquire ? mrtd_curves(*sources.sensor, question.formula)
+                                      : mtdp_like_curves(*sources.sensor, question.formula);
+}
+
+Prepared prepared_cycles(RangeModel which, const RangeSources& sources, const RangeQuestion& question) {
+  const bool acquire = which == RangeModel::acquire;
+  const bool given = acquire ? sources.mrtd.has_value() : sources.mtdp.has_value();
+  Prepared model;
+  model.head = {.name = std::string(to_string(which)),
+                .title = acquire ? "ACQUIRE" : "MTDP-like",
+                .criterion = "N50",
+                .criterion_value = acquire ? question.n50 : question.mtdp_n50,
+                .probability_form = std::string(to_string(ProbabilityForm::johnson)),
+                .reads = ""};
+  if (given) {
+    model.head.reads = acquire ? "the given MRTD" : "the given MTDP";
+  } else {
+    model.head.reads = acquire ? "sqrt(f_h f_v) of the MRTD formula after FLIR92, cut at Nyquist; "
+                               : "(pi / 2) SNR noise / modulation at best phase, a working definition; ";
+    model.head.reads += formula_words(question) + ", without display and eye MTF";
+  }
+  if (!acquire) {
+    model.head.notes.emplace_back(
+        "no form of P is published for cycles of an MTDP: that of Johnson's cycles is assumed beside 50 %");
+  }
+  const auto curves = cycle_curves(which, sources, question);
+  if (!curves) {
+    model.head.reason = curves.error().message;
+    return model;
+  }
+  model.target = {question.size_m, std::abs(question.delta_t_k)};
+  model.criterion = {model.head.criterion_value, ProbabilityForm::johnson};
+  model.resolved = resolved_cycles(curves->horizontal, curves->vertical);
+  return model;
+}
+
+Prepared prepared_ttp(const RangeSources& sources, const RangeQuestion& question) {
+  const FormulaConditions& viewing = question.formula;
+  Prepared model;
+  model.head = {
+      .name = "ttp",
+      .title = "TTP",
+      .criterion = "V50",
+      .criterion_value = question.v50,
+      .probability_form = std::string(to_string(ProbabilityForm::ttp_2004)),
+      .reads = sources.ctf
+                   ? "the given CTF"
+                   : fmt::format("CTF of eye, display and sensor, cut at Nyquist; {:g} cd/m2, a sample "
+                                 "under {:g} mrad, {:g} K for the mean luminance",
+                                 viewing.eye.luminance_cd_m2, viewing.sample_at_eye_mrad, viewing.scene_contrast_k)};
+  double contrast = question.target_contrast.value_or(std::abs(question.delta_t_k) / (2 * viewing.scene_contrast_k));
+  if (contrast > 1) {
+    model.head.notes.push_back(fmt::format("a contrast of {:.3g} does not fit on the display: 1 is taken", contrast));
+    contrast = 1;
+  }
+  Result<LogLinearCurve> ctf = fail(ErrorCode::invalid_input, "there is neither a CTF nor a sensor to compute it from");
+  if (sources.ctf) {
+    ctf = *sources.ctf;
+  } else if (sources.sensor) {
+    ctf = system_ctf(*sources.sensor, viewing);
+  }
+  if (!ctf) {
+    model.head.reason = ctf.error().message;
+    return model;
+  }
+  if (sources.ctf && ctf->points().back().value < contrast) {
+    model.head.notes.push_back(
+        fmt::format("the CTF ends at {:g} cycles/mrad below the target's contrast: nothing is "
+                    "counted beyond",
+                    ctf->points().back().frequency));
+  }
+  model.target = {question.size_m, contrast};
+  model.criterion = {question.v50, ProbabilityForm::ttp_2004};
+  model.resolved = resolved_values(*std::move(ctf));
+  return model;
+}
+
+Prepared prepared(RangeModel which, const RangeSources& sources, const RangeQuestion& question) {
+  if (which == RangeModel::tod) return prepared_tod(sources, question);
+  if (which == RangeModel::ttp) return prepared_ttp(sources, question);
+  return prepared_cycles(which, sources, question);
+}
+
+std::optional<double> range_at(const Prepared& model, const Transmittance& air, double probability) {
+  return range_for_probability(model.resolved, model.target, air, model.criterion, probability).range_m;
+}
+
+/// Both sides of an interval with those of the air joined, in logarithms.
+Interval joined_with_air(const Prepared& model, const RangeQuestion& question, double r75, const Interval& of_curve) {
+  if (question.extinction_u_percent <= 0) return of_curve;
+  const double reach = 1.96 * question.extinction_u_percent / 100;
+  const auto side = [&](double factor, const std::optional<double>& bound) -> std::optional<double> {
+    const auto changed = range_at(model, question.air.air.with_depth_times(std::max(0.0, factor)), 0.75);
+    if (!changed || !bound) return std::nullopt;
+    const double both = std::hypot(std::log(*changed / r75), std::log(*bound / r75));
+    return r75 * std::exp(factor > 1 ? -both : both);
+  };
+  return {side(1 + reach, of_curve.low), side(1 - reach, of_curve.high)};
+}
+
+/// TOD keeps the numbers of the one prediction that the rest of the program uses.
+Result<void> predict_tod(Prepared& model, const RangeSources& sources, const RangeQuestion& question) {
+  RangeTask task{
+      .size_m = question.size_m, .delta_t_k = question.delta_t_k, .m75 = question.m75, .air = question.air.air};
+  const auto predicted = predict_range(sources.thresholds, task);
+  if (!predicted) return tl::unexpected(predicted.error());
+  model.head.r75_m = predicted->r75_m;
+  model.head.reason = predicted->reason;
+  model.head.r75_ci95_m = predicted->r75_ci95_m;
+  model.head.notes = predicted->notes;
+  return {};
+}
+
+Result<void> answer(Prepared& model, const RangeSources& sources, const RangeQuestion& question) {
+  if (!model.resolved) return {};
+  const Transmittance& air = question.air.air;
+  const auto found = range_for_probability(model.resolved, model.target, air, model.criterion, 0.75);
+  model.head.sensitivity = found.sensitivity;
+  model.head.r50_m = range_at(model, air, 0.5);
+  if (model.head.name == "tod") {
+    if (auto done = predict_tod(model, sources, question); !done) return done;
+    if (model.head.r75_m)
+      model.head.r75_ci95_m = joined_with_air(model, question, *model.head.r75_m, model.head.r75_ci95_m);
+    return {};
+  }
+  model.head.r75_m = found.range_m;
+  model.head.reason = found.reason;
+  if (found.at_least_m) model.head.r75_ci95_m.low = found.at_least_m;
+  // The curve is a formula without an error of its own; what the air does to it is known.
+  if (found.range_m && question.extinction_u_percent > 0) {
+    model.head.r75_ci95_m = joined_with_air(model, question, *found.range_m, {found.range_m, found.range_m});
+    model.head.notes.emplace_back("the interval is that of the air alone: the curve has no stated uncertainty");
+  }
+  return {};
+}
+
+/// 1, 2 or 5 times a power of ten, at most `value`.
+double round_step(double value) {
+  const double power = std::pow(10, std::floor(std::log10(value)));
+  for (const double factor : {5.0, 2.0}) {
+    if (factor * power <= value * (1 + 1e-12)) return factor * power;
+  }
+  return power;
+}
+
+void add_curves(std::vector<Prepared>& models, const RangeQuestion& question) {
+  double farthest = 0;
+  for (const auto& model : models) {
+    if (const auto reach = model.head.r75_m ? model.head.r75_m : model.head.r75_ci95_m.low)
+      farthest = std::max(farthest, *reach);
+  }
+  if (!(farthest > 0)) return;
+  const double step = round_step(2 * farthest / 60);
+  for (auto& model : models) {
+    if (!model.resolved) continue;
+    for (int i = 1; i * step <= 2 * farthest * (1 + 1e-12); ++i) {
+      const auto x = criterion_ratio(model.resolved, model.target, question.air.air, model.criterion, i * step);
+      model.head.curve.push_back(
+          {i * step, x ? std::optional(target_probability(model.criterion.form, *x)) : std::nullopt});
+    }
+  }
+}
+
+Result<void> check(const RangeQuestion& question) {
+  const auto positive = [](double value) { return std::isfinite(value) && value > 0; };
+  if (!positive(question.size_m)) return fail(ErrorCode::invalid_input, "the target's size must be above 0 m");
+  if (!positive(std::abs(question.delta_t_k))) return fail(ErrorCode::invalid_input, "the target has no contrast");
+  for (const double criterion : {question.m75, question.n50, question.mtdp_n50, question.v50}) {
+    if (!positive(criterion)) return fail(ErrorCode::invalid_input, "a criterion must be above 0");
+  }
+  if (question.target_contrast && !positive(*question.target_contrast))
+    return fail(ErrorCode::invalid_input, "the contrast of luminances must be above 0");
+  return {};
+}
+
+}  // namespace
+
+std::string_view to_string(RangeModel model) {
+  switch (model) {
+    case RangeModel::tod:
+      return "tod";
+    case RangeModel::acquire:
+      return "acquire";
+    case RangeModel::ttp:
+      return "ttp";
+    case RangeModel::mtdp:
+      return "mtdp";
+  }
+  return "";
+}
+
+Result<std::vector<ModelRange>> range_models(std::span<const RangeModel> asked, const RangeSources& sources,
+                                             const RangeQuestion& question) {
+  if (auto checked = check(question); !checked) return tl::unexpected(checked.error());
+  std::vector<Prepared> models;
+  for (const RangeModel which : asked) {
+    models.push_back(prepared(which, sources, question));
+    if (auto answered = answer(models.back(), sources, question); !answered) return tl::unexpected(answered.error());
+  }
+  add_curves(models, question);
+  std::vector<ModelRange> answers;
+  for (auto& model : models) answers.push_back(std::move(model.head));
+  return answers;
+}
+
+TtpRanges ttp_ranges(const RangeSources& sources, const RangeQuestion& question, ProbabilityForm form) {
+  Prepared model = prepared_ttp(sources, question);
+  if (!model.resolved) return {};
+  model.criterion.form = form;
+  return {range_at(model, question.air.air, 0.5), range_at(model, question.air.air, 0.75)};
+}
+
+std::optional<NominalRanges> nominal_ranges(const RangeSources& sources, const RangeQuestion& question) {
+  const auto curves = cycle_curves(RangeModel::mtdp, sources, question);
+  if (!curves) return std::nullopt;
+  NominalRanges nominal;
+  const auto resolved = resolved_cycles(curves->horizontal, curves->vertical);
+  const auto range = [&](double cycles) {
+    return range_for_probability(resolved, {nominal.size_m, nominal.delta_t_k},
+                                 Transmittance::beer_lambert(nominal.extinction_per_km),
+                                 {cycles, ProbabilityForm::johnson}, 0.5)
+        .range_m;
+  };
+  nominal.detection_m = range(1);
+  nominal.recognition_m = range(3);
+  nominal.identification_m = range(6);
+  return nominal;
+}
+
+}  // namespace todbench

@@ -1,0 +1,64 @@
+// A sweep expanded: a task is a pure function of (file, index).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "acquisition/core/result.h"
+#include "bench/sweep/sweep_file.h"
+
+namespace todbench {
+
+/// One task. Parameters are those that vary, in the order of the file; the base comes beside.
+struct SweepTask {
+  std::size_t index = 0;
+  std::vector<SweepParameter> parameters;
+  std::size_t repeat = 0;
+  std::uint64_t seed = 1;  ///< of all randomness of the task
+  std::string name;        ///< "i000123-HASH": index and hash of everything that decides the result
+};
+
+/// A number that a name has where a task does not say it: the sensor's.
+using NumberOfName = std::function<std::optional<double>(std::string_view name)>;
+
+/// All tasks of a sweep. Seeds depend on content (the sweep's seed, the parameters, the repeat), not on the index: a
+/// value that is added or moved leaves the numbers of every other task as they were. With `paired` they depend on the
+/// repeat alone. Immutable, thread-safe.
+class Sweep {
+ public:
+  /// `fingerprint`: whatever else decides results (contents of files that are named); part of the hash of a task.
+  /// `invalid_input`: nothing to do, more than 10 million combinations, a condition whose name nobody knows.
+  [[nodiscard]] static Result<Sweep> expand(SweepFile file, std::string fingerprint, const NumberOfName& number_of);
+
+  [[nodiscard]] const SweepFile& file() const { return file_; }
+  [[nodiscard]] std::size_t count() const { return combinations_.size() * file_.repeats; }
+  /// Precondition: index < count().
+  [[nodiscard]] SweepTask task(std::size_t index) const;
+  /// Combinations that a condition refuses.
+  [[nodiscard]] std::size_t refused() const { return refused_; }
+  /// Of everything that decides any result of this sweep.
+  [[nodiscard]] const std::string& hash() const { return hash_; }
+  /// The keys that vary, in the order of the file.
+  [[nodiscard]] std::vector<std::string> keys() const;
+
+ private:
+  Sweep(SweepFile file, std::string fingerprint);
+  [[nodiscard]] std::size_t combination_count() const;
+  [[nodiscard]] std::vector<SweepParameter> parameters_of(std::size_t combination) const;
+  SweepFile file_;
+  std::string base_text_, hash_;
+  std::vector<std::vector<double>> sample_;  ///< per draw, one number for each range
+  std::vector<std::size_t> combinations_;    ///< those that no condition refuses
+  std::size_t refused_ = 0;
+};
+
+/// Draws in the unit cube: a Latin hypercube, or the Sobol sequence (directions of Joe and Kuo 2008) with a shift by
+/// the seed. `n` rows of `dimensions` numbers in (0, 1).
+[[nodiscard]] std::vector<std::vector<double>> unit_sample(SampleKind kind, std::size_t n, std::size_t dimensions,
+                                                           std::uint64_t seed);
+
+}  // namespace todbench

@@ -1,0 +1,204 @@
+#include "bench/sweep/sweep_effects.h"
+
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include "bench/text/text.h"
+
+namespace todbench {
+namespace {
+
+/// One row of the table that has the response.
+struct Observation {
+  std::vector<std::string> values;  ///< by parameter
+  std::size_t repeat = 0;
+  double response = 0;
+};
+using Observations = std::vector<Observation>;
+
+std::optional<std::size_t> column_of(const SweepTable& table, const std::string& name) {
+  const auto found = std::find(table.columns.begin(), table.columns.end(), name);
+  if (found == table.columns.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - table.columns.begin());
+}
+
+std::string text_of(const Json& cell) {
+  if (cell.is_string()) return cell.get<std::string>();
+  return cell.is_number() ? number_text(cell.get<double>()) : "";
+}
+
+/// By contrast.
+std::map<double, Observations> observations_of(const std::vector<std::string>& keys, const SweepTable& table,
+                                               std::size_t response) {
+  std::vector<std::size_t> columns;
+  for (const auto& key : keys) columns.push_back(column_of(table, key).value_or(0));
+  const auto repeat = column_of(table, "repeat"), contrast = column_of(table, "delta_t_k");
+  std::map<double, Observations> by_contrast;
+  for (const auto& row : table.rows) {
+    if (!row[response].is_number()) continue;
+    Observation observation;
+    for (const std::size_t column : columns) observation.values.push_back(text_of(row[column]));
+    observation.repeat = repeat ? row[*repeat].get<std::size_t>() : 0;
+    observation.response = row[response].get<double>();
+    const double at = contrast && row[*contrast].is_number() ? row[*contrast].get<double>() : 0;
+    by_contrast[at].push_back(std::move(observation));
+  }
+  return by_contrast;
+}
+
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// Student's interval of the mean; open with fewer than two.
+Interval interval_of(const std::vector<double>& values) {
+  if (values.size() < 2) return {};
+  const double m = mean(values), n = static_cast<double>(values.size());
+  double squares = 0;
+  for (const double value : values) squares += (value - m) * (value - m);
+  const double t = boost::math::quantile(boost::math::students_t(n - 1), 0.975);
+  const double half = t * std::sqrt(squares / (n - 1) / n);
+  return {m - half, m + half};
+}
+
+/// Variance of the group means, each weighted by its rows, over that of all.
+template <typename Group>
+std::optional<double> explained(const Observations& rows, const Group& group_of) {
+  std::map<std::string, std::pair<double, double>> sums;
+  double all = 0;
+  for (const auto& row : rows) {
+    auto& [sum, count] = sums[group_of(row)];
+    sum += row.response;
+    count += 1;
+    all += row.response;
+  }
+  const double n = static_cast<double>(rows.size()), m = all / n;
+  double total = 0, between = 0;
+  for (const auto& row : rows) total += (row.response - m) * (row.response - m);
+  for (const auto& [group, entry] : sums) between += entry.second * std::pow(entry.first / entry.second - m, 2);
+  if (!(total > 0)) return std::nullopt;
+  return between / total;
+}
+
+std::string others(const Observation& row, std::size_t without) {
+  std::string text;
+  for (std::size_t i = 0; i < row.values.size(); ++i) {
+    if (i != without) text += row.values[i] + '\n';
+  }
+  return text;
+}
+
+/// Values of a drawn parameter in classes of equal count.
+std::map<std::string, std::string> classes_of(const Observations& rows, std::size_t parameter) {
+  std::set<std::pair<double, std::string>> sorted;
+  for (const auto& row : rows) sorted.emplace(parse_number(row.values[parameter]).value_or(0), row.values[parameter]);
+  const double classes = std::max(2.0, std::floor(std::sqrt(static_cast<double>(sorted.size()) / 2)));
+  std::map<std::string, std::string> names;
+  std::size_t place = 0;
+  for (const auto& [number, text] : sorted)
+    names[text] =
+        std::to_string(static_cast<int>(static_cast<double>(place++) * classes / static_cast<double>(sorted.size())));
+  return names;
+}
+
+/// The correlation ratio less what so many classes explain of nothing: 1 - (1 - eta^2) (n - 1) / (n - classes).
+std::optional<double> sampled_first_order(const Observations& rows, std::size_t parameter) {
+  const auto classes = classes_of(rows, parameter);
+  std::set<std::string> used;
+  for (const auto& [value, name] : classes) used.insert(name);
+  const double n = static_cast<double>(rows.size()), count = static_cast<double>(used.size());
+  const auto ratio = explained(rows, [&](const Observation& row) { return classes.at(row.values[parameter]); });
+  if (!ratio || n <= count) return std::nullopt;
+  return 1 - (1 - *ratio) * (n - 1) / (n - count);
+}
+
+void add_indices(ParameterEffect& effect, const std::map<std::size_t, Observations>& by_repeat, std::size_t parameter,
+                 bool drawn) {
+  std::vector<double> first, total;
+  for (const auto& [repeat, rows] : by_repeat) {
+    const auto s = drawn ? sampled_first_order(rows, parameter)
+                         : explained(rows, [&](const Observation& row) { return row.values[parameter]; });
+    if (s) first.push_back(*s);
+    if (drawn) continue;
+    if (const auto rest = explained(rows, [&](const Observation& row) { return others(row, parameter); }))
+      total.push_back(std::max(0.0, 1 - *rest));
+  }
+  if (!first.empty()) effect.first_order = mean(first);
+  if (!total.empty()) effect.total = mean(total);
+  effect.first_order_ci95 = interval_of(first);
+  effect.total_ci95 = interval_of(total);
+}
+
+/// Means at each value, their intervals over the repeats.
+std::vector<EffectLevel> levels_of(const Observations& rows, std::size_t parameter) {
+  std::vector<std::string> order;
+  std::map<std::string, std::map<std::size_t, std::vector<double>>> by_value;
+  for (const auto& row : rows) {
+    const std::string& value = row.values[parameter];
+    if (!by_value.contains(value)) order.push_back(value);
+    by_value[value][row.repeat].push_back(row.response);
+  }
+  std::vector<EffectLevel> levels;
+  for (const auto& value : order) {
+    std::vector<double> all, of_repeats;
+    for (const auto& [repeat, responses] : by_value[value]) {
+      all.insert(all.end(), responses.begin(), responses.end());
+      of_repeats.push_back(mean(responses));
+    }
+    levels.push_back({value, mean(all), interval_of(of_repeats), all.size()});
+  }
+  return levels;
+}
+
+}  // namespace
+
+std::vector<ResponseEffects> sweep_effects(const Sweep& sweep, const SweepTable& table, const std::string& response) {
+  const auto column = column_of(table, response);
+  if (!column) return {};
+  const auto keys = sweep.keys();
+  const std::size_t fixed = sweep.file().grid.size() + sweep.file().zip.size();
+  std::vector<ResponseEffects> effects;
+  for (const auto& [contrast, rows] : observations_of(keys, table, *column)) {
+    std::map<std::size_t, Observations> by_repeat;
+    for (const auto& row : rows) by_repeat[row.repeat].push_back(row);
+    ResponseEffects found{response, contrast, {}};
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      ParameterEffect effect{.key = keys[i]};
+      if (i < fixed) effect.levels = levels_of(rows, i);
+      add_indices(effect, by_repeat, i, i >= fixed || !sweep.file().sample.empty());
+      found.parameters.push_back(std::move(effect));
+    }
+    effects.push_back(std::move(found));
+  }
+  return effects;
+}
+
+Json to_json(const std::vector<ResponseEffects>& effects) {
+  Json list = Json::array();
+  for (const auto& response : effects) {
+    Json parameters = Json::array();
+    for (const auto& effect : response.parameters) {
+      Json levels = Json::array();
+      for (const auto& level : effect.levels)
+        levels.push_back({{"value", level.value},
+                          {"mean", json_number(level.mean)},
+                          {"ci95", json_interval(level.ci95)},
+                          {"rows", level.rows}});
+      parameters.push_back({{"key", effect.key},
+                            {"first_order", json_number(effect.first_order)},
+                            {"first_order_ci95", json_interval(effect.first_order_ci95)},
+                            {"total", json_number(effect.total)},
+                            {"total_ci95", json_interval(effect.total_ci95)},
+                            {"levels", levels}});
+    }
+    list.push_back({{"response", response.response}, {"delta_t_k", response.delta_t_k}, {"parameters", parameters}});
+  }
+  return list;
+}
+
+}  // namespace todbench

@@ -1,0 +1,262 @@
+#include "bench/sweep/task_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "bench/plan/descriptions.h"
+#include "bench/plan/plan_keys.h"
+#include "bench/plan/plan_options.h"
+#include "bench/run/default_design.h"
+#include "bench/run/experiment.h"
+#include "bench/run/experiment_inputs.h"
+#include "bench/run/time_prediction.h"
+#include "bench/session/json_output.h"
+#include "bench/text/files.h"
+#include "bench/text/text.h"
+#include "sim_devices/prediction/direct_estimate.h"
+#include "sim_devices/sensor/sensor_key.h"
+#include "tod/plate/test_pattern.h"
+
+namespace todbench {
+namespace {
+
+/// The option of `todbench simulate` as a key: "--delta-t-k" is "delta_t_k".
+std::string key_of_option(std::string_view option) {
+  std::string key(option.substr(2));
+  std::replace(key.begin(), key.end(), '-', '_');
+  return key;
+}
+
+/// The key of the plan that a name means; nothing for a name of the sensor.
+std::optional<std::string> plan_path(std::string_view name) {
+  for (const auto& section : plan_sections()) {
+    if (section.repeated()) continue;
+    for (const auto& key : section.keys) {
+      const std::string path = path_of(section, key);
+      const bool option =
+          key.option.of == OptionOf::simulations && !key.option.name.empty() && key_of_option(key.option.name) == name;
+      if (path == name || option) return path;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<SensorKey> sensor_key(std::string_view name) {
+  if (name.starts_with("sensor.")) name.remove_prefix(7);
+  for (const auto& key : sensor_keys()) {
+    if (key.name == name) return key;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> known_keys() {
+  std::vector<std::string> keys;
+  for (const auto& key : sensor_keys()) keys.emplace_back(key.name);
+  for (const auto& section : plan_sections()) {
+    for (const auto& key : section.keys) {
+      if (section.repeated()) continue;
+      keys.push_back(path_of(section, key));
+      if (!key.option.name.empty() && key.option.of == OptionOf::simulations)
+        keys.push_back(key_of_option(key.option.name));
+    }
+  }
+  return keys;
+}
+
+Result<void> set_sensor(const SweepParameter& parameter, const SensorKey& key, SensorSpec& spec) {
+  if (const auto* shown = std::get_if<DisplayReconstruction SensorSpec::*>(&key.member)) {
+    for (const auto value : {DisplayReconstruction::sample_and_hold, DisplayReconstruction::bilinear}) {
+      if (to_string(value) != parameter.value) continue;
+      spec.*(*shown) = value;
+      return {};
+    }
+    return fail_at(ErrorCode::invalid_input, parameter.key, "'" + one_line(parameter.value) + "' is no display");
+  }
+  const auto number = parse_number(parameter.value);
+  const auto* whole = std::get_if<int SensorSpec::*>(&key.member);
+  if (!number || !key.range.contains(*number) || (whole != nullptr && *number != std::floor(*number)) ||
+      std::abs(*number) > 1e9) {
+    return fail_at(ErrorCode::invalid_input, parameter.key,
+                   std::string("expected a ") + (whole != nullptr ? "whole " : "") + "number, " + key.range.describe() +
+                       ", found '" + one_line(parameter.value) + "'");
+  }
+  if (whole != nullptr) {
+    spec.*(*whole) = static_cast<int>(*number);
+  } else {
+    spec.*std::get<double SensorSpec::*>(key.member) = *number;
+  }
+  return {};
+}
+
+Result<void> set_plan(const SweepParameter& parameter, const std::string& path, const std::filesystem::path& folder,
+                      Plan& plan) {
+  const KeyAt at = plan_key(path);
+  auto value = value_from_text(at.key->type, parameter.value);
+  if (!value) return fail_at(ErrorCode::invalid_input, parameter.key, value.error().message);
+  if (std::holds_alternative<ResourceKey>(at.key->type))
+    value = KeyValue(absolute_reference(std::get<std::string>(*value), folder));
+  if (std::holds_alternative<ResourcesKey>(at.key->type)) {
+    for (auto& reference : std::get<std::vector<std::string>>(*value))
+      reference = absolute_reference(reference, folder);
+  }
+  at.key->place.set(plan, 0, *value);
+  return {};
+}
+
+/// Parameters one after the other: those of the plan, then, once the sensor is known, those of the sensor.
+Result<LoadedPlan> applied(const LoadedPlan& base, const std::vector<SweepParameter>& parameters,
+                           const std::filesystem::path& folder, std::uint64_t seed) {
+  Plan plan = base.plan();
+  plan.seed = seed;
+  bool new_sensor = false, new_microscan = false;
+  for (const auto& parameter : parameters) {
+    const auto path = plan_path(parameter.key);
+    if (!path) continue;
+    if (auto set = set_plan(parameter, *path, folder, plan); !set) return tl::unexpected(set.error());
+    new_sensor |= *path == "simulation.sensor";
+    new_microscan |= *path == "simulation.microscan";
+  }
+  auto loaded = base.with(plan);
+  if (!loaded) return loaded;
+  PlanParts parts = loaded->parts();
+  // A sensor brings its own microscan, as on the command line.
+  if (new_sensor && !new_microscan) plan.simulation.microscan = parts.sensor.microscan;
+  for (const auto& parameter : parameters) {
+    if (plan_path(parameter.key)) continue;
+    const auto key = sensor_key(parameter.key);
+    if (!key)
+      return fail(ErrorCode::invalid_input, "unknown parameter '" + one_line(parameter.key) + "'" +
+                                                nearest_name_hint(parameter.key, known_keys()));
+    if (auto set = set_sensor(parameter, *key, parts.sensor); !set) return tl::unexpected(set.error());
+  }
+  if (auto valid = validate(parts.sensor); !valid) return tl::unexpected(valid.error());
+  return LoadedPlan::of(std::move(plan), std::move(parts));
+}
+
+/// The value of a base key, taken from the list.
+std::optional<std::string> taken(std::vector<SweepParameter>& base, std::string_view key) {
+  const auto found = std::find_if(base.begin(), base.end(), [&](const auto& p) { return p.key == key; });
+  if (found == base.end()) return std::nullopt;
+  std::string value = found->value;
+  base.erase(found);
+  return value;
+}
+
+/// Every value of every axis on top of the base: what does not go alone does not go at all.
+Result<void> check_values(const LoadedPlan& initial, const std::vector<SweepParameter>& base, const SweepFile& file) {
+  const auto check = [&](const std::string& key, const std::string& value) -> Result<void> {
+    std::vector<SweepParameter> parameters = base;
+    parameters.push_back({key, value});
+    const auto loaded = applied(initial, parameters, file.folder, 1);
+    // Two that limit each other may be changed together; the tasks say it where they do not go together.
+    if (loaded || (plan_path(key) == std::nullopt && sensor_key(key) && loaded.error().key == std::nullopt)) return {};
+    return tl::unexpected(loaded.error());
+  };
+  std::vector<SweepAxis> axes = file.grid;
+  axes.insert(axes.end(), file.zip.begin(), file.zip.end());
+  for (const auto& [key, low, high] : file.sample) axes.push_back({key, {number_text(low), number_text(high)}});
+  for (const auto& axis : axes) {
+    constexpr std::size_t enough = 200;
+    for (std::size_t i = 0; i < std::min(axis.values.size(), enough); ++i) {
+      if (auto fine = check(axis.key, axis.values[i]); !fine) return fine;
+    }
+  }
+  return {};
+}
+
+Json estimate_json(const LoadedPlan& plan, const std::vector<DirectPoint>& points) {
+  Json list = Json::array();
+  const double pitch_mrad = plan.sensor().ifov_mrad();
+  for (const auto& point : points) {
+    list.push_back({{"delta_t_k", point.delta_t_k},
+                    {"s75_direct_mrad", point.s75_pitch * pitch_mrad},
+                    {"s75_direct_se_mrad", point.standard_error_pitch * pitch_mrad},
+                    {"acuity_per_mrad", 1 / (point.s75_pitch * pitch_mrad)}});
+  }
+  return {{"points", list}};
+}
+
+Result<Json> estimated(const LoadedPlan& plan, std::stop_token stop) {
+  const auto& simulation = plan.plan().simulation;
+  const auto accuracy = accuracy_of(plan.plan());
+  if (!accuracy) return tl::unexpected(accuracy.error());
+  TemplateObserver observer(plan.observer(), triangle_alternatives());
+  const SensorPlan effects = full_plan(plan.sensor(), simulation.skip, simulation.force, simulation.motion);
+  const auto points = direct_estimate(
+      plan.sensor(), effects, observer, plan.plan().target.delta_t_k,
+      {.motion = simulation.motion, .accuracy = *accuracy, .seed = plan.plan().seed, .stop = std::move(stop)});
+  if (!points) return tl::unexpected(points.error());
+  return estimate_json(plan, *points);
+}
+
+Result<Json> simulated(const LoadedPlan& plan, const std::filesystem::path& scratch, std::stop_token stop) {
+  const auto outcome = simulate_plan(plan, {.folder = scratch, .existing = ExistingFolder::overwrite}, {}, stop);
+  std::error_code ignored;
+  std::filesystem::remove_all(scratch, ignored);
+  if (!outcome) return tl::unexpected(outcome.error());
+  if (outcome->ended_by) return tl::unexpected(*outcome->ended_by);
+  const Json curve = curve_json(outcome->curve, outcome->effects, {});
+  return Json{{"points", curve["points"]}};
+}
+
+}  // namespace
+
+Result<RunnableSweep> load_sweep(const std::filesystem::path& path) {
+  auto file = read_sweep(path);
+  if (!file) return tl::unexpected(file.error());
+  std::vector<SweepParameter> base = file->base;
+  const auto plan = taken(base, "plan");
+  const std::string reference = plan ? absolute_reference(*plan, file->folder) : "demo";
+  auto initial = read_plan(reference);
+  if (initial && !plan) initial = initial->with(plan_of_nobody(initial->plan()));
+  if (!initial) return fail(path.string(), initial.error());
+  const auto loaded = applied(*initial, base, file->folder, initial->plan().seed);
+  if (!loaded) return fail(path.string(), loaded.error());
+  if (auto fine = check_values(*initial, base, *file); !fine) return fail(path.string(), fine.error());
+  // What files say that are named decides results as well.
+  std::string fingerprint = "plan " + sha256_of(to_toml(loaded->plan())) + "\n";
+  for (const auto& [name, source] : loaded->parts().sources) fingerprint += sha256_of(source.text) + "\n";
+  const SensorSpec sensor = loaded->sensor();
+  const auto number_of = [&sensor](std::string_view name) -> std::optional<double> {
+    const auto key = sensor_key(name);
+    if (!key) return std::nullopt;
+    if (const auto* number = std::get_if<double SensorSpec::*>(&key->member)) return sensor.*(*number);
+    if (const auto* whole = std::get_if<int SensorSpec::*>(&key->member)) return sensor.*(*whole);
+    return std::nullopt;
+  };
+  auto sweep = Sweep::expand(*std::move(file), std::move(fingerprint), number_of);
+  if (!sweep) return fail(path.string(), sweep.error());
+  return RunnableSweep{*std::move(sweep), *std::move(initial), std::move(base)};
+}
+
+Result<LoadedPlan> task_plan(const RunnableSweep& runnable, const SweepTask& task, std::stop_token stop) {
+  const SweepFile& file = runnable.sweep.file();
+  std::vector<SweepParameter> parameters = runnable.base;
+  parameters.insert(parameters.end(), task.parameters.begin(), task.parameters.end());
+  auto plan = applied(runnable.initial, parameters, file.folder, task.seed);
+  if (!plan || file.kind == TaskKind::estimate) return plan;
+  const bool own_plan =
+      std::any_of(file.base.begin(), file.base.end(), [](const auto& parameter) { return parameter.key == "plan"; });
+  return own_plan ? plan : with_suitable_distance(*plan, std::move(stop));
+}
+
+Result<Json> run_task(const RunnableSweep& runnable, const SweepTask& task, const std::filesystem::path& scratch,
+                      std::stop_token stop) {
+  const auto plan = task_plan(runnable, task, stop);
+  if (!plan) return tl::unexpected(plan.error());
+  return runnable.sweep.file().kind == TaskKind::estimate ? estimated(*plan, stop) : simulated(*plan, scratch, stop);
+}
+
+Result<double> predicted_task_s(const RunnableSweep& runnable, const SweepTask& task, std::stop_token stop) {
+  const auto plan = task_plan(runnable, task, stop);
+  if (!plan) return tl::unexpected(plan.error());
+  EffectPlanner planner;
+  const auto inputs = experiment_inputs(*plan, planner);
+  if (!inputs) return tl::unexpected(inputs.error());
+  const auto time = predict_time(plan->plan(), *inputs, stop);
+  if (!time) return tl::unexpected(time.error());
+  return time->simulation_s;
+}
+
+}  // namespace todbench

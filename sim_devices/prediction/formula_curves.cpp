@@ -1,0 +1,190 @@
+#include "sim_devices/prediction/formula_curves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <vector>
+
+#include "sim_devices/sensor/sensor_plan.h"
+#include "sim_devices/sensor/transfer_functions.h"
+#include "tod/range/bars_sampled.h"
+
+namespace todbench {
+namespace {
+
+constexpr int wavelengths = 16;
+
+/// Along one axis, in cycles per detector pitch.
+class AxisMtf {
+ public:
+  explicit AxisMtf(const SensorSpec& spec)
+      : plan_(full_plan(spec, {}, {})), optics_(spec, plan_, wavelengths), footprint_({.spec = spec, .plan = plan_}) {}
+  [[nodiscard]] double operator()(double f_per_pitch) const { return optics_(f_per_pitch) * footprint_(f_per_pitch); }
+
+ private:
+  SensorPlan plan_;
+  OpticsMtf optics_;
+  FootprintMtf footprint_;
+};
+
+/// A smooth transfer function that is asked often, up to where it ends or to 4 cycles per sample: linear between 16384
+/// values, off by less than 1e-7.
+class Tabulated {
+ public:
+  explicit Tabulated(const std::function<double(double)>& transfer) {
+    for (int i = 0; i <= steps; ++i) values_.push_back(transfer(highest * i / steps));
+    while (values_.size() > 2 && std::abs(values_.back()) < 1e-9) values_.pop_back();
+  }
+  [[nodiscard]] double band() const { return highest * static_cast<double>(values_.size() - 1) / steps; }
+  [[nodiscard]] double operator()(double f) const {
+    const double place = std::min(f / highest * steps, static_cast<double>(values_.size() - 1));
+    const auto i = std::min(static_cast<std::size_t>(place), values_.size() - 2);
+    const double w = place - static_cast<double>(i);
+    return values_[i] + w * (values_[i + 1] - values_[i]);
+  }
+
+ private:
+  static constexpr int steps = 16384;
+  static constexpr double highest = 4;
+  std::vector<double> values_;
+};
+
+double nyquist_per_mrad(const SensorSpec& spec) {
+  return 0.5 * spec.samples_per_pitch() / spec.ifov_mrad();
+}
+
+/// Frequencies in equal steps from 1 % of the highest.
+std::vector<double> frequencies_up_to(double highest, int count) {
+  std::vector<double> frequencies;
+  for (int i = 0; i < count; ++i) frequencies.push_back(highest * (0.01 + 0.99 * i / (count - 1)));
+  return frequencies;
+}
+
+/// int |channel|^2 df over both signs, the eye's channel being exp(-2.2 ln^2(f / centre)): centre sqrt(pi / 4.4)
+/// exp(1 / 17.6) on one side.
+double channel_width(double centre) {
+  return 2 * centre * std::sqrt(std::numbers::pi / 4.4) * std::exp(1 / 17.6);
+}
+
+/// MTF of a displayed sample, a square, at a frequency in cycles/mrad of the scene.
+double sample_mtf(double f_per_mrad, double sample_mrad) {
+  const double x = std::numbers::pi * f_per_mrad * sample_mrad;
+  return x == 0 ? 1 : std::abs(std::sin(x) / x);
+}
+
+/// Noise of the channel over the scene contrast, squared: density NETD^2 p^2 / F times the channel along the axis and a
+/// displayed sample across it, with those of the other components that the axis sees.
+double noise_power(const MrtdFormula& formula, const FormulaConditions& conditions, double f, BarAxis axis) {
+  const double along = channel_width(f);
+  const double across = 1 / formula.pitch_mrad;  // int sinc^2(u p) du
+  const double white = formula.netd_k * formula.netd_k * formula.pitch_mrad * formula.pitch_mrad;
+  const NoiseRatios& n = formula.noise;
+  const double fixed_s = conditions.eye_integration_s;  // noise that does not change is not averaged by the eye
+  const double line = axis == BarAxis::horizontal ? n.th : n.tv;
+  const double lines_only = axis == BarAxis::horizontal ? n.h : n.v;
+  const double density_s =
+      (1 + line * line) / formula.frame_rate_hz + (n.vh * n.vh + lines_only * lines_only) * fixed_s;
+  const double seen = conditions.alpha_root_hz / conditions.scene_contrast_k;
+  return seen * seen * white * along * across * density_s;
+}
+
+double axis_ctf(const SensorSpec& spec, const AxisMtf& mtf, const MrtdFormula& formula,
+                const FormulaConditions& conditions, double f, BarAxis axis) {
+  // An angle in the scene is shown under so many times itself.
+  const double magnification = conditions.sample_at_eye_mrad / formula.pitch_mrad;
+  const double cycles_per_degree = f / magnification * 1000 * std::numbers::pi / 180;
+  const double passed = mtf(f * spec.ifov_mrad()) * sample_mtf(f, formula.pitch_mrad);
+  return eye_contrast_threshold(cycles_per_degree, conditions.eye) / passed *
+         std::sqrt(1 + noise_power(formula, conditions, f, axis));
+}
+
+}  // namespace
+
+Result<MrtdFormula> mrtd_formula_of(const SensorSpec& spec, const FormulaConditions& conditions) {
+  if (!(spec.netd_k > 0))
+    return fail(ErrorCode::invalid_input, "sensor " + spec.name + ": without temporal noise the formula has no MRTD");
+  MrtdFormula formula;
+  formula.pitch_mrad = spec.ifov_mrad() / spec.samples_per_pitch();
+  // Averaged exposures lower the noise of a picture and its rate alike; the displaced ones of a finer grid, the rate.
+  const int averaged = spec.exposures_per_sample();
+  const int per_picture = averaged * spec.samples_per_pitch() * spec.samples_per_pitch();
+  formula.netd_k = spec.netd_k / std::sqrt(averaged);
+  formula.frame_rate_hz = spec.frame_rate_hz / per_picture;
+  formula.eye_integration_s = conditions.eye_integration_s;
+  formula.snr_threshold = conditions.snr_threshold;
+  formula.noise = {.vh = spec.fixed_pattern_k / formula.netd_k,
+                   .th = spec.column_noise_k / spec.netd_k,
+                   .tv = spec.row_noise_k / spec.netd_k,
+                   .h = 0,
+                   .v = 0};
+  return formula;
+}
+
+Result<AxisCurves> mrtd_curves(const SensorSpec& spec, const FormulaConditions& conditions) {
+  const auto formula = mrtd_formula_of(spec, conditions);
+  if (!formula) return tl::unexpected(formula.error());
+  const AxisMtf mtf(spec);
+  std::vector<CurvePoint> horizontal, vertical;
+  for (const double f : frequencies_up_to(nyquist_per_mrad(spec), 100)) {
+    const double passed = mtf(f * spec.ifov_mrad());
+    if (!(passed > 1e-6)) break;
+    horizontal.push_back({f, mrtd_k(*formula, f, passed, BarAxis::horizontal)});
+    vertical.push_back({f, mrtd_k(*formula, f, passed, BarAxis::vertical)});
+  }
+  auto h = LogLinearCurve::of(horizontal, "MRTD"), v = LogLinearCurve::of(vertical, "MRTD");
+  if (!h) return tl::unexpected(h.error());
+  if (!v) return tl::unexpected(v.error());
+  return AxisCurves{*std::move(h), *std::move(v)};
+}
+
+Result<AxisCurves> mtdp_like_curves(const SensorSpec& spec, const FormulaConditions& conditions) {
+  const auto formula = mrtd_formula_of(spec, conditions);
+  if (!formula) return tl::unexpected(formula.error());
+  const AxisMtf mtf(spec);
+  const int n = spec.samples_per_pitch();
+  // In samples: the lattice of the modulation has the step 1.
+  const Tabulated per_sample([&](double f) { return mtf(f * n); });
+  std::vector<CurvePoint> horizontal, vertical;
+  const auto add = [&](double f, double modulation) {
+    horizontal.push_back({f, mtdp_like_k(*formula, f, modulation, BarAxis::horizontal)});
+    vertical.push_back({f, mtdp_like_k(*formula, f, modulation, BarAxis::vertical)});
+  };
+  // Bars of fifty samples are not touched by blur.
+  const double nyquist = nyquist_per_mrad(spec);
+  add(0.01 * nyquist, 1);
+  constexpr int count = 40, phases = 16;
+  for (int i = 0; i < count; ++i) {
+    const double f = nyquist * (0.1 + 1.9 * i / (count - 1));
+    const BlurredBars bars(
+        f * formula->pitch_mrad, [&](double u) { return per_sample(u); }, per_sample.band());
+    const BarModulation left = bar_modulation(bars, phases);
+    if (left.best < 0.01 || left.bars_separated_at_best < 2) break;
+    add(f, left.best);
+  }
+  auto h = LogLinearCurve::of(horizontal, "MTDP-like"), v = LogLinearCurve::of(vertical, "MTDP-like");
+  if (!h) return tl::unexpected(h.error());
+  if (!v) return tl::unexpected(v.error());
+  return AxisCurves{*std::move(h), *std::move(v)};
+}
+
+Result<LogLinearCurve> system_ctf(const SensorSpec& spec, const FormulaConditions& conditions) {
+  // A sensor without temporal noise still has a threshold: that of eye and transfer.
+  SensorSpec noisy = spec;
+  noisy.netd_k = std::max(spec.netd_k, 1e-12);
+  const auto formula = mrtd_formula_of(noisy, conditions);
+  if (!formula) return tl::unexpected(formula.error());
+  const AxisMtf mtf(spec);
+  std::vector<CurvePoint> points;
+  for (const double f : frequencies_up_to(nyquist_per_mrad(spec), 200)) {
+    if (!(mtf(f * spec.ifov_mrad()) > 1e-9)) break;
+    const double h = axis_ctf(spec, mtf, *formula, conditions, f, BarAxis::horizontal);
+    const double v = axis_ctf(spec, mtf, *formula, conditions, f, BarAxis::vertical);
+    const double mean = std::sqrt(h) * std::sqrt(v);
+    if (!std::isfinite(mean)) break;
+    points.push_back({f, mean});
+  }
+  return LogLinearCurve::of(points, "CTF");
+}
+
+}  // namespace todbench

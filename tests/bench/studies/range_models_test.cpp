@@ -1,0 +1,157 @@
+// Range models side by side, and the air by name.
+#include "bench/studies/range_models.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bench/report/html.h"
+#include "bench/report/range_figure.h"
+#include "tests/support/temporary_folder.h"
+
+namespace todbench {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::TemporaryFolder;
+
+const std::vector<TodThreshold> tod{{0.2, 6, {5, 7}}, {1, 2, {1.9, 2.1}}, {10, 1.5, {1.4, 1.6}}};
+
+RangeQuestion question(const std::string& atmosphere) {
+  RangeQuestion asked{.size_m = 4.9, .delta_t_k = 3};
+  const auto air = load_atmosphere(atmosphere, {});
+  EXPECT_TRUE(air) << air.error().message;
+  asked.air = *air;
+  return asked;
+}
+
+RangeSources sources() {
+  SensorSpec sensor;
+  sensor.name = "sc2000";
+  return {.thresholds = tod, .sensor = sensor};
+}
+
+TEST(RangeModels, AnswerSideBySideEachWithItsCriterionAndLimit) {
+  const auto models = range_models(all_range_models, sources(), question("us-standard"));
+
+  ASSERT_TRUE(models) << models.error().message;
+  ASSERT_EQ(models->size(), 4u);
+  for (const auto& model : *models) {
+    ASSERT_TRUE(model.r75_m) << model.name << ": " << model.reason;
+    EXPECT_GT(*model.r50_m, *model.r75_m);
+    EXPECT_TRUE(model.dominant());
+    EXPECT_FALSE(model.criterion.empty());
+    EXPECT_FALSE(model.curve.empty());
+  }
+}
+
+TEST(RangeModels, TodInClearAirIsTheRangeOfTheTodCurve) {
+  const auto models = range_models(std::array{RangeModel::tod}, sources(), question("clear"));
+  const auto plain = predict_range(tod, {.size_m = 4.9, .delta_t_k = 3});
+
+  ASSERT_TRUE(models && plain);
+  EXPECT_EQ(models->front().r75_m, plain->r75_m);
+  EXPECT_EQ(models->front().r75_ci95_m.low, plain->r75_ci95_m.low);
+}
+
+TEST(RangeModels, TheFormOfPChangesTheTtpRange) {
+  const auto asked = question("clear");
+  const auto first = ttp_ranges(sources(), asked, ProbabilityForm::ttp_2004);
+  const auto second = ttp_ranges(sources(), asked, ProbabilityForm::fixed_1_5);
+
+  // Without air V goes with 1 / R, so the ranges are as the x of the forms: 1.7650 and 2.0801.
+  EXPECT_NEAR(*first.r75_m / *second.r75_m, 2.0801 / 1.7650, 1e-4);
+  EXPECT_EQ(first.r50_m, second.r50_m);
+}
+
+TEST(RangeModels, UncertainAirWidensTheInterval) {
+  auto asked = question("tropical");
+  const auto certain = range_models(std::array{RangeModel::tod}, sources(), asked);
+  asked.extinction_u_percent = 20;
+  const auto uncertain = range_models(std::array{RangeModel::tod}, sources(), asked);
+
+  ASSERT_TRUE(certain && uncertain);
+  EXPECT_EQ(certain->front().r75_m, uncertain->front().r75_m);
+  EXPECT_LT(*uncertain->front().r75_ci95_m.low, *certain->front().r75_ci95_m.low);
+  EXPECT_GT(*uncertain->front().r75_ci95_m.high, *certain->front().r75_ci95_m.high);
+}
+
+TEST(RangeModels, WithoutSensorOrCurveSayWhy) {
+  const auto models = range_models(all_range_models, {.thresholds = {}}, question("clear"));
+
+  ASSERT_TRUE(models);
+  for (const auto& model : *models) {
+    EXPECT_FALSE(model.r75_m);
+    EXPECT_FALSE(model.reason.empty()) << model.name;
+  }
+}
+
+TEST(RangePage, HasTheFigureAndEveryModel) {
+  const auto models = range_models(all_range_models, sources(), question("midlatitude-summer"));
+  ASSERT_TRUE(models);
+
+  const auto svg = range_svg(*models);
+  const std::string page = render_html(range_page(*models, {.target = "4.9 m", .air = "some", .notes = {}}));
+
+  ASSERT_TRUE(svg) << svg.error().message;
+  EXPECT_THAT(*svg, HasSubstr("ACQUIRE"));
+  for (const char* word : {"TOD", "ACQUIRE", "TTP", "MTDP-like", "<svg"}) EXPECT_THAT(page, HasSubstr(word));
+  EXPECT_FALSE(range_svg(std::vector<ModelRange>{}));
+}
+
+TEST(Atmospheres, OfTheShippedTableAreThoseOfTheSheetOfFacts) {
+  struct Row {
+    const char* name;
+    double at_1_km, at_5_km;
+  };
+  // Three decimals, rural aerosol of 23 km, 7.5-13 um.
+  for (const auto& [name, at_1_km, at_5_km] :
+       {Row{"tropical", 0.546, 0.124}, Row{"midlatitude-summer", 0.644, 0.237}, Row{"us-standard", 0.798, 0.535},
+        Row{"midlatitude-winter", 0.842, 0.628}, Row{"subarctic-winter", 0.895, 0.743}}) {
+    const auto air = load_atmosphere(name, {});
+    ASSERT_TRUE(air) << air.error().message;
+    EXPECT_NEAR(air->air.at(1000).value(), at_1_km, 6e-4) << name;
+    EXPECT_NEAR(air->air.at(5000).value(), at_5_km, 6e-4) << name;
+  }
+}
+
+TEST(Atmospheres, EveryShippedTableCanBeRead) {
+  for (const auto& name : atmosphere_names()) {
+    for (const auto& haze : haze_names()) {
+      for (const SpectralBand band : {SpectralBand{7.5, 13}, {8, 12}, {8, 14}, {3, 5}}) {
+        const auto air = load_atmosphere(name, {.band = band, .haze = haze});
+        EXPECT_TRUE(air) << name << " " << haze << ": " << air.error().message;
+      }
+    }
+  }
+  EXPECT_FALSE(load_atmosphere("tropical", {.band = {1, 2}})) << "no band near";
+  EXPECT_FALSE(load_atmosphere("tropical", {.haze = "smoke"}));
+}
+
+TEST(Atmospheres, FromFilesAreReadOrRefusedWithTheirName) {
+  const TemporaryFolder folder;
+  const auto read = [&](const std::string& name, const std::string& content) {
+    return load_atmosphere(folder.write(name, content).string(), {});
+  };
+
+  const auto table = read("a.csv", "# mine\nrange_km,transmittance\n0.1,0.97\n1,0.8\n5,0.4\n");
+  ASSERT_TRUE(table) << table.error().message;
+  EXPECT_DOUBLE_EQ(table->air.at(1000).value(), 0.8);
+  const auto spectrum = read("s.csv", "wavelength_um,extinction_per_km\n8,0.3\n12,0.3\n");
+  ASSERT_TRUE(spectrum) << spectrum.error().message;
+  EXPECT_NEAR(spectrum->air.at(2000).value(), std::exp(-0.6), 1e-12);
+  for (const char* content : {"", "range_km,transmittance\n", "range_km,transmittance\n1,0.5\n0.5,0.7\n",
+                              "range_km,transmittance\n1,x\n", "km,tau\n1,0.5\n", "range_km,transmittance\n1,0.5,3\n",
+                              "range_km,transmittance\n-1,0.5\n2,0.4\n", "range_km,transmittance\n1,nan\n2,0.4\n"}) {
+    const auto refused = read("b.csv", content);
+    ASSERT_FALSE(refused) << content;
+    EXPECT_EQ(refused.error().code, ErrorCode::invalid_input);
+    EXPECT_THAT(refused.error().message, HasSubstr("b.csv"));
+  }
+  EXPECT_FALSE(read("tape7", "nothing of the kind\n"));
+  EXPECT_FALSE(load_atmosphere("./not-there.csv", {}));
+}
+
+}  // namespace
+}  // namespace todbench

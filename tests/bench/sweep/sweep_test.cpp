@@ -1,0 +1,311 @@
+// Sweeps: what tasks there are, where results go, what comes back.
+#include "bench/sweep/sweep.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <fstream>
+#include <map>
+#include <set>
+
+#include "bench/sweep/result_store.h"
+#include "bench/sweep/schedulers.h"
+#include "bench/sweep/sweep_effects.h"
+#include "bench/sweep/sweep_table.h"
+#include "bench/sweep/task_plan.h"
+#include "bench/text/files.h"
+#include "bench/text/text.h"
+#include "tests/support/temporary_folder.h"
+
+namespace todbench {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::TemporaryFolder;
+
+std::optional<double> nobody(std::string_view) {
+  return std::nullopt;
+}
+
+Sweep expanded(const std::string& text) {
+  auto file = parse_sweep(text, "/tmp/a.toml");
+  EXPECT_TRUE(file) << file.error().message;
+  auto sweep = Sweep::expand(*file, "", nobody);
+  EXPECT_TRUE(sweep) << sweep.error().message;
+  return *sweep;
+}
+
+std::vector<std::string> values_of(const Sweep& sweep, std::size_t index) {
+  std::vector<std::string> values;
+  for (const auto& parameter : sweep.task(index).parameters) values.push_back(parameter.value);
+  return values;
+}
+
+std::string refusal(const std::string& text) {
+  const auto file = parse_sweep(text, "a.toml");
+  if (!file) return file.error().message;
+  const auto sweep = Sweep::expand(*file, "", nobody);
+  return sweep ? "" : sweep.error().message;
+}
+
+TEST(SweepGrid, IsAFullFactorialInTheOrderOfTheFileWithTheLastKeyFastest) {
+  const Sweep sweep =
+      expanded("[grid]\nz = [1, 2]\na = { from = 0, to = 1, steps = 3 }\nword = [\"x\", \"y\"]\n[repeat]\nseeds = 2\n");
+
+  ASSERT_EQ(sweep.count(), 24u);
+  EXPECT_EQ(values_of(sweep, 0), (std::vector<std::string>{"1", "0", "x"}));
+  EXPECT_EQ(values_of(sweep, 1), values_of(sweep, 0)) << "repeats are fastest";
+  EXPECT_EQ(values_of(sweep, 2), (std::vector<std::string>{"1", "0", "y"}));
+  EXPECT_EQ(values_of(sweep, 4), (std::vector<std::string>{"1", "0.5", "x"}));
+  EXPECT_EQ(values_of(sweep, 23), (std::vector<std::string>{"2", "1", "y"}));
+}
+
+TEST(SweepSeeds, DependOnContentAndNotOnTheIndex) {
+  const Sweep before = expanded("[grid]\na = [1, 2]\nb = [5]\n[repeat]\nseeds = 2\n");
+  const Sweep after = expanded("[grid]\nb = [4, 5]\na = [3, 1, 2]\n[repeat]\nseeds = 2\n");
+  const auto seeds_of = [](const Sweep& sweep) {
+    std::map<std::string, std::uint64_t> seeds;
+    for (std::size_t i = 0; i < sweep.count(); ++i) {
+      std::map<std::string, std::string> values;
+      for (const auto& [key, value] : sweep.task(i).parameters) values[key] = value;
+      seeds[values["a"] + "," + values["b"] + "," + std::to_string(sweep.task(i).repeat)] = sweep.task(i).seed;
+    }
+    return seeds;
+  };
+
+  const auto old_seeds = seeds_of(before), new_seeds = seeds_of(after);
+
+  for (const auto& [key, seed] : old_seeds) EXPECT_EQ(new_seeds.at(key), seed) << key;
+  std::set<std::uint64_t> different;
+  for (const auto& [key, seed] : new_seeds) different.insert(seed);
+  EXPECT_EQ(different.size(), new_seeds.size());
+}
+
+TEST(SweepSeeds, OfAPairedSweepDependOnTheRepeatAlone) {
+  const Sweep sweep = expanded("paired = true\n[grid]\na = [1, 2]\n[repeat]\nseeds = 2\n");
+
+  EXPECT_EQ(sweep.task(0).seed, sweep.task(2).seed);
+  EXPECT_NE(sweep.task(0).seed, sweep.task(1).seed);
+  EXPECT_NE(sweep.task(0).name.substr(8), sweep.task(2).name.substr(8));
+}
+
+TEST(SweepZip, TakesItsListsTogether) {
+  const Sweep sweep = expanded("[zip]\na = [1, 2]\nb = [10, 20]\n[grid]\nc = [0, 1]\n");
+
+  ASSERT_EQ(sweep.count(), 4u);
+  EXPECT_EQ(values_of(sweep, 1), (std::vector<std::string>{"0", "2", "20"}));
+}
+
+TEST(SweepSample, OfALatinHypercubeHasOneDrawInEveryRowAndColumn) {
+  for (const std::size_t n : {1u, 7u, 64u}) {
+    const auto rows = unit_sample(SampleKind::latin_hypercube, n, 3, 5);
+    for (std::size_t d = 0; d < 3; ++d) {
+      std::set<std::size_t> cells;
+      for (const auto& row : rows) cells.insert(static_cast<std::size_t>(row[d] * static_cast<double>(n)));
+      EXPECT_EQ(cells.size(), n);
+    }
+  }
+}
+
+TEST(SweepSample, OfSobolFillsTheCubeMoreEvenlyThanChance) {
+  const std::size_t n = 1024;
+  const auto rows = unit_sample(SampleKind::sobol, n, 4, 9);
+
+  // The mean of x y over the square is 1/4; of so many independent draws its standard error is sqrt(7/144 / n) =
+  // 0.0069.
+  double sum = 0;
+  for (const auto& row : rows) sum += row[1] * row[3] / static_cast<double>(n);
+  EXPECT_NEAR(sum, 0.25, 0.0069 / 5);
+}
+
+TEST(SweepConstraint, DecidesWhichCombinationsThereAre) {
+  const Sweep sweep =
+      expanded("where = \"a <= b and (a + 1) * 2 != 4 or a == 9\"\n[grid]\na = [1, 2, 9]\nb = [2, 3]\n");
+
+  EXPECT_EQ(sweep.count(), 4u);
+  EXPECT_EQ(sweep.refused(), 2u);
+  EXPECT_EQ(values_of(sweep, 0), (std::vector<std::string>{"2", "2"}));
+}
+
+TEST(SweepFile, IsRefusedInASentenceWithTheLine) {
+  EXPECT_THAT(refusal("[grid]\na = 3\n"), HasSubstr("a.toml:2: expected a list of values"));
+  EXPECT_THAT(refusal("[grid]\na = [1, 1.0]\n"), HasSubstr("twice"));
+  EXPECT_THAT(refusal("[grid]\na = [1]\n[base]\na = 2\n"), HasSubstr("stated twice"));
+  EXPECT_THAT(refusal("[zip]\na = [1, 2]\nb = [1]\n"), HasSubstr("one length"));
+  EXPECT_THAT(refusal("[gird]\na = [1]\n"), HasSubstr("did you mean 'grid'"));
+  EXPECT_THAT(refusal("[repeat]\nseeds = 0\n"), HasSubstr("expected a whole number from 1"));
+  EXPECT_THAT(refusal("[sample]\nn = 3\nranges = { a = [2, 1] }\n"), HasSubstr("low below high"));
+  EXPECT_THAT(refusal("where = \"a <\"\n[grid]\na = [1]\n"), HasSubstr("expected a name or a number"));
+  EXPECT_THAT(refusal("where = \"c < 1\"\n[grid]\na = [1]\n"), HasSubstr("'c' is no number"));
+  EXPECT_THAT(refusal("where = \"a > 1\"\n[grid]\na = [1]\n"), HasSubstr("every combination is refused"));
+  EXPECT_THAT(refusal("[grid]\na = { from = 0, to = 1, steps = 1 }\n"), HasSubstr("steps"));
+  EXPECT_THAT(refusal("[grid\n"), HasSubstr("a.toml:1"));
+  std::string deep(10000, '(');
+  EXPECT_THAT(refusal("where = \"" + deep + "\"\n[grid]\na = [1]\n"), HasSubstr("too many parentheses"));
+  std::string wide = "[grid]\n";
+  for (char c = 'a'; c < 'k'; ++c) wide += std::string(1, c) + " = { from = 0, to = 1, steps = 10 }\n";
+  EXPECT_THAT(refusal(wide), HasSubstr("more than"));
+}
+
+TEST(Schedulers, CoverEveryTaskOnce) {
+  const JobList jobs{.program = "todbench", .sweep_file = "my sweep.toml", .tasks = 7, .chunk = 3};
+
+  EXPECT_EQ(job_text(Scheduler::parallel, jobs, {}),
+            "todbench sweep run 'my sweep.toml' --quiet --range 0-2\n"
+            "todbench sweep run 'my sweep.toml' --quiet --range 3-5\n"
+            "todbench sweep run 'my sweep.toml' --quiet --range 6-6\n");
+  EXPECT_THAT(job_text(Scheduler::slurm, jobs, {"--partition=short"}),
+              ::testing::AllOf(HasSubstr("#SBATCH --array=0-2\n"), HasSubstr("#SBATCH --partition=short\n"),
+                               HasSubstr("--chunk 3")));
+  EXPECT_THAT(job_text(Scheduler::gridengine, jobs, {}), HasSubstr("#$ -t 1-3\n"));
+  EXPECT_THAT(job_text(Scheduler::snakemake, jobs, {}), HasSubstr("range(3)"));
+  EXPECT_THAT(job_text(Scheduler::make, jobs, {}), HasSubstr("seq 0 2"));
+  EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
+  EXPECT_FALSE(site_options_from("rm -rf /\n", "site"));
+  EXPECT_EQ(site_options_from("# of us\n\n --time=10 \n", "site").value(), std::vector<std::string>{"--time=10"});
+}
+
+/// A sweep whose tasks take milliseconds: draft estimates of one contrast.
+RunnableSweep quick_sweep(const TemporaryFolder& folder, const std::string& more = "") {
+  folder.write("s.toml", "kind = \"estimate\"\nwhere = \"detector_um <= pitch_um\"\n" + more +
+                             "[base]\naccuracy = \"draft\"\ndelta_t_k = [16.9]\n[grid]\nnetd_k = [0.07, 0.4]\n"
+                             "detector_um = [30, 42.5]\n[repeat]\nseeds = 2\n");
+  auto sweep = load_sweep(folder.path() / "s.toml");
+  EXPECT_TRUE(sweep) << sweep.error().message;
+  return *sweep;
+}
+
+TEST(SweepRun, IsIdempotentAndTheTableIsTheSameInAnyOrder) {
+  const TemporaryFolder one, two;
+  const RunnableSweep forwards = quick_sweep(one), backwards = quick_sweep(two);
+  ASSERT_EQ(forwards.sweep.count(), 8u);
+
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(run_and_store(forwards, i, {}).kind, TaskOutcome::Kind::done);
+  for (std::size_t i = 8; i-- > 0;) EXPECT_EQ(run_and_store(backwards, i, {}).kind, TaskOutcome::Kind::done);
+
+  EXPECT_EQ(run_and_store(forwards, 3, {}).kind, TaskOutcome::Kind::already_done);
+  const auto a = collected(forwards.sweep, MissingTasks::refused),
+             b = collected(backwards.sweep, MissingTasks::refused);
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(to_csv(*a), to_csv(*b));
+  EXPECT_EQ(a->rows.size(), 8u);
+  ASSERT_TRUE(write_sqlite(*a, one.path() / "t.sqlite"));
+  EXPECT_TRUE(std::filesystem::exists(one.path() / "t.sqlite"));
+  const auto effects = sweep_effects(forwards.sweep, *a, "acuity_per_mrad");
+  ASSERT_EQ(effects.size(), 1u);
+  // More noise costs acuity.
+  const auto& netd = effects[0].parameters[0];
+  EXPECT_GT(netd.levels[0].mean, netd.levels[1].mean);
+  EXPECT_TRUE(netd.first_order && netd.total && netd.first_order_ci95.low);
+}
+
+TEST(SweepStatus, TellsWhatIsDoneMissingStaleAndForeign) {
+  const TemporaryFolder folder;
+  const RunnableSweep runnable = quick_sweep(folder);
+  ASSERT_EQ(run_and_store(runnable, 2, {}).kind, TaskOutcome::Kind::done);
+  const auto place = [&](std::size_t i, const char* ending) {
+    return result_file(runnable.sweep, runnable.sweep.task(i)).replace_extension(ending);
+  };
+  std::ofstream(place(4, ".lock")) << "a-host-that-is-not-this-one\n1\n";
+  std::ofstream(place(5, ".failed")) << "no such sensor\n";
+  // No process has this number: it is above the largest that the kernel gives.
+  std::array<char, 256> host{};
+  ASSERT_EQ(::gethostname(host.data(), host.size() - 1), 0);
+  std::ofstream(place(6, ".lock")) << host.data() << "\n99999999\n";
+
+  const SweepStatus status = sweep_status(runnable.sweep);
+
+  EXPECT_EQ(status.count(TaskState::done), 1u);
+  EXPECT_EQ(status.states[4], TaskState::running);
+  EXPECT_EQ(status.states[5], TaskState::failed);
+  EXPECT_EQ(status.states[6], TaskState::stale);
+  EXPECT_EQ(status.open_list(), "0-1,3-7");
+  EXPECT_EQ(failure_of(runnable.sweep, 5), "no such sensor");
+  EXPECT_EQ(run_and_store(runnable, 4, {}).kind, TaskOutcome::Kind::locked);
+  EXPECT_EQ(run_and_store(runnable, 6, {}).kind, TaskOutcome::Kind::done) << "a stale lock is no lock";
+  const auto refused = collected(runnable.sweep, MissingTasks::refused);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::not_identifiable);
+  EXPECT_EQ(collected(runnable.sweep, MissingTasks::left_out)->rows.size(), 2u);
+
+  const RunnableSweep other = quick_sweep(folder, "seed = 7\n");
+  EXPECT_EQ(sweep_status(other.sweep).states[2], TaskState::foreign);
+  EXPECT_EQ(run_and_store(other, 2, {}).kind, TaskOutcome::Kind::failed);
+  EXPECT_FALSE(collected(other.sweep, MissingTasks::left_out));
+}
+
+TEST(SweepCollect, RefusesResultsOfSeveralVersions) {
+  const TemporaryFolder folder;
+  const RunnableSweep runnable = quick_sweep(folder);
+  for (std::size_t i = 0; i < 2; ++i) ASSERT_EQ(run_and_store(runnable, i, {}).kind, TaskOutcome::Kind::done);
+  const auto file = result_file(runnable.sweep, runnable.sweep.task(1));
+  std::string text = *read_text_file(file);
+  const auto place = text.find("\"version\": \"");
+  ASSERT_NE(place, std::string::npos);
+  text.insert(place + 12, "9");
+  ASSERT_TRUE(write_file_atomically(file, text));
+
+  const auto table = collected(runnable.sweep, MissingTasks::left_out);
+
+  ASSERT_FALSE(table);
+  EXPECT_THAT(table.error().message, HasSubstr("several versions"));
+}
+
+TEST(SweepEffects, OfAnAdditiveResponseAreItsSharesOfVariance) {
+  const Sweep sweep = expanded("[grid]\na = [0, 1]\nb = [0, 1]\n[repeat]\nseeds = 3\n");
+  SweepTable table;
+  table.columns = {"a", "b", "repeat", "y"};
+  for (int repeat = 0; repeat < 3; ++repeat) {
+    for (const int a : {0, 1}) {
+      for (const int b : {0, 1}) table.rows.push_back({a, b, repeat, 3.0 * a + 1.0 * b});
+    }
+  }
+
+  const auto effects = sweep_effects(sweep, table, "y");
+
+  ASSERT_EQ(effects.size(), 1u);
+  // Variances 9/4 and 1/4 of 10/4; without interactions the total is the first order.
+  EXPECT_NEAR(effects[0].parameters[0].first_order.value(), 0.9, 1e-12);
+  EXPECT_NEAR(effects[0].parameters[1].first_order.value(), 0.1, 1e-12);
+  EXPECT_NEAR(effects[0].parameters[0].total.value(), 0.9, 1e-12);
+  EXPECT_NEAR(effects[0].parameters[0].levels[1].mean, 3.5, 1e-12);
+  EXPECT_NEAR(effects[0].parameters[0].levels[1].ci95.low.value(), 3.5, 1e-12);
+}
+
+TEST(SweepEffects, OfADrawnSampleComeFromClasses) {
+  const Sweep sweep = expanded("[sample]\nkind = \"sobol\"\nn = 512\nranges = { a = [0, 1], b = [0, 1] }\n");
+  SweepTable table;
+  table.columns = {"a", "b", "repeat", "y"};
+  for (std::size_t i = 0; i < sweep.count(); ++i) {
+    const auto values = values_of(sweep, i);
+    const double a = *parse_number(values[0]), b = *parse_number(values[1]);
+    table.rows.push_back({a, b, 0, 2 * a + b});
+  }
+
+  const auto effects = sweep_effects(sweep, table, "y");
+
+  // Shares 4/5 and 1/5; sixteen classes leave 1/256 of a's own variance within them.
+  EXPECT_NEAR(effects[0].parameters[0].first_order.value(), 0.8, 0.02);
+  EXPECT_NEAR(effects[0].parameters[1].first_order.value(), 0.2, 0.02);
+}
+
+TEST(LoadSweep, RefusesUnknownKeysAndValuesBeforeAnythingRuns) {
+  const TemporaryFolder folder;
+  const auto refused = [&](const std::string& text) {
+    folder.write("s.toml", text);
+    const auto sweep = load_sweep(folder.path() / "s.toml");
+    return sweep ? std::string("taken") : sweep.error().message;
+  };
+
+  EXPECT_THAT(refused("[grid]\nnetd = [0.05]\n"), HasSubstr("unknown parameter 'netd'"));
+  EXPECT_THAT(refused("[grid]\nnetd_k = [0.05, -1]\n"), HasSubstr("netd_k"));
+  EXPECT_THAT(refused("[base]\nobserver = \"nobody\"\n"), HasSubstr("unknown observer"));
+  EXPECT_THAT(refused("[base]\naccuracy = \"best\"\n"), HasSubstr("accuracy"));
+  EXPECT_EQ(refused("[base]\nsimulation.accuracy = \"draft\"\n[grid]\nsensor = [\"sc2000\"]\nnetd_k = [0.05]\n"),
+            "taken");
+}
+
+}  // namespace
+}  // namespace todbench

@@ -1,0 +1,67 @@
+// Test pictures for projectors, monitors and visible cameras: polygons whose truth is known, drawn by exact area.
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <variant>
+#include <vector>
+
+#include "acquisition/core/result.h"
+#include "hvs/shape/polygon.h"
+#include "tod/plate/target_plate.h"
+
+namespace todbench {
+
+/// Rows of four triangles, each orientation once a row, in an order that the seed draws; places differ in sub-pixel
+/// phase.
+struct TodPicture {
+  std::vector<double> sizes_px;  ///< square roots of area, one row each; empty: as many as fit, falling by 1.205
+  std::uint64_t seed = 1;
+};
+/// Groups of four bars, 7 : 1, upright and lying, one pair for each frequency.
+struct MrtdPicture {
+  std::vector<double> frequencies_per_px{0.05, 0.1, 0.2, 0.3, 0.4, 0.5};
+};
+/// A straight edge through the middle, turned from the vertical; dark to the left.
+struct EdgePicture {
+  double angle_deg = 5;
+};
+/// Brighter to the right; a pixel has the level of its centre, which is its mean.
+struct RampPicture {};
+/// Wedges round the middle out to the nearest border, straight at their outer ends; the first begins to the right.
+struct SiemensPicture {
+  int spokes = 36;
+};
+struct FlatPicture {
+  double level = 0.5;
+};
+using PictureKind = std::variant<TodPicture, MrtdPicture, EdgePicture, RampPicture, SiemensPicture, FlatPicture>;
+
+struct PictureRequest {
+  cv::Size size;
+  double low = 0, high = 1;  ///< levels of ground and pattern, 0 to 1
+  PictureKind kind;
+};
+
+/// One group of bars, as a truth: `x_px`, `y_px` its middle from the picture's upper left corner.
+struct BarGroup {
+  double frequency_per_px = 0, x_px = 0, y_px = 0;
+  bool upright = true;  ///< the bars are parallel to y
+};
+
+/// A picture with what is in it.
+struct TestPicture {
+  cv::Mat1d levels;   ///< 0 to 1
+  TargetPlate plate;  ///< of a TOD picture: one pixel is 1 mm, the origin is the middle
+  std::vector<BarGroup> bars;
+};
+
+/// `invalid_input` in one sentence: a size that holds no pattern, levels that are none, a triangle that does not fit.
+[[nodiscard]] Result<TestPicture> drawn_picture(const PictureRequest& request);
+
+/// The polygon of a triangle of the plate in pixels from the upper left corner.
+[[nodiscard]] Polygon outline_px(const PlateTriangle& triangle, cv::Size size);
+/// The four bars of a group.
+[[nodiscard]] std::vector<Polygon> outlines_px(const BarGroup& group);
+
+}  // namespace todbench

@@ -1,0 +1,135 @@
+#include "tod/range/criterion_range.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace todbench {
+namespace {
+
+/// Geometric bisection between a range where the ratio is above `wanted` and one where it is at most that or unknown.
+double bisected(const std::function<std::optional<double>(double)>& ratio, double wanted, double inside,
+                double outside) {
+  for (int i = 0; i < 200; ++i) {
+    const double middle = std::sqrt(inside) * std::sqrt(outside);
+    if (!(middle > inside && middle < outside)) break;
+    const auto x = ratio(middle);
+    (x && *x > wanted ? inside : outside) = middle;
+  }
+  return std::sqrt(inside) * std::sqrt(outside);
+}
+
+}  // namespace
+
+ResolvedPerMrad resolved_cycles(LogLinearCurve curve) {
+  return [curve = std::move(curve)](double contrast) { return curve.highest_frequency_at(contrast); };
+}
+
+ResolvedPerMrad resolved_cycles(LogLinearCurve horizontal, LogLinearCurve vertical) {
+  return [h = std::move(horizontal), v = std::move(vertical)](double contrast) -> std::optional<double> {
+    const auto f_h = h.highest_frequency_at(contrast), f_v = v.highest_frequency_at(contrast);
+    if (!f_h || !f_v) return std::nullopt;
+    return std::sqrt(*f_h * *f_v);
+  };
+}
+
+ResolvedPerMrad resolved_values(LogLinearCurve ctf) {
+  return
+      [ctf = std::move(ctf)](double contrast) -> std::optional<double> { return ctf.root_excess_integral(contrast); };
+}
+
+Result<LogLinearCurve> geometric_mean(const LogLinearCurve& horizontal, const LogLinearCurve& vertical) {
+  std::vector<double> frequencies;
+  for (const auto& point : horizontal.points()) frequencies.push_back(point.frequency);
+  for (const auto& point : vertical.points()) frequencies.push_back(point.frequency);
+  std::sort(frequencies.begin(), frequencies.end());
+  frequencies.erase(std::unique(frequencies.begin(), frequencies.end()), frequencies.end());
+  std::vector<CurvePoint> points;
+  for (const double f : frequencies) {
+    const auto h = horizontal.at(f), v = vertical.at(f);
+    if (h && v) points.push_back({f, std::sqrt(*h) * std::sqrt(*v)});
+  }
+  if (points.size() < 2) return fail(ErrorCode::invalid_input, "the two curves have no frequencies in common");
+  return LogLinearCurve::of(points, "mean");
+}
+
+std::string_view to_string(DominantLimit limit) {
+  return limit == DominantLimit::contrast ? "contrast" : "resolution";
+}
+
+std::optional<RangeSensitivity> sensitivity_of(
+    const std::function<std::optional<double>(double size_factor, double contrast_factor)>& range) {
+  constexpr double step = 0.01;
+  // Less of it: a range beyond the end of a table is not needed, nor a contrast above the highest of a curve.
+  const auto here = range(1, 1), smaller = range(std::exp(-step), 1), fainter = range(1, std::exp(-step));
+  if (!here || !smaller || !fainter) return std::nullopt;
+  return RangeSensitivity{std::log(*here / *smaller) / step, std::log(*here / *fainter) / step};
+}
+
+std::optional<double> criterion_ratio(const ResolvedPerMrad& resolved, const CriterionTarget& target,
+                                      const Transmittance& air, const Criterion& criterion, double range_m) {
+  const auto transmittance = air.at(range_m);
+  if (!transmittance) return std::nullopt;
+  const auto per_mrad = resolved(target.contrast * *transmittance);
+  if (!per_mrad) return std::nullopt;
+  return 1000 * target.size_m / range_m * *per_mrad / criterion.at_half;
+}
+
+namespace {
+
+CriterionRange found_range(const ResolvedPerMrad& resolved, const CriterionTarget& target, const Transmittance& air,
+                           const Criterion& criterion, double wanted) {
+  const auto ratio = [&](double range_m) { return criterion_ratio(resolved, target, air, criterion, range_m); };
+  CriterionRange found;
+  const auto best = resolved(target.contrast);
+  if (!best || *best <= 0) {
+    found.reason =
+        fmt::format("the target's contrast of {:g} lies below the lowest that the curve knows", target.contrast);
+    return found;
+  }
+  // Without air the range would be this; air can only shorten it.
+  const double farthest = 1000 * target.size_m * *best / (criterion.at_half * wanted);
+  const double end = std::min(farthest, air.end_m());
+  if (const auto at_end = ratio(end); at_end && *at_end > wanted * (1 + 1e-12)) {
+    found.at_least_m = end;
+    found.reason = fmt::format(
+        "the table of transmittances ends at {:g} m, where the criterion is still exceeded; the range is at least that",
+        end);
+    return found;
+  }
+  double inside = end;
+  for (int i = 0; i < 1100; ++i) {
+    inside /= 2;
+    if (const auto x = ratio(inside); x && *x > wanted) break;
+  }
+  const double crossing = bisected(ratio, wanted, inside, end * (1 + 1e-12));
+  // Where the curve ends before the criterion is met: what lies below its lowest point is not known.
+  if (const auto before = ratio(crossing * (1 - 1e-9)); !before || *before > wanted * (1 + 1e-6)) {
+    found.at_least_m = crossing;
+    found.reason = fmt::format(
+        "the apparent contrast falls below the lowest that the curve knows at {:.4g} m, where the criterion is still "
+        "exceeded; the range is at least that",
+        crossing);
+    return found;
+  }
+  found.range_m = crossing;
+  return found;
+}
+
+}  // namespace
+
+CriterionRange range_for_probability(const ResolvedPerMrad& resolved, const CriterionTarget& target,
+                                     const Transmittance& air, const Criterion& criterion, double probability) {
+  const double wanted = ratio_for_probability(criterion.form, probability);
+  CriterionRange found = found_range(resolved, target, air, criterion, wanted);
+  if (!found.range_m) return found;
+  found.sensitivity = sensitivity_of([&](double size_factor, double contrast_factor) {
+    const CriterionTarget changed{target.size_m * size_factor, target.contrast * contrast_factor};
+    return found_range(resolved, changed, air, criterion, wanted).range_m;
+  });
+  return found;
+}
+
+}  // namespace todbench

@@ -1,0 +1,38 @@
+// The answer of one range model, as every page and program shows it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tod/psychometric/psychometric_fit.h"
+#include "tod/range/criterion_range.h"
+
+namespace todbench {
+
+struct ModelRangePoint {
+  double range_m = 0;
+  std::optional<double> probability;
+};
+
+struct ModelRange {
+  std::string name;       ///< "tod", "acquire", "ttp", "mtdp"
+  std::string title;      ///< "TOD"
+  std::string criterion;  ///< name of the number: "M75", "N50", "V50"
+  double criterion_value = 0;
+  std::string probability_form;  ///< by name
+  std::string reads;             ///< what the model reads, and where it is from: a sentence
+  std::optional<double> r50_m{}, r75_m{};
+  Interval r75_ci95_m{};  ///< of the curve and the air; open where nothing is known
+  std::optional<RangeSensitivity> sensitivity{};
+  std::string reason{};              ///< why there is no r75_m; else empty
+  std::vector<std::string> notes{};  ///< assumptions that this model needed
+  std::vector<ModelRangePoint> curve{};
+
+  /// Where there is no range the contrast was lost, or the air is not known.
+  [[nodiscard]] std::optional<DominantLimit> dominant() const {
+    return sensitivity ? std::optional(sensitivity->dominant()) : std::nullopt;
+  }
+};
+
+}  // namespace todbench

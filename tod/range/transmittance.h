@@ -1,0 +1,54 @@
+// How much of a contrast is left behind so much air: by a table, by a spectrum, or by one coefficient.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "acquisition/core/result.h"
+
+namespace todbench {
+
+/// One row of a table, for a horizontal path.
+struct TransmittancePoint {
+  double range_m = 0;        ///< >= 0
+  double transmittance = 1;  ///< 0 to 1
+};
+
+/// Band transmittance by range. Averaged over a band it is no exponential: strong lines are used up first and the
+/// effective extinction -ln(tau) / R falls with range. Immutable, thread-safe.
+class Transmittance {
+ public:
+  /// exp(-K R).
+  [[nodiscard]] static Transmittance beer_lambert(double extinction_per_km);
+  /// Rows with range increasing and transmittance not increasing; a row at 0 m has 1. Between rows ln(-ln tau) is
+  /// linear in ln R, and so it goes on below the first row towards tau = 1; where a row has exactly 1, -ln tau is
+  /// linear in R. Rows below 1e-8 are dropped: programs have a floor of their own there. Nothing is known beyond the
+  /// last row. `invalid_input` in one sentence: no rows, fewer than two above 0 m that can be used, unsorted or
+  /// repeated ranges, a transmittance outside 0 to 1 or one that increases.
+  [[nodiscard]] static Result<Transmittance> of_table(std::span<const TransmittancePoint> rows);
+  /// The mean of exp(-k_i R) with weights: Beer and Lambert at every wavelength. Exact at every range. Preconditions:
+  /// as many weights as extinctions, at least one; weights >= 0 and not all 0, extinctions >= 0, all finite.
+  [[nodiscard]] static Transmittance of_spectrum(std::vector<double> weights, std::vector<double> extinction_per_km);
+
+  /// -ln tau; nothing beyond end_m(). Precondition: range_m >= 0.
+  [[nodiscard]] std::optional<double> optical_depth(double range_m) const;
+  /// tau; nothing beyond end_m().
+  [[nodiscard]] std::optional<double> at(double range_m) const;
+  /// The last range that the table knows; infinite without a table.
+  [[nodiscard]] double end_m() const;
+  /// The same air with every optical depth multiplied: what an error of the extinction does. Precondition: factor >= 0.
+  [[nodiscard]] Transmittance with_depth_times(double factor) const;
+
+ private:
+  struct Row {
+    double range_m = 0, depth = 0;
+  };
+  Transmittance() = default;
+  [[nodiscard]] double table_depth(double range_m) const;
+  std::vector<Row> rows_;  ///< empty: the spectrum
+  std::vector<double> weights_, extinction_per_km_;
+  double factor_ = 1;
+};
+
+}  // namespace todbench
