@@ -130,6 +130,10 @@ int run(int argc, char** argv) {
   add_render_command(app, program);
   add_mtf_command(app, program);
   add_noise_command(app, program);
+  add_sfr_command(app, program);
+  add_sitf_command(app, program);
+  add_conformity_command(app, program);
+  add_budget_command(app, program);
   add_range_command(app, program);
   add_reproduce_command(app, program);
   try {

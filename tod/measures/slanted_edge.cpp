@@ -56,7 +56,9 @@ Result<Upright> upright(const cv::Mat1d& picture, const SlantedEdgeOptions& opti
   if (out.axis == EdgeAxis::y) p = p.t();
   const bool falls = mean_of(p.colRange(p.cols / 2, p.cols)) < mean_of(p.colRange(0, p.cols / 2));
   out.picture = falls ? cv::Mat1d((high - low) - p) : p;
-  out.count_step = options.highest_count ? 1 : 0;
+  const bool counts =
+      std::all_of(picture.begin(), picture.end(), [](double value) { return value == std::round(value); });
+  out.count_step = counts ? 1 : 0;
   return out;
 }
 

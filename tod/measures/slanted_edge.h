@@ -19,9 +19,7 @@ enum class EdgeAxis {
 [[nodiscard]] std::string_view to_string(EdgeAxis axis);
 
 struct SlantedEdgeOptions {
-  std::optional<EdgeAxis> axis{};         ///< nothing: across the edge that is there
-  std::optional<double> lowest_count{};   ///< of a picture of counts: what they cannot go below
-  std::optional<double> highest_count{};  ///< and above
+  std::optional<EdgeAxis> axis{};  ///< nothing: across the edge that is there
 };
 
 /// The MTF along the normal of an edge.

@@ -28,6 +28,13 @@ double squares_in_time(const std::vector<double>& values, std::size_t width) {
   return sum;
 }
 
+/// Sum of squares of the difference of the last two frames, of which `values` holds `width` numbers each.
+double step_squares(const std::vector<double>& values, std::size_t width) {
+  double sum = 0;
+  for (std::size_t i = values.size() - width; i < values.size(); ++i) sum += std::pow(values[i] - values[i - width], 2);
+  return sum;
+}
+
 /// Sums of squares of the fixed components: of the picture that is the mean of all frames.
 struct FixedSquares {
   double v = 0, h = 0, vh = 0;
@@ -154,6 +161,7 @@ Result<void> NoiseCube::add_frame(const cv::Mat_<Pixel>& frame) {
   if (frames_ == 0) {
     frame.convertTo(first_, CV_64F);
     change_ = cv::Mat1d::zeros(frame.size());
+    last_ = cv::Mat1d::zeros(frame.size());
   }
   if (frame.size() != first_.size()) return fail(ErrorCode::invalid_input, "frames of different sizes");
   const int rows = frame.rows, columns = frame.cols;
@@ -173,21 +181,32 @@ Result<void> NoiseCube::add_frame(const cv::Mat_<Pixel>& frame) {
   }
   if (!std::isfinite(sum)) return fail(ErrorCode::invalid_input, "a frame holds a value that is no number");
   const double mean = sum / (static_cast<double>(rows) * columns);
+  double steps = 0;
   for (int y = 0; y < rows; ++y) {
     const Pixel* value = frame[y];
     const double* reference = first_[y];
     double* total = change_[y];
-    double squares = 0;
+    double* last = last_[y];
+    double squares = 0, step_squares = 0;
     for (int x = 0; x < columns; ++x) {
       const double change = static_cast<double>(value[x]) - reference[x] - mean;
+      const double step = change - last[x];
       total[x] += change;
       squares += change * change;
+      step_squares += step * step;
+      last[x] = change;
     }
     squares_ += squares;
+    steps += step_squares;
   }
   frame_means_.push_back(mean);
   for (const double of_row : row_sums) row_means_.push_back(of_row / columns - mean);
   for (const double of_column : column_sums) column_means_.push_back(of_column / rows - mean);
+  if (frames_ > 0) {
+    const double in_rows = columns * step_squares(row_means_, static_cast<std::size_t>(rows));
+    const double in_columns = rows * step_squares(column_means_, static_cast<std::size_t>(columns));
+    steps_.push_back(std::max(0.0, steps - in_rows - in_columns) / ((rows - 1.0) * (columns - 1.0)));
+  }
   ++frames_;
   return {};
 }
@@ -226,6 +245,22 @@ Result<NoiseTable> NoiseCube::table() const {
   squares[tvh] = std::max(0.0, in_time - s_tv - s_th);
   for (const NoiseComponent component : noise_components) squares[component] /= freedom[component];
   return table;
+}
+
+std::optional<int> NoiseCube::abrupt_change() const {
+  if (frames_ < 5 || first_.rows < 2 || first_.cols < 2) return std::nullopt;
+  std::vector<double> sorted = steps_;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  if (!(*middle > 0)) return std::nullopt;
+  constexpr double least_ratio = 1.69, by_chance = 1e-9;  // 1.3 times the difference
+  const double freedom = (first_.rows - 1.0) * (first_.cols - 1.0);
+  const boost::math::fisher_f ratios(freedom, freedom);
+  for (std::size_t k = 0; k < steps_.size(); ++k) {
+    const double ratio = steps_[k] / *middle;
+    if (ratio > least_ratio && cdf(complement(ratios, ratio)) < by_chance / frames_) return static_cast<int>(k) + 1;
+  }
+  return std::nullopt;
 }
 
 double ThreeDNoise::temporal() const {

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -11,10 +12,13 @@
 
 namespace todbench::test {
 
-/// The cases of tests/golden/measures/NAME.json.
-[[nodiscard]] inline nlohmann::json reference_cases(const std::string& name) {
+/// The cases under one key of tests/golden/measures/NAME.json; by value, so that a loop over it holds it. Throws where
+/// there are none: a test over nothing would pass.
+[[nodiscard]] inline nlohmann::json reference_cases(const std::string& name, const std::string& key) {
   std::ifstream file(source_file("tests/golden/measures/" + name + ".json"));
-  return nlohmann::json::parse(file)["cases"];
+  nlohmann::json cases = nlohmann::json::parse(file).at("cases").at(key);
+  if (cases.empty()) throw std::runtime_error("no reference cases");
+  return cases;
 }
 
 /// A cube that is flattened frame by frame, row by row.

@@ -33,7 +33,7 @@ EdgePicture picture_of(const nlohmann::json& reference) {
 }
 
 TEST(EdgePicture, HasThePixelsAndTheMtfOfTheReference) {
-  for (const auto& reference : test::reference_cases("edge")["edges"]) {
+  for (const auto& reference : test::reference_cases("edge", "edges")) {
     const EdgePicture made = picture_of(reference);
     const cv::Mat1d picture = made.picture();
     const auto& pixels = reference["pixels_rows_0_39_79_columns_17_to_23"];
@@ -48,7 +48,7 @@ TEST(EdgePicture, HasThePixelsAndTheMtfOfTheReference) {
 }
 
 TEST(SlantedEdge, FindsTheMtfOfTheReferenceWithinAThousandth) {
-  for (const auto& reference : test::reference_cases("edge")["edges"]) {
+  for (const auto& reference : test::reference_cases("edge", "edges")) {
     const EdgePicture made = picture_of(reference);
 
     const auto edge = slanted_edge(made.picture(), {}).value();
@@ -186,7 +186,7 @@ TEST(SlantedEdge, TakesRoundedPicturesForWhatTheyAre) {
     cv::Mat1d picture = 200 * made.picture() + 20;
     for (double& value : picture) value = std::round(value);
 
-    const auto edge = slanted_edge(picture, {.lowest_count = 0, .highest_count = 255}).value();
+    const auto edge = slanted_edge(picture, {}).value();
 
     // A step of 200 counts is rounded to 0.3/200 of itself.
     EXPECT_LT(error_of(edge, made, 0.5), 0.006) << blur;

@@ -4,9 +4,10 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 
-#include "acquisition/core/rng.h"
 #include "tests/tod/measures/measures_reference.h"
+#include "tests/tod/measures/simulated_cube.h"
 
 namespace todbench {
 namespace {
@@ -21,7 +22,7 @@ NoiseTable table_of(const std::vector<cv::Mat_<Pixel>>& frames) {
 }
 
 TEST(NoiseCube, GivesMeanSquaresSignedVariancesAndFTestsOfTheReference) {
-  for (const auto& reference : test::reference_cases("noise3d")["cubes"]) {
+  for (const auto& reference : test::reference_cases("noise3d", "cubes")) {
     const NoiseTable table = table_of(test::frames_of<std::uint16_t>(reference));
 
     // To 1e-9 of the pixels' noise, which is the reference's own tolerance.
@@ -44,7 +45,7 @@ TEST(NoiseCube, GivesMeanSquaresSignedVariancesAndFTestsOfTheReference) {
 }
 
 TEST(NoiseCube, GivesTheIntervalsOfTheReference) {
-  for (const auto& reference : test::reference_cases("noise3d_intervals")["intervals"]) {
+  for (const auto& reference : test::reference_cases("noise3d_intervals", "intervals")) {
     NoiseTable table;
     table.frames = reference["frames"], table.rows = reference["rows"], table.columns = reference["columns"];
     const double n = table.frames - 1, m = table.rows - 1, l = table.columns - 1;
@@ -65,27 +66,6 @@ TEST(NoiseCube, GivesTheIntervalsOfTheReference) {
   }
 }
 
-/// A cube with normal components of these standard deviations.
-std::vector<cv::Mat1d> simulated(int frames, int rows, int columns, const ByComponent& sd, std::uint64_t seed) {
-  const RandomStream random(seed, "3-D noise");
-  const auto draw = [&](NoiseComponent component, int i, int j, int k) {
-    const auto at = static_cast<std::uint64_t>((i * 1000 + j) * 1000 + k);
-    return sd[component] * static_cast<double>(random.sub(static_cast<std::uint64_t>(component)).normal(at));
-  };
-  std::vector<cv::Mat1d> cube;
-  for (int k = 0; k < frames; ++k) {
-    cv::Mat1d frame(rows, columns);
-    for (int y = 0; y < rows; ++y) {
-      for (int x = 0; x < columns; ++x) {
-        frame(y, x) = 8000 + draw(t, k, 0, 0) + draw(v, 0, y, 0) + draw(h, 0, 0, x) + draw(tv, k, y, 0) +
-                      draw(th, k, 0, x) + draw(vh, 0, y, x) + draw(tvh, k, y, x);
-      }
-    }
-    cube.push_back(frame);
-  }
-  return cube;
-}
-
 TEST(NoiseCube, HasTheSevenComponentsInsideTheirIntervalsInNineteenOfTwentySeeds) {
   ByComponent sd;
   sd[t] = 1, sd[v] = 2, sd[h] = 3, sd[tv] = 4, sd[th] = 0, sd[vh] = 6, sd[tvh] = 20;
@@ -93,7 +73,7 @@ TEST(NoiseCube, HasTheSevenComponentsInsideTheirIntervalsInNineteenOfTwentySeeds
   std::map<NoiseComponent, int> inside;
 
   for (int seed = 1; seed <= seeds; ++seed) {
-    const NoiseTable table = table_of(simulated(12, 10, 14, sd, static_cast<std::uint64_t>(seed)));
+    const NoiseTable table = table_of(test::simulated_cube(12, 10, 14, sd, static_cast<std::uint64_t>(seed)));
     for (const NoiseComponent component : noise_components) {
       const ComponentEstimate found = estimate_of(table, component);
       const double truth = sd[component] * sd[component];
@@ -107,7 +87,7 @@ TEST(NoiseCube, HasTheSevenComponentsInsideTheirIntervalsInNineteenOfTwentySeeds
 }
 
 TEST(NoiseCube, LosesNothingUnderASceneOfManyTimesTheNoiseAndJumpsOfWholeFrames) {
-  const std::vector<cv::Mat1d> quiet = simulated(
+  const std::vector<cv::Mat1d> quiet = test::simulated_cube(
       6, 8, 9,
       [] {
         ByComponent sd;
@@ -129,6 +109,29 @@ TEST(NoiseCube, LosesNothingUnderASceneOfManyTimesTheNoiseAndJumpsOfWholeFrames)
   // The scene costs the last digits of a count of 20000: 4e-12 of each value, against noise of 0.02.
   for (const NoiseComponent component : {tv, th, tvh})
     EXPECT_NEAR(with.mean_squares[component], without.mean_squares[component], 1e-8 * without.mean_squares[component]);
+}
+
+TEST(NoiseCube, SeesThatThePatternChangedAndTakesNoNoiseForIt) {
+  ByComponent sd;
+  sd[t] = 30, sd[v] = 5, sd[tv] = 10, sd[th] = 10, sd[vh] = 20, sd[tvh] = 10;
+  ByComponent other;
+  other[vh] = 15;
+  for (int seed = 1; seed <= 20; ++seed) {
+    const auto random = static_cast<std::uint64_t>(seed);
+    const std::vector<cv::Mat1d> cube = test::simulated_cube(16, 24, 32, sd, random);
+    const cv::Mat1d pattern = test::simulated_cube(1, 24, 32, other, random + 1000)[0];
+    NoiseCube still, corrected;
+
+    for (int k = 0; k < 16; ++k) {
+      ASSERT_TRUE(still.add(cube[static_cast<std::size_t>(k)]));
+      ASSERT_TRUE(corrected.add(k < 9 ? cube[static_cast<std::size_t>(k)]
+                                      : cv::Mat1d(cube[static_cast<std::size_t>(k)] + pattern)));
+    }
+
+    // A pattern of 1.5 standard deviations makes the difference of two frames 1 + 1.5^2 / 2 times its mean square.
+    EXPECT_EQ(still.abrupt_change(), std::nullopt) << seed;
+    EXPECT_EQ(corrected.abrupt_change(), 9) << seed;
+  }
 }
 
 TEST(NoiseCube, RefusesWhatIsNoTable) {
