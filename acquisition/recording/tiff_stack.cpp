@@ -3,61 +3,15 @@
 #include <tiffio.h>
 
 #include <algorithm>
-#include <cstdarg>
-#include <cstdio>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "acquisition/core/camera_id.h"
+#include "acquisition/recording/tiff_file.h"
 
 namespace todbench {
 namespace {
-
-/// A row of 65535 pixels and the tables of a page fit many times; a file that wants more is broken or hostile.
-constexpr tmsize_t most_memory = tmsize_t{256} << 20;
-
-/// Keeps the first complaint of libtiff about one file.
-int keep_message(TIFF*, void* user, const char* /*module*/, const char* format, va_list arguments) {
-  auto& message = *static_cast<std::string*>(user);
-  if (message.empty()) {
-    char text[200];  // libtiff speaks in formats of printf
-    std::vsnprintf(text, sizeof text, format, arguments);
-    message = text;
-  }
-  return 1;
-}
-
-int keep_quiet(TIFF*, void*, const char*, const char*, va_list) {
-  return 1;
-}
-
-struct Close {
-  void operator()(TIFF* tiff) const { TIFFClose(tiff); }
-};
-
-/// An open file and what libtiff had to say about it. Not moved: libtiff keeps the address of the message.
-class TiffFile {
- public:
-  TiffFile(const std::filesystem::path& path, const char* mode) {
-    TIFFOpenOptions* options = TIFFOpenOptionsAlloc();
-    TIFFOpenOptionsSetMaxSingleMemAlloc(options, most_memory);
-    TIFFOpenOptionsSetErrorHandlerExtR(options, keep_message, &message_);
-    TIFFOpenOptionsSetWarningHandlerExtR(options, keep_quiet, nullptr);
-    tiff_.reset(TIFFOpenExt(path.c_str(), mode, options));
-    TIFFOpenOptionsFree(options);
-  }
-  TiffFile(const TiffFile&) = delete;
-  TiffFile& operator=(const TiffFile&) = delete;
-
-  [[nodiscard]] TIFF* get() const { return tiff_.get(); }
-  [[nodiscard]] std::string why(const char* otherwise) const { return message_.empty() ? otherwise : message_; }
-  void close() { tiff_.reset(); }
-
- private:
-  std::string message_;  ///< outlives tiff_
-  std::unique_ptr<TIFF, Close> tiff_;
-};
 
 /// Size of the current page, when it is one that can be read.
 Result<cv::Size> page_size(const TiffFile& file) {

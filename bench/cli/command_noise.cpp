@@ -9,6 +9,7 @@
 #include "acquisition/core/correction_watch.h"
 #include "acquisition/recording/recording_backend.h"
 #include "bench/cli/commands.h"
+#include "bench/cli/noise_components.h"
 #include "bench/judgement/verdict.h"
 #include "bench/plan/descriptions.h"
 #include "bench/studies/real_noise_study.h"
@@ -23,6 +24,7 @@ struct NoiseArguments {
   std::string sensor = "sc2000", observer = "hvs-1";
   int block_frames = 10;
   RealNoiseOptions study;
+  bool components_only = false, across_corrections = false;
 };
 
 /// Neighbours that correlate by more than this change together: the scene moved, and nothing of it is the camera's
@@ -296,7 +298,17 @@ void add_noise_command(CLI::App& app, Program& program) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(number_in(0.05, 1e6));
-  finish_command(*command, program, [a, &program](Console& console) { return run_noise(console, *a, program); });
+  auto* components = command->add_flag("--components-only", a->components_only,
+                                       "only the seven components, of the whole recording as it is, with intervals");
+  command
+      ->add_flag("--across-corrections", a->across_corrections,
+                 "also of a recording in which the camera corrected itself or the scene moved")
+      ->needs(components);
+  finish_command(*command, program, [a, &program](Console& console) {
+    if (!a->components_only) return run_noise(console, *a, program);
+    const auto across = a->across_corrections ? AcrossCorrections::take : AcrossCorrections::refuse;
+    return run_noise_components(console, a->recording, across);
+  });
 }
 
 }  // namespace todbench

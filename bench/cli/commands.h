@@ -54,6 +54,10 @@ void add_verify_command(CLI::App& app, Program& program);
 void add_noise_command(CLI::App& app, Program& program);
 void add_pattern_command(CLI::App& app, Program& program);
 void add_range_command(CLI::App& app, Program& program);
+void add_sfr_command(CLI::App& app, Program& program);
+void add_sitf_command(CLI::App& app, Program& program);
+void add_conformity_command(CLI::App& app, Program& program);
+void add_budget_command(CLI::App& app, Program& program);
 void add_reproduce_command(CLI::App& app, Program& program);
 void add_sweep_command(CLI::App& app, Program& program);
 

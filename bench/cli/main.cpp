@@ -135,6 +135,10 @@ int run(int argc, char** argv) {
   add_mtf_command(app, program);
   add_noise_command(app, program);
   add_pattern_command(app, program);
+  add_sfr_command(app, program);
+  add_sitf_command(app, program);
+  add_conformity_command(app, program);
+  add_budget_command(app, program);
   add_range_command(app, program);
   add_reproduce_command(app, program);
   add_sweep_command(app, program);

@@ -1,74 +1,286 @@
 #include "tod/measures/three_d_noise.h"
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
+#include <numeric>
 
 namespace todbench {
+namespace {
+
+using enum NoiseComponent;
+
+double sum_of_squares(const std::vector<double>& values) {
+  return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+}
+
+/// Sum of squares about the means over frames: `values` holds `width` numbers of each frame.
+double squares_in_time(const std::vector<double>& values, std::size_t width) {
+  const std::size_t frames = values.size() / width;
+  double sum = 0;
+  for (std::size_t i = 0; i < width; ++i) {
+    double mean = 0;
+    for (std::size_t k = 0; k < frames; ++k) mean += values[k * width + i];
+    mean /= static_cast<double>(frames);
+    for (std::size_t k = 0; k < frames; ++k) sum += std::pow(values[k * width + i] - mean, 2);
+  }
+  return sum;
+}
+
+/// Sum of squares of the difference of the last two frames, of which `values` holds `width` numbers each.
+double step_squares(const std::vector<double>& values, std::size_t width) {
+  double sum = 0;
+  for (std::size_t i = values.size() - width; i < values.size(); ++i) sum += std::pow(values[i] - values[i - width], 2);
+  return sum;
+}
+
+/// Sums of squares of the fixed components: of the picture that is the mean of all frames.
+struct FixedSquares {
+  double v = 0, h = 0, vh = 0;
+};
+
+FixedSquares fixed_squares(const cv::Mat1d& mean_frame) {
+  // About the middle of the picture, so that counts of any size keep their last digits.
+  const cv::Mat1d picture = mean_frame - cv::mean(mean_frame)[0];
+  cv::Mat1d rows, columns;
+  cv::reduce(picture, rows, 1, cv::REDUCE_AVG);
+  cv::reduce(picture, columns, 0, cv::REDUCE_AVG);
+  const double mean = cv::mean(rows)[0];
+  FixedSquares sum;
+  for (int y = 0; y < picture.rows; ++y) {
+    sum.v += std::pow(rows(y) - mean, 2);
+    for (int x = 0; x < picture.cols; ++x) sum.vh += std::pow(picture(y, x) - rows(y) - columns(x) + mean, 2);
+  }
+  for (int x = 0; x < picture.cols; ++x) sum.h += std::pow(columns(x) - mean, 2);
+  return sum;
+}
+
+/// The relative distances of a mean square's confidence limits from it (Graybill and Wang 1980).
+struct Reach {
+  double down = 0, up = 0;
+};
+
+constexpr double each_side = 0.025;
+
+Reach reach_of(double degrees_of_freedom) {
+  const boost::math::chi_squared squares(degrees_of_freedom);
+  return {1 - degrees_of_freedom / boost::math::quantile(complement(squares, each_side)),
+          degrees_of_freedom / boost::math::quantile(squares, each_side) - 1};
+}
+
+/// The additional term of a difference of two mean squares that makes the limit exact where one of them vanishes (Ting
+/// et al. 1990). `ratio` is the quantile of F on the side in question.
+double cross_term(double ratio, double of_plus, double of_minus) {
+  return (std::pow(ratio - 1, 2) - std::pow(of_plus * ratio, 2) - of_minus * of_minus) / ratio;
+}
+
+}  // namespace
+
+std::string_view to_string(NoiseComponent component) {
+  switch (component) {
+    case t:
+      return "t";
+    case v:
+      return "v";
+    case h:
+      return "h";
+    case tv:
+      return "tv";
+    case th:
+      return "th";
+    case vh:
+      return "vh";
+    case tvh:
+      return "tvh";
+  }
+  return "";
+}
+
+namespace {
+
+/// An estimate is a sum of mean squares with factors, from their expected values (Scheffé 1959, ch. 7).
+struct MeanSquareTerm {
+  NoiseComponent of;
+  double factor;
+};
+
+std::vector<MeanSquareTerm> terms_of(const NoiseTable& table, NoiseComponent component) {
+  const double n = table.frames, m = table.rows, l = table.columns;
+  switch (component) {
+    case t:
+      return {{t, 1 / (m * l)}, {tv, -1 / (m * l)}, {th, -1 / (m * l)}, {tvh, 1 / (m * l)}};
+    case v:
+      return {{v, 1 / (n * l)}, {tv, -1 / (n * l)}, {vh, -1 / (n * l)}, {tvh, 1 / (n * l)}};
+    case h:
+      return {{h, 1 / (n * m)}, {th, -1 / (n * m)}, {vh, -1 / (n * m)}, {tvh, 1 / (n * m)}};
+    case tv:
+      return {{tv, 1 / l}, {tvh, -1 / l}};
+    case th:
+      return {{th, 1 / m}, {tvh, -1 / m}};
+    case vh:
+      return {{vh, 1 / n}, {tvh, -1 / n}};
+    case tvh:
+      return {{tvh, 1}};
+  }
+  return {};
+}
+
+}  // namespace
+
+ComponentEstimate estimate_of(const NoiseTable& table, NoiseComponent component) {
+  const std::vector<MeanSquareTerm> terms = terms_of(table, component);
+  ComponentEstimate estimate;
+  double below = 0, above = 0;
+  for (const auto& [of, factor] : terms) {
+    const double part = factor * table.mean_squares[of];
+    const Reach reach = reach_of(table.degrees_of_freedom[of]);
+    estimate.variance += part;
+    below += std::pow((factor > 0 ? reach.down : reach.up) * part, 2);
+    above += std::pow((factor > 0 ? reach.up : reach.down) * part, 2);
+  }
+  if (terms.size() == 2) {
+    const double plus = table.degrees_of_freedom[terms[0].of], minus = table.degrees_of_freedom[terms[1].of];
+    const boost::math::fisher_f ratio(plus, minus);
+    const Reach of_plus = reach_of(plus), of_minus = reach_of(minus);
+    const double product =
+        -terms[0].factor * terms[1].factor * table.mean_squares[terms[0].of] * table.mean_squares[terms[1].of];
+    below += cross_term(boost::math::quantile(complement(ratio, each_side)), of_plus.down, of_minus.up) * product;
+    above += cross_term(boost::math::quantile(ratio, each_side), of_plus.up, of_minus.down) * product;
+    if (table.mean_squares[tvh] > 0)
+      estimate.p_absent = cdf(complement(ratio, table.mean_squares[terms[0].of] / table.mean_squares[tvh]));
+  }
+  estimate.low = estimate.variance - std::sqrt(std::max(0.0, below));
+  estimate.high = estimate.variance + std::sqrt(std::max(0.0, above));
+  return estimate;
+}
+
+template <typename Pixel>
+Result<void> NoiseCube::add_frame(const cv::Mat_<Pixel>& frame) {
+  if (frame.empty()) return fail(ErrorCode::invalid_input, "an empty frame");
+  if (frames_ == 0) {
+    frame.convertTo(first_, CV_64F);
+    change_ = cv::Mat1d::zeros(frame.size());
+    last_ = cv::Mat1d::zeros(frame.size());
+  }
+  if (frame.size() != first_.size()) return fail(ErrorCode::invalid_input, "frames of different sizes");
+  const int rows = frame.rows, columns = frame.cols;
+  std::vector<double> row_sums(static_cast<std::size_t>(rows)), column_sums(static_cast<std::size_t>(columns));
+  double sum = 0;
+  for (int y = 0; y < rows; ++y) {
+    const Pixel* value = frame[y];
+    const double* reference = first_[y];
+    double of_row = 0;
+    for (int x = 0; x < columns; ++x) {
+      const double change = static_cast<double>(value[x]) - reference[x];
+      of_row += change;
+      column_sums[static_cast<std::size_t>(x)] += change;
+    }
+    row_sums[static_cast<std::size_t>(y)] = of_row;
+    sum += of_row;
+  }
+  if (!std::isfinite(sum)) return fail(ErrorCode::invalid_input, "a frame holds a value that is no number");
+  const double mean = sum / (static_cast<double>(rows) * columns);
+  double steps = 0;
+  for (int y = 0; y < rows; ++y) {
+    const Pixel* value = frame[y];
+    const double* reference = first_[y];
+    double* total = change_[y];
+    double* last = last_[y];
+    double squares = 0, step_squares = 0;
+    for (int x = 0; x < columns; ++x) {
+      const double change = static_cast<double>(value[x]) - reference[x] - mean;
+      const double step = change - last[x];
+      total[x] += change;
+      squares += change * change;
+      step_squares += step * step;
+      last[x] = change;
+    }
+    squares_ += squares;
+    steps += step_squares;
+  }
+  frame_means_.push_back(mean);
+  for (const double of_row : row_sums) row_means_.push_back(of_row / columns - mean);
+  for (const double of_column : column_sums) column_means_.push_back(of_column / rows - mean);
+  if (frames_ > 0) {
+    const double in_rows = columns * step_squares(row_means_, static_cast<std::size_t>(rows));
+    const double in_columns = rows * step_squares(column_means_, static_cast<std::size_t>(columns));
+    steps_.push_back(std::max(0.0, steps - in_rows - in_columns) / ((rows - 1.0) * (columns - 1.0)));
+  }
+  ++frames_;
+  return {};
+}
+
+Result<void> NoiseCube::add(const cv::Mat1w& frame) {
+  return add_frame(frame);
+}
+Result<void> NoiseCube::add(const cv::Mat1f& frame) {
+  return add_frame(frame);
+}
+Result<void> NoiseCube::add(const cv::Mat1d& frame) {
+  return add_frame(frame);
+}
+
+Result<NoiseTable> NoiseCube::table() const {
+  if (frames_ < 2 || first_.rows < 2 || first_.cols < 2)
+    return fail(ErrorCode::invalid_input, "3D noise needs at least two frames of two rows and two columns");
+  const double n = frames_, m = first_.rows, l = first_.cols;
+  // Squares about each pixel's mean over time are those of tv, th and tvh; the frames' own means are taken out already.
+  const double in_time = squares_ - change_.dot(change_) / n;
+  const double s_tv = l * squares_in_time(row_means_, static_cast<std::size_t>(first_.rows));
+  const double s_th = m * squares_in_time(column_means_, static_cast<std::size_t>(first_.cols));
+  const double mean = std::accumulate(frame_means_.begin(), frame_means_.end(), 0.0) / n;
+  std::vector<double> about_mean = frame_means_;
+  for (double& value : about_mean) value -= mean;
+  const FixedSquares fixed = fixed_squares(first_ + change_ / n);
+  NoiseTable table;
+  table.frames = frames_, table.rows = first_.rows, table.columns = first_.cols;
+  ByComponent& freedom = table.degrees_of_freedom;
+  freedom[t] = n - 1, freedom[v] = m - 1, freedom[h] = l - 1;
+  freedom[tv] = (n - 1) * (m - 1), freedom[th] = (n - 1) * (l - 1), freedom[vh] = (m - 1) * (l - 1);
+  freedom[tvh] = (n - 1) * (m - 1) * (l - 1);
+  ByComponent& squares = table.mean_squares;
+  squares[t] = m * l * sum_of_squares(about_mean), squares[v] = n * l * fixed.v, squares[h] = n * m * fixed.h;
+  squares[tv] = s_tv, squares[th] = s_th, squares[vh] = n * fixed.vh;
+  squares[tvh] = std::max(0.0, in_time - s_tv - s_th);
+  for (const NoiseComponent component : noise_components) squares[component] /= freedom[component];
+  return table;
+}
+
+std::optional<int> NoiseCube::abrupt_change() const {
+  if (frames_ < 5 || first_.rows < 2 || first_.cols < 2) return std::nullopt;
+  std::vector<double> sorted = steps_;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  if (!(*middle > 0)) return std::nullopt;
+  constexpr double least_ratio = 1.69, by_chance = 1e-9;  // 1.3 times the difference
+  const double freedom = (first_.rows - 1.0) * (first_.cols - 1.0);
+  const boost::math::fisher_f ratios(freedom, freedom);
+  for (std::size_t k = 0; k < steps_.size(); ++k) {
+    const double ratio = steps_[k] / *middle;
+    if (ratio > least_ratio && cdf(complement(ratios, ratio)) < by_chance / frames_) return static_cast<int>(k) + 1;
+  }
+  return std::nullopt;
+}
 
 double ThreeDNoise::temporal() const {
   return std::sqrt(tvh * tvh + tv * tv + th * th + t * t);
 }
 
 Result<ThreeDNoise> three_d_noise(std::span<const cv::Mat1f> frames) {
-  if (frames.size() < 2 || frames[0].rows < 2 || frames[0].cols < 2)
-    return fail(ErrorCode::invalid_input, "3D noise needs at least two frames of two rows and two columns");
-  const int count = static_cast<int>(frames.size()), rows = frames[0].rows, columns = frames[0].cols;
-  // Means over one direction and over two; sums in double, differences from the first frame's first pixel.
-  const double base = static_cast<double>(frames[0](0, 0));
-  cv::Mat1d tv(count, rows, 0.0), th(count, columns, 0.0), vh(rows, columns, 0.0);
-  for (int k = 0; k < count; ++k) {
-    const cv::Mat1f& frame = frames[static_cast<std::size_t>(k)];
-    if (frame.size() != frames[0].size()) return fail(ErrorCode::invalid_input, "frames of different sizes");
-    for (int y = 0; y < rows; ++y) {
-      for (int x = 0; x < columns; ++x) {
-        const double value = static_cast<double>(frame(y, x)) - base;
-        tv(k, y) += value / columns, th(k, x) += value / rows, vh(y, x) += value / count;
-      }
-    }
+  NoiseCube cube;
+  for (const cv::Mat1f& frame : frames) {
+    if (auto added = cube.add(frame); !added) return tl::unexpected(added.error());
   }
-  const auto means = [](const cv::Mat1d& table, int dimension) {
-    cv::Mat1d out;
-    cv::reduce(table, out, dimension, cv::REDUCE_AVG);
-    return out;
+  const auto table = cube.table();
+  if (!table) return tl::unexpected(table.error());
+  const auto root = [&](NoiseComponent component) {
+    double variance = 0;
+    for (const auto& [of, factor] : terms_of(*table, component)) variance += factor * table->mean_squares[of];
+    return std::sqrt(std::max(0.0, variance));
   };
-  const cv::Mat1d t = means(tv, 1), v = means(tv, 0), h = means(th, 0);
-  const double mean = cv::mean(t)[0];
-  double s_t = 0, s_v = 0, s_h = 0, s_tv = 0, s_th = 0, s_vh = 0, s_tvh = 0;
-  for (int k = 0; k < count; ++k) s_t += std::pow(t(k) - mean, 2);
-  for (int y = 0; y < rows; ++y) s_v += std::pow(v(y) - mean, 2);
-  for (int x = 0; x < columns; ++x) s_h += std::pow(h(x) - mean, 2);
-  for (int k = 0; k < count; ++k) {
-    for (int y = 0; y < rows; ++y) s_tv += std::pow(tv(k, y) - t(k) - v(y) + mean, 2);
-    for (int x = 0; x < columns; ++x) s_th += std::pow(th(k, x) - t(k) - h(x) + mean, 2);
-  }
-  for (int y = 0; y < rows; ++y) {
-    for (int x = 0; x < columns; ++x) s_vh += std::pow(vh(y, x) - v(y) - h(x) + mean, 2);
-  }
-  for (int k = 0; k < count; ++k) {
-    const cv::Mat1f& frame = frames[static_cast<std::size_t>(k)];
-    for (int y = 0; y < rows; ++y) {
-      for (int x = 0; x < columns; ++x) {
-        const double value = static_cast<double>(frame(y, x)) - base;
-        s_tvh += std::pow(value - tv(k, y) - th(k, x) - vh(y, x) + t(k) + v(y) + h(x) - mean, 2);
-      }
-    }
-  }
-  // Expected mean squares of a crossed three-way table without repetition (Scheffé 1959, ch. 7).
-  const double n = count, m = rows, l = columns;
-  const double q_tvh = s_tvh / ((n - 1) * (m - 1) * (l - 1));
-  const double q_tv = l * s_tv / ((n - 1) * (m - 1)), q_th = m * s_th / ((n - 1) * (l - 1));
-  const double q_vh = n * s_vh / ((m - 1) * (l - 1));
-  const double q_t = m * l * s_t / (n - 1), q_v = n * l * s_v / (m - 1), q_h = n * m * s_h / (l - 1);
-  const auto root = [](double variance) { return std::sqrt(std::max(0.0, variance)); };
-  ThreeDNoise noise;
-  noise.tvh = root(q_tvh);
-  noise.tv = root((q_tv - q_tvh) / l);
-  noise.th = root((q_th - q_tvh) / m);
-  noise.vh = root((q_vh - q_tvh) / n);
-  noise.t = root((q_t - q_tv - q_th + q_tvh) / (m * l));
-  noise.v = root((q_v - q_tv - q_vh + q_tvh) / (n * l));
-  noise.h = root((q_h - q_th - q_vh + q_tvh) / (n * m));
-  return noise;
+  return ThreeDNoise{
+      .tvh = root(tvh), .tv = root(tv), .th = root(th), .t = root(t), .vh = root(vh), .v = root(v), .h = root(h)};
 }
 
 }  // namespace todbench

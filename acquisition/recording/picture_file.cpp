@@ -1,0 +1,46 @@
+#include "acquisition/recording/picture_file.h"
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+#include <system_error>
+
+namespace todbench {
+namespace {
+
+constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 31;
+
+}  // namespace
+
+Result<PictureFile> read_picture(const std::filesystem::path& path) {
+  const auto wrong = [&](const std::string& sentence) {
+    return fail(ErrorCode::invalid_input, path.string() + ": " + sentence);
+  };
+  std::error_code problem;
+  if (!std::filesystem::is_regular_file(path, problem)) return wrong("no such file");
+  const std::uintmax_t size = std::filesystem::file_size(path, problem);
+  if (problem) return wrong(problem.message());
+  if (size == 0) return wrong("the file is empty");
+  if (size > most_bytes) return wrong("the file is too large for a picture");
+  std::ifstream file(path, std::ios::binary);
+  std::string start(6, '\0');
+  file.read(start.data(), static_cast<std::streamsize>(start.size()));
+  if (file.gcount() <= 0) return wrong("cannot be read");
+  Result<PictureFile> picture;
+  if (start == "\x93NUMPY") {
+    std::string bytes(size, '\0');
+    file.clear();
+    file.seekg(0);
+    file.read(bytes.data(), static_cast<std::streamsize>(size));
+    bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, file.gcount())));
+    picture = parse_npy(bytes);
+  } else if (start.starts_with("II") || start.starts_with("MM")) {
+    picture = read_tiff_picture(path);
+  } else {
+    return wrong("expected a TIFF or .npy file");
+  }
+  if (!picture) return fail(path.string(), picture.error());
+  return picture;
+}
+
+}  // namespace todbench

@@ -1,0 +1,243 @@
+// todbench sfr, todbench sitf
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "acquisition/recording/picture_file.h"
+#include "bench/cli/commands.h"
+#include "bench/judgement/verdict.h"
+#include "bench/text/csv_table.h"
+#include "bench/text/text.h"
+#include "tod/measures/signal_transfer.h"
+#include "tod/measures/slanted_edge.h"
+
+namespace todbench {
+namespace {
+
+struct SfrArguments {
+  std::string picture, axis;
+  std::vector<int> region;
+  std::optional<double> pitch_mrad;
+};
+
+Result<cv::Mat1d> cut(const cv::Mat1d& picture, const std::vector<int>& region) {
+  if (region.empty()) return picture;
+  const cv::Rect wanted(region[0], region[1], region[2], region[3]);
+  if ((wanted & cv::Rect(0, 0, picture.cols, picture.rows)) != wanted) {
+    return fail(ErrorCode::invalid_input, "--region reaches beyond the picture of " + std::to_string(picture.cols) +
+                                              " x " + std::to_string(picture.rows) + " pixels");
+  }
+  return picture(wanted).clone();
+}
+
+Json numbers_json(const std::vector<double>& values, double factor = 1) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(json_number(value * factor));
+  return list;
+}
+
+Json sfr_json(const SlantedEdge& edge, const SfrArguments& arguments) {
+  Json intervals = Json::array();
+  for (std::size_t i = 0; i < edge.mtf.size(); ++i)
+    intervals.push_back({json_number(edge.mtf_low[i]), json_number(edge.mtf_high[i])});
+  const std::optional<double> pitch = arguments.pitch_mrad;
+  const auto per_mrad = [&](const std::optional<double>& per_pitch) {
+    return pitch && per_pitch ? json_number(*per_pitch / *pitch) : Json();
+  };
+  return {{"picture", arguments.picture},
+          {"axis", to_string(edge.axis)},
+          {"angle_deg", json_number(edge.angle_deg)},
+          {"edge_at_pitch", json_number(edge.edge_at_pitch)},
+          {"curvature_pitch", json_number(edge.curvature_pitch)},
+          {"lines", edge.rows},
+          {"step", json_number(edge.step)},
+          {"noise_over_step", json_number(edge.noise_over_step)},
+          {"shading_percent", json_number(edge.shading_percent)},
+          {"window_pitch", json_number(edge.window_pitch)},
+          {"frequency_per_pitch", numbers_json(edge.frequency_per_pitch)},
+          {"frequency_per_mrad", pitch ? numbers_json(edge.frequency_per_pitch, 1 / *pitch) : Json()},
+          {"mtf", numbers_json(edge.mtf)},
+          {"mtf_ci95", intervals},
+          {"mtf50_per_pitch", json_number(edge.mtf50_per_pitch)},
+          {"mtf50_per_mrad", per_mrad(edge.mtf50_per_pitch)},
+          {"notes", edge.notes}};
+}
+
+void print_sfr(Console& console, const SlantedEdge& edge, const SfrArguments& arguments) {
+  console.text("MTF along " + std::string(to_string(edge.axis)) + " from an edge slanted by " +
+               fixed(edge.angle_deg, 2) + " degrees over " + std::to_string(edge.rows) + " lines; noise " +
+               fixed(100 * edge.noise_over_step, 2) + " % of the step");
+  std::vector<TableRow> rows;
+  for (std::size_t i = 0; i < edge.mtf.size(); i += 5) {
+    const double frequency = edge.frequency_per_pitch[i];
+    TableRow row{fixed(frequency, 2), fixed(edge.mtf[i], 4), range({edge.mtf_low[i], edge.mtf_high[i]}, 4)};
+    if (arguments.pitch_mrad) row.insert(row.begin() + 1, fixed(frequency / *arguments.pitch_mrad, 4));
+    rows.push_back(row);
+  }
+  TableRow header{"cycles per pitch", "MTF", "95 %"};
+  if (arguments.pitch_mrad) header.insert(header.begin() + 1, "cycles per mrad");
+  console.table(header, rows);
+  console.text("");
+  console.text("MTF 0.5 at " + fixed(edge.mtf50_per_pitch, 4) + " cycles per pitch");
+}
+
+/// Values at the end of what the file's type holds may have been more.
+bool reaches_end(const PictureFile& file) {
+  if (!file.counts) return false;
+  double low = 0, high = 0;
+  cv::minMaxLoc(file.picture, &low, &high);
+  return high >= file.counts->second || (low <= file.counts->first && file.counts->first != 0);
+}
+
+int run_sfr(Console& console, const SfrArguments& arguments) {
+  const auto file = read_picture(arguments.picture);
+  if (!file) return report_error(console, file.error());
+  const auto picture = cut(file->picture, arguments.region);
+  if (!picture) return report_error(console, with_context(arguments.picture, picture.error()));
+  SlantedEdgeOptions options;
+  if (!arguments.axis.empty()) options.axis = arguments.axis == "x" ? EdgeAxis::x : EdgeAxis::y;
+  auto edge = slanted_edge(*picture, options);
+  if (!edge) return report_error(console, with_context(arguments.picture, edge.error()));
+  if (reaches_end(*file)) edge->notes.emplace_back("pixels are at the end of what the file's type holds");
+  for (const auto& note : edge->notes) console.note(note);
+  if (console.json())
+    console.object(sfr_json(*edge, arguments));
+  else
+    print_sfr(console, *edge, arguments);
+  return 0;
+}
+
+/// The column of the first name that the header has.
+std::optional<std::size_t> column_of(const CsvTable& table, std::initializer_list<std::string_view> names) {
+  for (const std::string_view name : names) {
+    const auto found = std::find(table.header.begin(), table.header.end(), name);
+    if (found != table.header.end()) return static_cast<std::size_t>(found - table.header.begin());
+  }
+  return std::nullopt;
+}
+
+struct StepColumns {
+  std::size_t delta_t_k = 0, signal = 0;
+  std::optional<std::size_t> signal_u;
+  std::string unit;
+};
+
+Result<StepColumns> step_columns(const CsvTable& table) {
+  const auto temperature = column_of(table, {"delta_t_k", "temperature_k"});
+  if (!temperature) return table.wrong(1, "expected a column delta_t_k (or temperature_k)");
+  const auto signal = column_of(table, {"counts", "signal", "signal_k"});
+  if (!signal) return table.wrong(1, "expected a column counts (or signal, signal_k)");
+  for (const auto& name : table.header) {
+    if (std::count(table.header.begin(), table.header.end(), name) > 1)
+      return table.wrong(1, "the column '" + one_line(name) + "' is there twice");
+  }
+  StepColumns columns{*temperature, *signal, column_of(table, {"counts_se", "counts_u", "signal_u", "signal_se"}), ""};
+  columns.unit = table.header[*signal] == "signal_k" ? "K" : table.header[*signal];
+  return columns;
+}
+
+struct Steps {
+  std::vector<TemperatureStep> steps;
+  std::string unit;
+};
+
+Result<Steps> read_steps(const std::string& file) {
+  const auto text = read_text_file(file);
+  if (!text) return tl::unexpected(text.error());
+  const auto table = parse_csv(*text, file);
+  if (!table) return tl::unexpected(table.error());
+  const auto columns = step_columns(*table);
+  if (!columns) return tl::unexpected(columns.error());
+  Steps steps;
+  steps.unit = columns->unit;
+  for (const CsvRow& row : table->rows) {
+    TemperatureStep step;
+    const auto number = [&](std::size_t column) -> Result<double> {
+      const auto value = parse_number(row.fields[column]);
+      if (value) return *value;
+      return table->wrong(row.line, "column " + one_line(table->header[column]) + ": expected a number, found '" +
+                                        one_line(row.fields[column]) + "'");
+    };
+    const auto temperature = number(columns->delta_t_k), signal = number(columns->signal);
+    if (!temperature) return tl::unexpected(temperature.error());
+    if (!signal) return tl::unexpected(signal.error());
+    step.delta_t_k = *temperature, step.signal = *signal;
+    if (columns->signal_u && !row.fields[*columns->signal_u].empty()) {
+      const auto uncertainty = number(*columns->signal_u);
+      if (!uncertainty) return tl::unexpected(uncertainty.error());
+      if (!(*uncertainty > 0)) return table->wrong(row.line, "the uncertainty of the signal has to be above 0");
+      step.signal_u = *uncertainty;
+    }
+    steps.steps.push_back(step);
+  }
+  return steps;
+}
+
+Json sitf_json(const SignalTransfer& line, const Steps& steps, const std::string& file) {
+  return {{"steps_file", file},
+          {"unit", steps.unit + " per K"},
+          {"steps", steps.steps.size()},
+          {"slope", json_number(line.slope)},
+          {"slope_u", json_number(line.slope_u)},
+          {"slope_u_stated", json_number(line.slope_u_stated)},
+          {"slope_u_scatter", json_number(line.slope_u_scatter)},
+          {"offset", json_number(line.offset)},
+          {"chi2", json_number(line.chi2)},
+          {"degrees_of_freedom", line.degrees_of_freedom},
+          {"p", json_number(line.p)},
+          {"largest_residual", json_number(line.largest_residual)},
+          {"nonlinearity_percent", json_number(line.nonlinearity_percent)},
+          {"r_squared", json_number(line.r_squared)},
+          {"residuals", numbers_json(line.residuals)}};
+}
+
+int run_sitf(Console& console, const std::string& file) {
+  const auto steps = read_steps(file);
+  if (!steps) return report_error(console, steps.error());
+  const auto line = signal_transfer(steps->steps);
+  if (!line) return report_error(console, with_context(file, line.error()));
+  if (line->p && *line->p < 0.01)
+    console.note("the steps do not lie on a straight line within their uncertainties (p " + fixed(line->p, 4) + ")");
+  if (console.json()) {
+    console.object(sitf_json(*line, *steps, file));
+    return 0;
+  }
+  const std::string unit = steps->unit + " per K";
+  console.table(
+      {"quantity", "value", "unit"},
+      {{"slope", fixed(line->slope, 5), unit},
+       {"standard uncertainty", fixed(line->slope_u, 5), unit},
+       {"  from those stated", fixed(line->slope_u_stated, 5), unit},
+       {"  from the scatter", fixed(line->slope_u_scatter, 5), unit},
+       {"offset", fixed(line->offset, 3), steps->unit},
+       {"chi squared", fixed(line->chi2, 3), std::to_string(line->degrees_of_freedom) + " degrees of freedom"},
+       {"p", fixed(line->p, 4), ""},
+       {"nonlinearity", fixed(line->nonlinearity_percent, 3), "% of the span"}});
+  return 0;
+}
+
+}  // namespace
+
+void add_sfr_command(CLI::App& app, Program& program) {
+  auto* command = app.add_subcommand("sfr", "MTF from a picture of a slanted edge (TIFF or .npy)");
+  auto a = std::make_shared<SfrArguments>();
+  command->add_option("PICTURE", a->picture, "file with one straight edge between two flat fields")->required();
+  command->add_option("--axis", a->axis, "along which the frequency runs: x for a nearly vertical edge; default: found")
+      ->check(CLI::IsMember({"x", "y"}));
+  command->add_option("--region", a->region, "X,Y,WIDTH,HEIGHT of the part of the picture with the edge, in pixels")
+      ->delimiter(',')
+      ->expected(4)
+      ->check(whole_number(0, 65535));
+  command->add_option("--pitch-mrad", a->pitch_mrad, "angle of a pixel: frequencies per milliradian too")
+      ->check(number_in(1e-6, 1e6));
+  finish_command(*command, program, [a](Console& console) { return run_sfr(console, *a); });
+}
+
+void add_sitf_command(CLI::App& app, Program& program) {
+  auto* command = app.add_subcommand("sitf", "signal transfer from steps of temperature in a CSV file");
+  auto file = std::make_shared<std::string>();
+  command->add_option("STEPS.csv", *file, "columns delta_t_k, counts and, where it is known, counts_se")->required();
+  finish_command(*command, program, [file](Console& console) { return run_sitf(console, *file); });
+}
+
+}  // namespace todbench

@@ -1,0 +1,143 @@
+#include "bench/cli/noise_components.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "acquisition/core/camera_id.h"
+#include "acquisition/recording/recording_backend.h"
+#include "bench/cli/commands.h"
+#include "bench/judgement/verdict.h"
+#include "tod/measures/three_d_noise.h"
+
+namespace todbench {
+namespace {
+
+struct WholeRecording {
+  NoiseTable table;
+  bool kelvin = false;
+  int left_out = 0;  ///< frames that are not complete
+  int repeated = 0;  ///< frames that are bit-identical to the one before
+};
+
+/// The camera says that it corrected itself between this frame and the last one.
+class StatedCorrection {
+ public:
+  [[nodiscard]] bool before(const Frame& frame) {
+    const bool restarted = frame.since_correction_s >= 0 && frame.since_correction_s < last_s_;
+    last_s_ = frame.since_correction_s;
+    return restarted || frame.correction == CorrectionState::running;
+  }
+
+ private:
+  double last_s_ = -1;
+};
+
+Result<void> add(NoiseCube& cube, const Frame& frame, bool kelvin) {
+  if (!kelvin) return cube.add(frame.counts);
+  const auto picture = to_kelvin(frame);
+  if (!picture) return fail("frame " + std::to_string(frame.sequence), picture.error());
+  return cube.add(*picture);
+}
+
+tl::unexpected<Error> corrected(int frame) {
+  return fail(ErrorCode::invalid_input, "a correction of the camera lies before frame " + std::to_string(frame + 1) +
+                                            ", or the scene moved there: such a cube does not hold the camera's noise");
+}
+
+Result<WholeRecording> whole_recording(const std::string& id, AcrossCorrections across) {
+  auto source =
+      recording_backend()->open(has_scheme(id, camera_scheme::file) ? id : camera_id(camera_scheme::file, id));
+  // Here a recording is an input file and no device.
+  if (!source) return fail(ErrorCode::invalid_input, source.error().message);
+  if (auto started = (*source)->start(); !started) return tl::unexpected(started.error());
+  WholeRecording whole;
+  whole.kelvin = (*source)->info().scale.calibrated();
+  NoiseCube cube;
+  StatedCorrection stated;
+  cv::Mat1w last;
+  for (;;) {
+    auto frame = (*source)->next(std::chrono::seconds(1));
+    if (!frame && frame.error().code == ErrorCode::disconnected) break;
+    if (!frame) return fail(id, frame.error());
+    if (frame->status != FrameStatus::complete) {
+      ++whole.left_out;
+      continue;
+    }
+    if (stated.before(*frame) && across == AcrossCorrections::refuse) return corrected(cube.frames());
+    if (!last.empty() && last.size() == frame->counts.size() && cv::norm(last, frame->counts, cv::NORM_INF) == 0)
+      ++whole.repeated;
+    last = frame->counts;
+    if (auto added = add(cube, *frame, whole.kelvin); !added)
+      return fail(ErrorCode::invalid_input, added.error().message);
+  }
+  const auto table = cube.table();
+  if (!table) return tl::unexpected(table.error());
+  whole.table = *table;
+  if (const auto change = cube.abrupt_change(); change && across == AcrossCorrections::refuse)
+    return corrected(*change);
+  return whole;
+}
+
+Json components_json(const WholeRecording& whole, const std::string& recording) {
+  Json variances, intervals, deviations, squares, freedom, absent;
+  for (const NoiseComponent component : noise_components) {
+    const ComponentEstimate found = estimate_of(whole.table, component);
+    const std::string name(to_string(component));
+    variances[name] = json_number(found.variance);
+    intervals[name] = {json_number(found.low), json_number(found.high)};
+    deviations[name] = json_number(std::sqrt(std::max(0.0, found.variance)));
+    squares[name] = json_number(whole.table.mean_squares[component]);
+    freedom[name] = whole.table.degrees_of_freedom[component];
+    if (found.p_absent) absent[name] = json_number(found.p_absent);
+  }
+  return {{"recording", recording},
+          {"unit", whole.kelvin ? "K" : "counts"},
+          {"frames", whole.table.frames},
+          {"height", whole.table.rows},
+          {"width", whole.table.columns},
+          {"frames_left_out", whole.left_out},
+          {"frames_repeated", whole.repeated},
+          {"variances", variances},
+          {"intervals", intervals},
+          {"standard_deviations", deviations},
+          {"mean_squares", squares},
+          {"degrees_of_freedom", freedom},
+          {"p_absent", absent}};
+}
+
+void print_components(Console& console, const WholeRecording& whole) {
+  const std::string unit = whole.kelvin ? "K" : "counts";
+  std::vector<TableRow> rows;
+  for (const NoiseComponent component : noise_components) {
+    const ComponentEstimate found = estimate_of(whole.table, component);
+    rows.push_back({std::string(to_string(component)), fixed(std::sqrt(std::max(0.0, found.variance)), 4),
+                    fixed(found.variance, 6), range({found.low, found.high}, 6),
+                    found.p_absent ? fixed(found.p_absent, 4) : ""});
+  }
+  console.text(std::to_string(whole.table.frames) + " frames of " + std::to_string(whole.table.rows) + " rows and " +
+               std::to_string(whole.table.columns) + " columns");
+  console.table({"component", "sd [" + unit + "]", "variance [" + unit + "^2]", "95 %", "p absent"}, rows);
+}
+
+}  // namespace
+
+int run_noise_components(Console& console, const std::string& recording, AcrossCorrections across) {
+  const auto whole = whole_recording(recording, across);
+  if (!whole) {
+    const bool named = whole.error().message.find(recording) != std::string::npos;
+    return report_error(console, named ? whole.error() : with_context(recording, whole.error()));
+  }
+  if (whole->left_out > 0) console.note(std::to_string(whole->left_out) + " frames are not complete and were left out");
+  if (whole->repeated > 0) {
+    console.note(std::to_string(whole->repeated) +
+                 " frames repeat the one before them: they are no exposures of their own, and the temporal components "
+                 "are too small");
+  }
+  if (console.json())
+    console.object(components_json(*whole, recording));
+  else
+    print_components(console, *whole);
+  return 0;
+}
+
+}  // namespace todbench

@@ -1,0 +1,83 @@
+// Coverage of the intervals of single measures over 200 seeds.
+#include <gmock/gmock.h>
+
+#include <cstdio>
+#include <map>
+
+#include "tests/tod/measures/edge_picture.h"
+#include "tests/tod/measures/simulated_cube.h"
+#include "tod/measures/slanted_edge.h"
+
+namespace todbench {
+namespace {
+
+using enum NoiseComponent;
+
+constexpr int seeds = 200;
+// 95 % less four standard errors of a proportion from 200 seeds.
+constexpr double least_coverage = 0.888;
+
+struct Design {
+  int frames, rows, columns;
+  double sd[noise_components.size()];  // in the order of the components
+};
+
+TEST(MeasuresStudy, IntervalsOfTheSevenComponentsHoldTheTruth) {
+  for (const Design& design : {Design{16, 24, 32, {1, 2, 3, 4, 5, 6, 20}}, Design{32, 16, 20, {10, 0, 0, 3, 3, 0, 10}},
+                               Design{8, 40, 40, {0, 5, 5, 0, 0, 20, 10}}}) {
+    ByComponent sd;
+    for (const NoiseComponent component : noise_components)
+      sd[component] = design.sd[static_cast<std::size_t>(component)];
+    std::map<NoiseComponent, int> inside;
+
+    for (int seed = 1; seed <= seeds; ++seed) {
+      NoiseCube cube;
+      for (const auto& frame :
+           test::simulated_cube(design.frames, design.rows, design.columns, sd, static_cast<std::uint64_t>(seed)))
+        ASSERT_TRUE(cube.add(frame));
+      EXPECT_FALSE(cube.abrupt_change());
+      const NoiseTable table = cube.table().value();
+      for (const NoiseComponent component : noise_components) {
+        const ComponentEstimate found = estimate_of(table, component);
+        const double truth = sd[component] * sd[component];
+        if (found.low <= truth && truth <= found.high) ++inside[component];
+      }
+    }
+
+    std::printf("%d x %d x %d:", design.frames, design.rows, design.columns);
+    for (const NoiseComponent component : noise_components) {
+      std::printf(" %s %.3f", std::string(to_string(component)).c_str(),
+                  inside[component] / static_cast<double>(seeds));
+      EXPECT_GE(inside[component], least_coverage * seeds) << to_string(component);
+    }
+    std::printf("\n");
+  }
+}
+
+TEST(MeasuresStudy, IntervalsOfTheEdgeHoldTheTruth) {
+  for (const double blur : {0.3, 0.7}) {
+    for (const double noise : {0.002, 0.02, 0.05}) {
+      const test::EdgePicture made{.blur_sigma_pitch = blur};
+      std::map<int, int> inside;
+
+      for (int seed = 1; seed <= seeds; ++seed) {
+        const auto edge = slanted_edge(made.noisy(noise, static_cast<std::uint64_t>(seed)), {}).value();
+        for (const int k : {5, 10, 20, 30, 50}) {
+          const auto i = static_cast<std::size_t>(k);
+          const double truth = made.mtf(k / 100.0);
+          if (edge.mtf_low[i] <= truth && truth <= edge.mtf_high[i]) ++inside[k];
+        }
+      }
+
+      std::printf("blur %.1f, noise %.3f:", blur, noise);
+      for (const auto& [k, count] : inside) {
+        std::printf(" f %.2f %.3f", k / 100.0, count / static_cast<double>(seeds));
+        EXPECT_GE(count, least_coverage * seeds) << k;
+      }
+      std::printf("\n");
+    }
+  }
+}
+
+}  // namespace
+}  // namespace todbench

@@ -1,0 +1,150 @@
+#include "tod/measures/three_d_noise.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "tests/tod/measures/measures_reference.h"
+#include "tests/tod/measures/simulated_cube.h"
+
+namespace todbench {
+namespace {
+
+using enum NoiseComponent;
+
+template <typename Pixel>
+NoiseTable table_of(const std::vector<cv::Mat_<Pixel>>& frames) {
+  NoiseCube cube;
+  for (const auto& frame : frames) EXPECT_TRUE(cube.add(frame));
+  return cube.table().value();
+}
+
+TEST(NoiseCube, GivesMeanSquaresSignedVariancesAndFTestsOfTheReference) {
+  for (const auto& reference : test::reference_cases("noise3d", "cubes")) {
+    const NoiseTable table = table_of(test::frames_of<std::uint16_t>(reference));
+
+    // To 1e-9 of the pixels' noise, which is the reference's own tolerance.
+    const double tolerance = 1e-9 * reference["unbiased_variance"]["tvh"].get<double>();
+    for (const NoiseComponent component : noise_components) {
+      const std::string name(to_string(component));
+      EXPECT_EQ(table.degrees_of_freedom[component], reference["degrees_of_freedom"][name]) << name;
+      // The reference has ten digits of a mean square.
+      EXPECT_NEAR(table.mean_squares[component], reference["mean_squares"][name],
+                  1e-9 * reference["mean_squares"][name].get<double>());
+      EXPECT_NEAR(estimate_of(table, component).variance, reference["unbiased_variance"][name], tolerance) << name;
+    }
+    for (const NoiseComponent component : {tv, th, vh}) {
+      const double p = reference["f_test_p"][std::string(to_string(component))];
+      EXPECT_NEAR(estimate_of(table, component).p_absent.value(), p, 1e-8 * p);
+    }
+    EXPECT_NEAR(estimate_of(table, tvh).low, reference["tvh_variance_ci95"][0], tolerance);
+    EXPECT_NEAR(estimate_of(table, tvh).high, reference["tvh_variance_ci95"][1], tolerance);
+  }
+}
+
+TEST(NoiseCube, GivesTheIntervalsOfTheReference) {
+  for (const auto& reference : test::reference_cases("noise3d_intervals", "intervals")) {
+    NoiseTable table;
+    table.frames = reference["frames"], table.rows = reference["rows"], table.columns = reference["columns"];
+    const double n = table.frames - 1, m = table.rows - 1, l = table.columns - 1;
+    ByComponent& freedom = table.degrees_of_freedom;
+    freedom[t] = n, freedom[v] = m, freedom[h] = l;
+    freedom[tv] = n * m, freedom[th] = n * l, freedom[vh] = m * l, freedom[tvh] = n * m * l;
+    for (const NoiseComponent component : noise_components)
+      table.mean_squares[component] = reference["mean_squares"][std::string(to_string(component))];
+
+    for (const NoiseComponent component : noise_components) {
+      const auto& wanted = reference["interval95"][std::string(to_string(component))];
+      const ComponentEstimate found = estimate_of(table, component);
+      const double tolerance = 1e-8 * wanted[2].get<double>();
+      EXPECT_NEAR(found.variance, wanted[0], tolerance) << to_string(component);
+      EXPECT_NEAR(found.low, wanted[1], tolerance) << to_string(component);
+      EXPECT_NEAR(found.high, wanted[2], tolerance) << to_string(component);
+    }
+  }
+}
+
+TEST(NoiseCube, HasTheSevenComponentsInsideTheirIntervalsInNineteenOfTwentySeeds) {
+  ByComponent sd;
+  sd[t] = 1, sd[v] = 2, sd[h] = 3, sd[tv] = 4, sd[th] = 0, sd[vh] = 6, sd[tvh] = 20;
+  constexpr int seeds = 60;
+  std::map<NoiseComponent, int> inside;
+
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const NoiseTable table = table_of(test::simulated_cube(12, 10, 14, sd, static_cast<std::uint64_t>(seed)));
+    for (const NoiseComponent component : noise_components) {
+      const ComponentEstimate found = estimate_of(table, component);
+      const double truth = sd[component] * sd[component];
+      if (found.low <= truth && truth <= found.high) ++inside[component];
+    }
+  }
+
+  // 95 % less four standard errors of a proportion from 60 seeds: 0.95 - 4 * 0.028.
+  for (const NoiseComponent component : noise_components)
+    EXPECT_GE(inside[component], 0.837 * seeds) << to_string(component);
+}
+
+TEST(NoiseCube, LosesNothingUnderASceneOfManyTimesTheNoiseAndJumpsOfWholeFrames) {
+  const std::vector<cv::Mat1d> quiet = test::simulated_cube(
+      6, 8, 9,
+      [] {
+        ByComponent sd;
+        sd[tvh] = 0.02, sd[tv] = 0.01, sd[th] = 0.01;
+        return sd;
+      }(),
+      1);
+  std::vector<cv::Mat1d> loud;
+  for (std::size_t k = 0; k < quiet.size(); ++k) {
+    cv::Mat1d frame = quiet[k].clone();
+    for (int y = 0; y < frame.rows; ++y) {
+      for (int x = 0; x < frame.cols; ++x) frame(y, x) += 5000.0 * ((x * y) % 3) + 300.0 * static_cast<double>(k % 2);
+    }
+    loud.push_back(frame);
+  }
+
+  const NoiseTable without = table_of(quiet), with = table_of(loud);
+
+  // The scene costs the last digits of a count of 20000: 4e-12 of each value, against noise of 0.02.
+  for (const NoiseComponent component : {tv, th, tvh})
+    EXPECT_NEAR(with.mean_squares[component], without.mean_squares[component], 1e-8 * without.mean_squares[component]);
+}
+
+TEST(NoiseCube, SeesThatThePatternChangedAndTakesNoNoiseForIt) {
+  ByComponent sd;
+  sd[t] = 30, sd[v] = 5, sd[tv] = 10, sd[th] = 10, sd[vh] = 20, sd[tvh] = 10;
+  ByComponent other;
+  other[vh] = 15;
+  for (int seed = 1; seed <= 20; ++seed) {
+    const auto random = static_cast<std::uint64_t>(seed);
+    const std::vector<cv::Mat1d> cube = test::simulated_cube(16, 24, 32, sd, random);
+    const cv::Mat1d pattern = test::simulated_cube(1, 24, 32, other, random + 1000)[0];
+    NoiseCube still, corrected;
+
+    for (int k = 0; k < 16; ++k) {
+      ASSERT_TRUE(still.add(cube[static_cast<std::size_t>(k)]));
+      ASSERT_TRUE(corrected.add(k < 9 ? cube[static_cast<std::size_t>(k)]
+                                      : cv::Mat1d(cube[static_cast<std::size_t>(k)] + pattern)));
+    }
+
+    // A pattern of 1.5 standard deviations makes the difference of two frames 1 + 1.5^2 / 2 times its mean square.
+    EXPECT_EQ(still.abrupt_change(), std::nullopt) << seed;
+    EXPECT_EQ(corrected.abrupt_change(), 9) << seed;
+  }
+}
+
+TEST(NoiseCube, RefusesWhatIsNoTable) {
+  NoiseCube cube;
+  EXPECT_FALSE(cube.table());
+  EXPECT_FALSE(cube.add(cv::Mat1d()));
+  ASSERT_TRUE(cube.add(cv::Mat1d(3, 4, 1.0)));
+  EXPECT_FALSE(cube.table());
+  EXPECT_FALSE(cube.add(cv::Mat1d(4, 3, 1.0)));
+  EXPECT_FALSE(cube.add(cv::Mat1d(3, 4, std::numeric_limits<double>::quiet_NaN())));
+  ASSERT_TRUE(cube.add(cv::Mat1d(3, 4, 2.0)));
+  EXPECT_TRUE(cube.table());
+}
+
+}  // namespace
+}  // namespace todbench

@@ -1,0 +1,26 @@
+// Modulation of a pattern of four bars as a row of pixels shows it.
+#pragma once
+
+#include <span>
+
+#include "acquisition/core/result.h"
+
+namespace todbench {
+
+/// Four bars of width 1 / (2 f) with gaps as wide between them, centred at 0 of the axis.
+struct FourBars {
+  double frequency_per_pitch = 0;  ///< of the bars, in cycles per pitch
+  double first_sample_at = 0;      ///< of samples[0], in pitches from the middle of the pattern
+};
+
+struct BarModulation {
+  /// Mean over bars of the largest sample within max(1 / (4 f), 1/2) of a bar's centre minus mean over gaps of the
+  /// smallest within the same of a gap's centre; of the unit of the samples. Below 0 where bars and gaps are exchanged.
+  double modulation = 0;
+  int bars_separated = 1;  ///< 1 + number of gaps whose value is below that of the bars on both sides
+};
+
+/// `invalid_input`: a frequency that is not positive, or samples that do not reach over the whole pattern.
+[[nodiscard]] Result<BarModulation> bar_modulation(std::span<const double> samples, const FourBars& bars);
+
+}  // namespace todbench

@@ -1,0 +1,49 @@
+// A smooth curve through very many samples of an edge: least squares with cubic B-splines.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace todbench {
+
+/// Evenly spaced knots from `start`; the curve lives on [start, start + cells * step].
+struct SplineGrid {
+  double start = 0, step = 0.25;
+  int cells = 0;
+  [[nodiscard]] double end() const { return start + cells * step; }
+  [[nodiscard]] std::size_t coefficients() const { return static_cast<std::size_t>(cells) + 3; }
+};
+
+/// A curve on a grid.
+struct Spline {
+  SplineGrid grid;
+  std::vector<double> coefficients;
+  /// Precondition: t on the grid.
+  [[nodiscard]] double value(double t) const;
+  [[nodiscard]] double slope(double t) const;
+};
+
+/// The normal equations of a fit. They are sums over samples: those of a part can be taken out again.
+class SplineSums {
+ public:
+  explicit SplineSums(const SplineGrid& grid);
+  /// Samples off the grid are left out.
+  void add(double t, double value);
+  SplineSums& operator+=(const SplineSums& other);
+  SplineSums& operator-=(const SplineSums& other);
+  [[nodiscard]] double samples() const { return samples_; }
+  /// The curve of least squares. Third differences cost a little, so that stretches without samples are bridged; at
+  /// half a cycle for each four knots this changes an amplitude by less than 1e-5. Nothing where there are fewer
+  /// samples than coefficients.
+  [[nodiscard]] std::optional<Spline> solve() const;
+
+ private:
+  SplineGrid grid_;
+  std::vector<std::array<double, 4>> band_;  ///< the diagonal and what stands right of it
+  std::vector<double> right_;
+  double samples_ = 0;
+};
+
+}  // namespace todbench

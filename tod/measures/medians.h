@@ -1,0 +1,13 @@
+// Robust middles of pictures.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+namespace todbench {
+
+/// Median over all pixels; of an even number the mean of the two middle ones. Precondition: not empty, no NaN.
+[[nodiscard]] double median_of(const cv::Mat1d& picture);
+/// Median distance from the median.
+[[nodiscard]] double median_deviation_of(const cv::Mat1d& picture);
+
+}  // namespace todbench

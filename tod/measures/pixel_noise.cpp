@@ -1,0 +1,96 @@
+#include "tod/measures/pixel_noise.h"
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/special_functions/gamma.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "tod/measures/medians.h"
+
+namespace todbench {
+namespace {
+
+/// Sums over frames of each pixel's changes from the first frame.
+struct TimeSums {
+  cv::Mat1d change, squares, ramp, steps;
+};
+
+TimeSums sums_of(std::span<const cv::Mat1d> frames) {
+  const cv::Size size = frames[0].size();
+  TimeSums sums{cv::Mat1d::zeros(size), cv::Mat1d::zeros(size), cv::Mat1d::zeros(size), cv::Mat1d::zeros(size)};
+  const double middle = 0.5 * (static_cast<double>(frames.size()) - 1);
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const cv::Mat1d change = frames[k] - frames[0];
+    sums.change += change;
+    sums.squares += change.mul(change);
+    sums.ramp += (static_cast<double>(k) - middle) * change;
+    if (k == 0) continue;
+    const cv::Mat1d step = frames[k] - frames[k - 1];
+    sums.steps += step.mul(step);
+  }
+  return sums;
+}
+
+/// c4(n) of statistical process control: sqrt(2 / (n - 1)) Gamma(n / 2) / Gamma((n - 1) / 2).
+double c4_of(double count) {
+  return std::sqrt(2 / (count - 1)) / boost::math::tgamma_delta_ratio((count - 1) / 2, 0.5);
+}
+
+Result<void> check(std::span<const cv::Mat1d> frames) {
+  if (frames.size() < 3 || frames[0].total() < 2)
+    return fail(ErrorCode::invalid_input, "temporal noise of pixels needs at least three frames of two pixels");
+  for (const cv::Mat1d& frame : frames) {
+    if (frame.size() != frames[0].size()) return fail(ErrorCode::invalid_input, "frames of different sizes");
+    if (!cv::checkRange(frame)) return fail(ErrorCode::invalid_input, "a frame holds a value that is no number");
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<PixelNoise> pixel_noise(std::span<const cv::Mat1d> frames) {
+  if (auto checked = check(frames); !checked) return tl::unexpected(checked.error());
+  const double n = static_cast<double>(frames.size()), pixels = static_cast<double>(frames[0].total());
+  const TimeSums sums = sums_of(frames);
+  cv::Mat1d about_mean = sums.squares - sums.change.mul(sums.change) / n;
+  about_mean = cv::max(about_mean, 0.0);
+  // Squares that a straight line in time takes: (sum (k - middle) x)^2 / sum (k - middle)^2.
+  const cv::Mat1d of_line = sums.ramp.mul(sums.ramp) / (n * (n * n - 1) / 12);
+  PixelNoise noise;
+  noise.frames = static_cast<int>(frames.size());
+  cv::sqrt(about_mean / (n - 1), noise.pixel_sd);
+  noise.mean_frame = frames[0] + sums.change / n;
+  const double variance = cv::mean(about_mean)[0] / (n - 1);
+  noise.sd_rms = std::sqrt(variance);
+  const boost::math::chi_squared squares(pixels * (n - 1));
+  noise.sd_rms_ci95 = {noise.sd_rms * std::sqrt(pixels * (n - 1) / boost::math::quantile(complement(squares, 0.025))),
+                       noise.sd_rms * std::sqrt(pixels * (n - 1) / boost::math::quantile(squares, 0.025))};
+  noise.sd_rms_detrended = std::sqrt(std::max(0.0, cv::mean(about_mean - of_line)[0]) / (n - 2));
+  noise.sd_frame_differences = std::sqrt(cv::mean(sums.steps)[0] / (n - 1) / 2);
+  noise.mean_of_pixel_sd = cv::mean(noise.pixel_sd)[0];
+  noise.c4 = c4_of(n);
+  noise.mean_of_pixel_sd_corrected = noise.mean_of_pixel_sd / noise.c4;
+  noise.median_pixel_sd = median_of(noise.pixel_sd);
+  cv::Scalar mean, sd;
+  cv::meanStdDev(noise.mean_frame - cv::mean(noise.mean_frame)[0], mean, sd);
+  noise.fixed_pattern_variance = sd[0] * sd[0] * pixels / (pixels - 1) - variance / n;
+  return noise;
+}
+
+double variance_of_rounded(double sd_counts, double phase_counts) {
+  const auto above = [&](double edge) {
+    return 0.5 * std::erfc((edge - phase_counts) / (sd_counts * std::numbers::sqrt2));
+  };
+  // A normal value in single steps of one count; 40 standard deviations hold all of it.
+  const int reach = static_cast<int>(std::ceil(40 * sd_counts)) + 2;
+  const int middle = static_cast<int>(std::lround(phase_counts));
+  double mean = 0, square = 0;
+  for (int count = middle - reach; count <= middle + reach; ++count) {
+    const double share = above(count - 0.5) - above(count + 0.5), distance = count - phase_counts;
+    mean += share * distance, square += share * distance * distance;
+  }
+  return square - mean * mean;
+}
+
+}  // namespace todbench
