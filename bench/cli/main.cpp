@@ -79,7 +79,9 @@ std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, co
   std::vector<std::string> commands;
   for (const CLI::App* command : visible_commands(app)) commands.push_back(command->get_name());
   const std::string asked = words.empty() || words.front().starts_with('-') ? "" : words.front();
-  const bool known = app.get_subcommand_no_throw(asked) != nullptr;
+  const auto all = app.get_subcommands({});
+  const bool known =
+      std::any_of(all.begin(), all.end(), [&](const CLI::App* command) { return command->get_name() == asked; });
   if (words.empty()) return "no command was given (todbench --help lists them)";
   if (asked.empty()) return one_line(error.what()) + " (todbench --help lists the commands)";
   if (!known) {

@@ -12,7 +12,7 @@ using namespace todbench;
 
 int main() {
   const TargetPlate plate = example_plate();
-  const SensorSpec spec{.name = "example"};  // 320 x 240, 1.31 mrad, 70 mK
+  const SensorSpec spec;  // 320 x 240, 1.31 mrad, 70 mK
   const auto model = std::make_shared<const SensorModel>(spec, full_plan(spec, {}, {}), Accuracy::draft(), 1);
   const auto scene = std::make_shared<SceneHolder>(PlateScene{.plate = plate, .distance_m = 2});
   const auto camera = simulated_source(model, scene, "1");

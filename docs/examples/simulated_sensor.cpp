@@ -7,7 +7,9 @@
 using namespace todbench;
 
 int main() {
-  SensorSpec spec{.name = "mine", .width = 160, .height = 120, .pitch_um = 17, .detector_um = 15};
+  SensorSpec spec;  // what is not said has the numbers of an uncooled camera of 320 x 240
+  spec.width = 160, spec.height = 120;
+  spec.pitch_um = 17, spec.detector_um = 15;
   spec.focal_length_mm = 9;
   spec.netd_k = 0.05;
   if (const auto valid = validate(spec); !valid) return fmt::print("{}\n", valid.error().message), 1;
