@@ -2,14 +2,8 @@
 
 find_package(PkgConfig REQUIRED)
 
-# Debian splits OpenCV and puts OpenCVConfig.cmake only into the large package: link the three parts by name.
-find_path(OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
-foreach(part core imgproc imgcodecs calib3d)
-  find_library(OPENCV_${part}_LIBRARY opencv_${part} REQUIRED)
-  add_library(opencv_${part} INTERFACE)
-  target_include_directories(opencv_${part} SYSTEM INTERFACE "${OPENCV_INCLUDE_DIR}")
-  target_link_libraries(opencv_${part} INTERFACE "${OPENCV_${part}_LIBRARY}")
-endforeach()
+include(TodbenchFindOpenCv)
+todbench_find_opencv(core imgproc imgcodecs calib3d)
 
 pkg_check_modules(FFTW3 REQUIRED IMPORTED_TARGET fftw3)
 # Not by its CMake package, which defines a macro (FMT_SHARED) that only Windows needs and that precompiled headers would have to share.

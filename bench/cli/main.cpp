@@ -7,9 +7,13 @@
 #include <exception>
 #include <functional>
 #include <limits>
+#include <sstream>
+#include <string_view>
 #include <vector>
 
+#include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
+#include "bench/cli/exit_codes.h"
 #include "bench/judgement/verdict.h"
 #include "bench/session/build_info.h"
 #include "bench/text/text.h"
@@ -73,9 +77,11 @@ namespace {
 /// What is wrong with a command line, in one sentence that names the nearest thing that would have been right.
 std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& words) {
   std::vector<std::string> commands;
-  for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+  for (const CLI::App* command : visible_commands(app)) commands.push_back(command->get_name());
   const std::string asked = words.empty() || words.front().starts_with('-') ? "" : words.front();
-  const bool known = std::find(commands.begin(), commands.end(), asked) != commands.end();
+  const auto all = app.get_subcommands({});
+  const bool known =
+      std::any_of(all.begin(), all.end(), [&](const CLI::App* command) { return command->get_name() == asked; });
   if (words.empty()) return "no command was given (todbench --help lists them)";
   if (asked.empty()) return one_line(error.what()) + " (todbench --help lists the commands)";
   if (!known) {
@@ -100,6 +106,22 @@ std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, co
   return asked + ": " + one_line(error.what()) + " (todbench " + asked + " --help lists the options)";
 }
 
+/// Two lines of at most 110 letters.
+std::string exit_code_footer() {
+  std::string text = "Exit codes:";
+  std::size_t line = text.size();
+  for (const auto& [code, words] : exit_code_meanings) {
+    const std::string last = code == exit_code_meanings.back().code ? "." : ";";
+    std::istringstream said(std::to_string(code) + " " + std::string(words) + last);
+    for (std::string word; said >> word; line += word.size() + 1) {
+      const bool fits = line + 1 + word.size() <= 110;
+      text += (fits ? " " : "\n") + word;
+      if (!fits) line = 0;
+    }
+  }
+  return text;
+}
+
 /// A disk limit or a reader that went away is an error of that write, not the end of a measurement.
 void write_errors_instead_of_signals() {
   ::signal(SIGPIPE, SIG_IGN);
@@ -112,9 +134,7 @@ int run(int argc, char** argv) {
   program.stop = &stop;
   CLI::App app("Measures the TOD of thermal cameras with a model observer, and of their simulated twins.", "todbench");
   app.require_subcommand(1);
-  app.footer(
-      "Exit codes: 0 done, every limit met; 1 a limit is missed; 2 usage or input; 3 inconclusive; 4 device absent or\n"
-      "busy; 5 device lost or frames unusable; 6 calibration; 7 internal error or full disk; 130 interrupted.");
+  app.footer(exit_code_footer());
   const BuildInfo info = build_info();
   app.set_version_flag("--version", "todbench " + std::string(info.version) + " (" + std::string(info.commit) + ")");
   add_demo_command(app, program);
@@ -142,6 +162,11 @@ int run(int argc, char** argv) {
   add_range_command(app, program);
   add_reproduce_command(app, program);
   add_sweep_command(app, program);
+  add_manual_command(app, program);
+  if (argc > 1 && std::string_view(argv[1]) == "complete") {
+    print_completions(app, {argv + 2, argv + argc});
+    return 0;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

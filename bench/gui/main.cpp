@@ -4,6 +4,8 @@
 #include <QDir>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "acquisition/core/safe_text.h"
@@ -12,6 +14,8 @@
 #include "bench/gui/views/main_window.h"
 #include "bench/judgement/verdict.h"
 #include "bench/session/build_info.h"
+#include "bench/text/files.h"
+#include "bench/text/manual_page.h"
 
 namespace {
 
@@ -28,12 +32,46 @@ int write_reports(const QString& session) {
   return 0;
 }
 
+/// A page for man(1) from what the options say about themselves, written to `file`. 0, or 7 with a sentence.
+int write_manual(const QList<QCommandLineOption>& options, const QString& file) {
+  todbench::ManualPage page{
+      .name = "todbench-gui",
+      .sentence = "the bench of todbench as a window",
+      .date = qgetenv("TODBENCH_RELEASE_DATE").toStdString(),
+      .version = "todbench " + std::string(todbench::build_info().version),
+      .synopsis = {"todbench-gui [OPTIONS] [SESSION]"},
+      .sections = {{.title = "Arguments",
+                    .text = "",
+                    .terms = {{"SESSION", "folder of a session, or its session.toml: shown at once"}}},
+                   {.title = "Options", .text = "", .terms = {}}},
+      .see_also = {"todbench"}};
+  for (const QCommandLineOption& option : options) {
+    if (option.flags().testFlag(QCommandLineOption::HiddenFromHelp)) continue;
+    const QString value = option.valueName().isEmpty() ? QString() : " " + option.valueName();
+    page.sections.back().terms.push_back(
+        {("--" + option.names().constFirst() + value).toStdString(), option.description().toStdString()});
+  }
+  const auto written = todbench::write_file_atomically(file.toStdString(), todbench::roff(page));
+  if (written) return 0;
+  std::fprintf(stderr, "%s\n", todbench::one_line(written.error().message).c_str());
+  return todbench::exit_code(written.error().code);
+}
+
+/// The folder of a session that is named by itself or by its session.toml.
+std::filesystem::path session_folder(const QString& argument) {
+  const std::filesystem::path path = std::filesystem::absolute(argument.toStdString()).lexically_normal();
+  if (path.filename() == "session.toml" || path.filename().empty()) return path.parent_path();
+  return path;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Writing a report needs fonts and no screen.
-  const auto asks_for_report = [](const char* argument) { return std::string_view(argument).starts_with("--report"); };
-  if (std::any_of(argv + 1, argv + argc, asks_for_report) && !qEnvironmentVariableIsSet("QT_QPA_PLATFORM"))
+  // Writing a report needs fonts and no screen; so does the manual.
+  const auto needs_no_screen = [](const char* argument) {
+    return std::string_view(argument).starts_with("--report") || std::string_view(argument).starts_with("--manual");
+  };
+  if (std::any_of(argv + 1, argv + argc, needs_no_screen) && !qEnvironmentVariableIsSet("QT_QPA_PLATFORM"))
     qputenv("QT_QPA_PLATFORM", "offscreen");
   const QApplication application(argc, argv);
   QApplication::setApplicationName("todbench-gui");
@@ -43,17 +81,28 @@ int main(int argc, char** argv) {
   options.setApplicationDescription("The bench of todbench as a window");
   options.addHelpOption();
   options.addVersionOption();
-  options.addOption({"sessions",
-                     "Where sessions are listed and written, made where it is not there; default: the current folder.",
-                     "FOLDER", "."});
-  options.addOption({"theme", "light or dark; default: as last time.", "NAME"});
-  options.addOption({"size", "Size of the window in pixels.", "WIDTHxHEIGHT"});
-  options.addOption({"screenshots", "Writes a picture of every view and ends.", "FOLDER"});
-  options.addOption({"report", "Writes report.html and report.pdf of a session and ends; needs no screen.", "SESSION"});
+  QCommandLineOption manual("manual", "Writes the page for man(1) and ends.", "FILE");
+  manual.setFlags(QCommandLineOption::HiddenFromHelp);
+  const QList<QCommandLineOption> known{
+      {"sessions",
+       "Where sessions are listed and written, made where it is not there; default: the current folder, or that of "
+       "SESSION.",
+       "FOLDER"},
+      {"theme", "light or dark; default: as last time.", "NAME"},
+      {"size", "Size of the window in pixels.", "WIDTHxHEIGHT"},
+      {"screenshots", "Writes a picture of every view and ends.", "FOLDER"},
+      {"report", "Writes report.html and report.pdf of a session and ends; needs no screen.", "SESSION"},
+      manual};
+  options.addOptions(known);
+  options.addPositionalArgument("SESSION", "Folder of a session, or its session.toml: shown at once.", "[SESSION]");
   options.process(application);
+  if (options.isSet(manual)) return write_manual(known, options.value(manual));
   if (options.isSet("report")) return write_reports(options.value("report"));
 
-  const QString sessions = options.value("sessions");
+  const QStringList arguments = options.positionalArguments();
+  const auto shown = arguments.isEmpty() ? std::filesystem::path() : session_folder(arguments.constFirst());
+  const QString beside = arguments.isEmpty() ? "." : QString::fromStdString(shown.parent_path().string());
+  const QString sessions = options.isSet("sessions") ? options.value("sessions") : beside;
   if (!QDir().mkpath(sessions)) {
     std::fprintf(stderr, "%s: no folder, and none can be made there\n", qPrintable(sessions));
     return 2;
@@ -67,5 +116,9 @@ int main(int argc, char** argv) {
   if (pictures) return todbench::take_screenshots(window, options.value("screenshots").toStdString());
   window.show();
   window.bench().rescan();
+  if (!shown.empty()) {
+    window.show_view(todbench::View::report);
+    window.sessions().open(shown);
+  }
   return QApplication::exec();
 }

@@ -1,0 +1,35 @@
+#!/bin/sh
+# check_packages.sh BUILD_FOLDER: what Debian and the desktop say of the packages. A check whose tool is missing is left out and says so.
+set -u
+build=$1
+here=$(dirname "$0")
+failed=0
+
+check() {
+  tool=$1
+  shift
+  if ! command -v "$tool" >/dev/null; then
+    echo "left out: $tool is not installed"
+  elif said=$("$tool" "$@" 2>&1); then
+    echo "passed: $tool"
+  else
+    printf 'FAILED: %s\n%s\n' "$tool" "$said"
+    failed=1
+  fi
+}
+
+check lintian --fail-on error --allow-root "$build"/packages/*.deb
+check desktop-file-validate "$here/todbench-gui.desktop"
+check appstreamcli validate --no-net "$build/package/org.todbench.todbench.metainfo.xml"
+check bash -n "$here/todbench.bash"
+unpacked=$(mktemp -d)
+trap 'rm -rf "$unpacked"' EXIT
+if command -v mandoc >/dev/null; then
+  for page in "$build"/package/man/*/*.gz; do
+    gunzip -c "$page" >"$unpacked/$(basename "$page" .gz)"
+  done
+  check mandoc -Tlint -Wwarning "$unpacked"/todbench*.1
+else
+  echo "left out: mandoc is not installed"
+fi
+exit $failed

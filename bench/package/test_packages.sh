@@ -1,0 +1,66 @@
+#!/bin/sh
+# test_packages.sh PACKAGE_FOLDER: the packages in a fresh Debian of their own: install, demonstration, upgrade, removal. The Debian is made
+# by mmdebstrap from the archive that this machine uses. Exit code 77, with the reason, where that cannot be.
+set -eu
+packages=$(cd "$1" && pwd)
+
+skip() {
+  echo "skipped: $*"
+  exit 77
+}
+command -v mmdebstrap >/dev/null || skip "mmdebstrap is not installed"
+[ "$(id -u)" -eq 0 ] || skip "needs root"
+set -- "$packages"/todbench_*.deb "$packages"/todbench-gui_*.deb "$packages"/libtodbench-dev_*.deb "$packages"/todbench-doc_*.deb
+for file in "$@"; do [ -e "$file" ] || skip "no packages in $packages; ./run package makes them"; done
+
+root=$(mktemp -d /tmp/todbench-debian.XXXXXX)
+trap 'rm -rf "$root"' EXIT
+begin=$(date +%s)
+stage() { echo "$(($(date +%s) - begin)) s: $*"; }
+
+stage "a fresh Debian"
+mmdebstrap --quiet --variant=apt --mode="${TODBENCH_MMDEBSTRAP_MODE:-auto}" "${TODBENCH_DEBIAN:-bookworm}" "$root" \
+  >"$root.log" 2>&1 || { tail -n 3 "$root.log"; rm -f "$root.log"; skip "no Debian could be made here"; }
+rm -f "$root.log"
+mkdir "$root/debs" "$root/earlier"
+cp "$@" "$root/debs"
+
+# The same packages under an earlier version, for the upgrade.
+for file in "$root"/debs/*.deb; do
+  dpkg-deb -R "$file" "$root/repacked"
+  sed -i -e 's/^Version: .*/Version: 0.0.1-1/' -e 's/todbench (= [^)]*)/todbench (= 0.0.1-1)/' "$root/repacked/DEBIAN/control"
+  dpkg-deb --root-owner-group -Znone -b "$root/repacked" "$root/earlier/$(basename "$file")" >/dev/null
+  rm -rf "$root/repacked"
+done
+
+inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"; }
+apt() { inside sh -c "apt-get -qq -y --no-install-recommends $* </dev/null" >"$root/apt.log" 2>&1 || { tail -n 20 "$root/apt.log"; exit 1; }; }
+version() { inside dpkg-query -W -f '${Version}' todbench; }
+
+stage "the program alone"
+apt update
+apt install /earlier/todbench_*.deb
+[ "$(version)" = 0.0.1-1 ]
+stage "upgrade, and the other packages"
+apt install /debs/*.deb
+[ "$(version)" = "$(dpkg-deb -f "$packages"/todbench_*.deb Version)" ]
+
+stage "demonstration"
+mount --bind /proc "$root/proc" 2>/dev/null && trap 'umount "$root/proc"; rm -rf "$root"' EXIT
+demonstration=$(date +%s)
+set +e
+inside sh -c "cd /root && todbench demo --quiet --out demo"
+code=$?
+set -e
+stage "demonstration ended with exit code $code after $(($(date +%s) - demonstration)) s"
+[ "$code" -eq 0 ] || exit 1
+inside todbench verify /root/demo >/dev/null
+inside todbench-gui --report /root/demo >/dev/null
+[ -s "$root/root/demo/report.pdf" ]
+inside test -e /usr/share/man/man1/todbench-measure.1.gz -o -e /etc/dpkg/dpkg.cfg.d/docker
+
+stage "removal"
+apt purge todbench todbench-gui libtodbench-dev todbench-doc
+left=$(inside find /usr /etc /var/lib -path /usr/share/mime -prune -o -name '*todbench*' -print | grep -v '^/var/lib/apt\|^/var/lib/dpkg' || true)
+[ -z "$left" ] || { printf 'left behind:\n%s\n' "$left"; exit 1; }
+stage "passed"

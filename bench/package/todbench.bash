@@ -1,0 +1,20 @@
+# Completion of todbench for bash: the program says what may stand there.
+_todbench() {
+  local cur words cword
+  _get_comp_words_by_ref -n := cur words cword
+  local offered files=""
+  mapfile -t offered < <("${words[0]}" complete "${words[@]:1:cword-1}" "$cur" 2>/dev/null)
+  if [ "${#offered[@]}" -gt 0 ] && [ "${offered[-1]}" = ":files" ]; then
+    files=yes
+    unset 'offered[-1]'
+  fi
+  COMPREPLY=()
+  local word
+  for word in "${offered[@]}"; do
+    [[ "$word" == "$cur"* ]] && COMPREPLY+=("$word")
+  done
+  __ltrim_colon_completions "$cur"
+  [ -n "$files" ] && _filedir
+  return 0
+}
+complete -F _todbench todbench

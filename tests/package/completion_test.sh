@@ -1,0 +1,45 @@
+#!/bin/bash
+# completion_test.sh PROGRAM SOURCE: what the program offers the shell, and what bash makes of it. Exit code 77: bash-completion is missing.
+set -u
+program=$1 source=$2
+failed=0
+is() {
+  [ "$2" = "$3" ] && return
+  printf '%s: expected\n%s\nfound\n%s\n' "$1" "$3" "$2"
+  failed=1
+}
+offered() { "$program" complete "$@" | tr '\n' ' '; }
+
+is "a name that is shipped, or a file" "$(offered simulate --sensor '')" "$(cd "$source/sim_devices/sensors" && ls ./*.toml | sed 's|./\(.*\).toml|\1|' | tr '\n' ' '):files "
+is "plans" "$(offered measure '')" "$(cd "$source/bench/plans" && ls ./*.toml | sed 's|./\(.*\).toml|\1|' | tr '\n' ' '):files "
+is "words of an option" "$(offered fit --form '')" "size acuity "
+is "words of a key" "$(offered simulate --accuracy x)" "draft normal reference auto "
+is "behind an option and its value" "$(offered measure --out x '')" "$(offered measure '')"
+is "files" "$(offered compare a '')" ":files "
+is "a number" "$(offered render --size-pitch '')" ""
+is "no argument more" "$(offered verify a b)" ""
+is "unknown command" "$(offered nonsense '')" ""
+is "nothing typed" "$(offered | wc -w)" "$(offered '' | wc -w)"
+case " $(offered fit --) " in *" --lapse "*) ;; *) is "options of a command" "$(offered fit --)" "... --lapse ..." ;; esac
+case " $(offered '') " in *" manual "* | *" complete "*) is "what help does not list" yes no ;; esac
+
+bash_completion=/usr/share/bash-completion/bash_completion
+[ $failed -eq 0 ] || exit 1
+[ -e $bash_completion ] || { echo "skipped: bash-completion is not installed"; exit 77; }
+PATH=$(dirname "$program"):$PATH
+set +u
+. $bash_completion
+. "$source/bench/package/todbench.bash"
+# What is offered for a line whose last word is unfinished.
+typed() {
+  COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)) COMP_LINE="$*" COMPREPLY=()
+  COMP_POINT=${#COMP_LINE}
+  _todbench 2>/dev/null
+  echo "${COMPREPLY[*]}"
+}
+is "bash: commands" "$(typed todbench mea)" "measure"
+is "bash: options" "$(typed todbench simulate --sens)" "--sensor"
+is "bash: words" "$(typed todbench render --apex l)" "left"
+cd "$source"
+is "bash: files beside names" "$(typed todbench verify CHANGE)" "CHANGELOG.md"
+exit $failed
