@@ -66,13 +66,13 @@ Result<TemplateBank> TemplateBank::build(const TemplateObserverSpec& spec, const
 
   // Sample centres lie on half samples, search places on 1 / steps: one fine grid holds them all.
   const double band = filter_band(spec.blur_sigma_samples);
-  int per_sample = steps % 2 == 0 ? steps : 2 * steps;
-  while (per_sample <= 2 * band) per_sample *= 2;
   // The next copy of the shape must stay out of the window: shape, seven sigma of blur, the display sample, and the
   // search range.
   const int period = static_cast<int>(
       std::ceil(half + spec.search_range_samples + 0.9 * size_samples + 7 * spec.blur_sigma_samples + 1));
   const FrequencyLattice lattice{.period = period, .band = static_cast<int>(std::ceil(band * period))};
+  int per_sample = steps % 2 == 0 ? steps : 2 * steps;
+  while (period * per_sample <= 2 * lattice.band) per_sample *= 2;
   const FilterTable filter(lattice, viewing_filter(spec.blur_sigma_samples));
   const int stride = per_sample / steps;
   const int n = period * per_sample;

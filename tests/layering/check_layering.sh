@@ -26,10 +26,11 @@ BEGIN {
   may["tod/measurement"] = hvs " tod/plate tod/presentation tod/registration tod/schedule tod/measures"
   may["tod/comparison"] = core " tod/psychometric"
   may["tod/adequacy"] = core " tod/psychometric"
+  may["tod/observer_fit"] = hvs " tod/plate tod/psychometric"
   may["tod/range"] = core " hvs/shape tod/psychometric"
   may["tod/measures"] = core
   may["tod/instruments"] = core " tod/plate tod/presentation"
-  tod = hvs " tod/plate tod/pattern tod/presentation tod/registration tod/psychometric tod/schedule tod/measurement tod/comparison tod/adequacy tod/range tod/measures"
+  tod = hvs " tod/plate tod/pattern tod/presentation tod/registration tod/psychometric tod/schedule tod/measurement tod/comparison tod/adequacy tod/observer_fit tod/range tod/measures"
   may["sim_devices/scene"] = hvs " tod/plate"
   may["sim_devices/atmosphere"] = core " tod/range"
   may["sim_devices/sensor"] = hvs " tod/plate tod/presentation sim_devices/scene"
@@ -49,11 +50,12 @@ BEGIN {
   may["bench/session"] = science " bench/text bench/plan bench/judgement"
   may["bench/report"] = science " bench/text bench/plan bench/judgement bench/session"
   devices = "acquisition/recording acquisition/aravis acquisition/v4l2 acquisition/usb tod/instruments sim_devices/lab"
+  may["bench/observer_fit"] = science " bench/text bench/plan bench/judgement bench/session bench/report"
   may["bench/run"] = science " " devices " bench/text bench/plan bench/judgement bench/session bench/report"
   may["bench/studies"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
   may["bench/sweep"] = science " bench/text bench/plan bench/judgement bench/session bench/run"
   may["bench/doctor"] = core " bench/text"
-  bench = "bench/text bench/plan bench/judgement bench/session bench/report bench/run bench/studies bench/sweep"
+  bench = "bench/text bench/plan bench/judgement bench/session bench/report bench/observer_fit bench/run bench/studies bench/sweep"
   may["bench/cli"] = science " acquisition/recording bench/doctor " bench
   may["bench/gui/presenters"] = science " " bench
   may["bench/gui/views"] = science " " bench " bench/gui/presenters"

@@ -1,0 +1,60 @@
+// Whether a fitted observer can have given a person's answers.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <stop_token>
+#include <string_view>
+#include <vector>
+
+#include "acquisition/core/result.h"
+#include "tod/observer_fit/person_fit.h"
+
+namespace todbench {
+
+/// What the answers are held against, each a statistic that is large where the model is wrong.
+enum class MisfitKind {
+  contrast_and_size,  ///< number correct of each contrast and size: sum of (observed - expected)^2 / variance
+  confusion,          ///< answers by the direction of the triangle and the direction named, likewise
+  calibration,        ///< number correct of patches of like predicted probability, likewise
+  surprise,           ///< sum of -ln p of the answers against its expectation, squared, over its variance
+  wrong_answers,      ///< which wrong answer was given, of those that were wrong: its ln p, likewise
+};
+inline constexpr std::array all_misfit_kinds{MisfitKind::contrast_and_size, MisfitKind::confusion,
+                                             MisfitKind::calibration, MisfitKind::surprise, MisfitKind::wrong_answers};
+[[nodiscard]] std::string_view to_string(MisfitKind kind);
+
+struct MisfitTest {
+  double statistic = 0;
+  double expected = 0;  ///< mean of it over the replicates
+  double p = 1;         ///< chi-squared with the mean and variance of the replicates (Satterthwaite 1946)
+};
+
+/// Answers of one contrast and size.
+struct AnswerCell {
+  int cell = 0;
+  double answers = 0, correct = 0;
+  double expected = 0, sd = 0;  ///< of the number correct under the fitted model
+};
+
+struct Goodness {
+  std::array<MisfitTest, all_misfit_kinds.size()> tests{};  ///< by MisfitKind
+  /// How often answers of the fitted model itself have a smallest p as small: the test of them all.
+  double p = 1;
+  int replicates = 0;
+  std::vector<AnswerCell> cells;
+  std::array<std::array<double, 4>, 4> confusion{}, expected_confusion{};  ///< [truth][answer]
+};
+
+struct GoodnessOptions {
+  int replicates = 299;
+  std::uint64_t seed = 1;
+};
+
+/// A parametric bootstrap: the fitted model answers the same patches, is fitted to its own answers, and gives the
+/// distribution of every statistic. `interrupted`.
+[[nodiscard]] Result<Goodness> goodness_of(AnswerLattice& lattice, std::span<const PersonAnswer> answers,
+                                           const PersonFit& fit, const GoodnessOptions& options, std::stop_token stop);
+
+}  // namespace todbench

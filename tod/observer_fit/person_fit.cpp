@@ -1,0 +1,180 @@
+#include "tod/observer_fit/person_fit.h"
+
+#include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace todbench {
+namespace {
+
+using Top = Maximum<observer_key_count>;
+using Matrix = std::array<std::array<double, observer_key_count>, observer_key_count>;
+
+/// sqrt of the 95 % quantile of chi-squared with one degree of freedom.
+constexpr double root_95 = 1.959964;
+
+Box<observer_key_count> domain(const PersonFitOptions& options) {
+  const ObserverPlace start = place_of(options.start);
+  Box<observer_key_count> box{start, start};
+  const ObserverPlace least = place_of(least_values), most = place_of(most_values);
+  for (std::size_t k = 0; k < observer_key_count; ++k) {
+    if (!options.free[k]) continue;
+    box.lower[k] = least[k];
+    box.upper[k] = most[k];
+  }
+  return box;
+}
+
+/// Along the likelihood where one parameter is held and the others follow.
+class Profile {
+ public:
+  Profile(AnswerLattice& lattice, std::span<const PersonAnswer> answers, const Box<observer_key_count>& box,
+          const Top& top, std::size_t key)
+      : lattice_(lattice), answers_(answers), box_(box), top_(top), key_(key) {}
+
+  /// The signed root of twice the drop of ln likelihood, less what bounds 95 %: below 0 inside the interval.
+  double operator()(double value) {
+    Box<observer_key_count> held = box_;
+    held.lower[key_] = held.upper[key_] = value;
+    ObserverPlace start = last_;
+    start[key_] = value;
+    const Top found =
+        climb([&](const ObserverPlace& place) { return person_likelihood(lattice_, answers_, place); }, start, held);
+    last_ = found.place;
+    return std::sqrt(2 * std::max(0.0, top_.expansion.value - found.expansion.value)) - root_95;
+  }
+
+  /// The bound in a direction (-1, 1); nothing where the domain ends before. `step`: how far it may be.
+  std::optional<double> bound(double direction, double step) {
+    last_ = top_.place;
+    const double end = direction < 0 ? box_.lower[key_] : box_.upper[key_];
+    double inner = top_.place[key_], inner_drop = -root_95;
+    while (inner != end) {
+      const double outer = direction < 0 ? std::max(end, inner - step) : std::min(end, inner + step);
+      const double outer_drop = (*this)(outer);
+      if (outer_drop >= 0) return root(inner, outer, inner_drop, outer_drop);
+      inner = outer;
+      inner_drop = outer_drop;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  double root(double a, double b, double fa, double fb) {
+    if (fb == 0) return b;
+    if (a > b) {
+      std::swap(a, b);
+      std::swap(fa, fb);
+    }
+    std::uintmax_t most = 30;
+    // 1e-3 of a parameter or of its logarithm: far below its standard error.
+    const auto near = [](double low, double high) { return high - low < 1e-3; };
+    const auto [low, high] =
+        boost::math::tools::toms748_solve([this](double x) { return (*this)(x); }, a, b, fa, fb, near, most);
+    return (low + high) / 2;
+  }
+
+  AnswerLattice& lattice_;
+  std::span<const PersonAnswer> answers_;
+  const Box<observer_key_count>& box_;
+  const Top& top_;
+  std::size_t key_;
+  ObserverPlace last_{};
+};
+
+std::optional<Matrix> inverse(const Top& top, const std::array<bool, observer_key_count>& free) {
+  Matrix out{};
+  for (std::size_t k = 0; k < observer_key_count; ++k) {
+    if (!free[k]) continue;
+    std::array<double, observer_key_count> unit{};
+    unit[k] = 1;
+    const auto column = solve_information(top.expansion.hessian, unit, free, 0);
+    if (!column) return std::nullopt;
+    for (std::size_t l = 0; l < observer_key_count; ++l) out[l][k] = free[l] ? (*column)[l] : 0;
+  }
+  return out;
+}
+
+/// A side of a 95 % interval: open, unless what cannot be exceeded is reached.
+std::optional<double> side(const std::optional<double>& bound, std::size_t key, double direction) {
+  const bool logarithmic = key != static_cast<std::size_t>(ObserverKey::lapse);
+  if (bound) return logarithmic ? std::exp(*bound) : *bound;
+  const bool hard = key == static_cast<std::size_t>(ObserverKey::sensor_noise_factor) ||
+                    key == static_cast<std::size_t>(ObserverKey::lapse);
+  return hard && direction < 0 ? std::optional(least_values[key]) : std::nullopt;
+}
+
+/// Starts beside the given one: more blur and less noise, and the other way round.
+std::vector<ObserverPlace> starts_round(const ObserverPlace& start, const std::array<bool, observer_key_count>& free) {
+  std::vector<ObserverPlace> out{start};
+  for (const double sign : {-1.0, 1.0}) {
+    ObserverPlace other = start;
+    if (free[0]) other[0] += sign * std::log(1.5);
+    if (free[1]) other[1] -= sign * std::log(2.0);
+    if (free[2]) other[2] += std::log(1.5);
+    if (free[3]) other[3] = 0.02;
+    out.push_back(other);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::optional<double> standard_error(const PersonFit& fit, std::size_t key) {
+  if (!fit.covariance || !fit.free[key]) return std::nullopt;
+  return std::sqrt((*fit.covariance)[key][key]);
+}
+
+std::optional<double> correlation(const PersonFit& fit, std::size_t a, std::size_t b) {
+  const auto of_a = standard_error(fit, a), of_b = standard_error(fit, b);
+  if (!of_a || !of_b || *of_a == 0 || *of_b == 0) return std::nullopt;
+  return (*fit.covariance)[a][b] / (*of_a * *of_b);
+}
+
+Result<PersonFit> fit_person(AnswerLattice& lattice, std::span<const PersonAnswer> answers,
+                             const PersonFitOptions& options) {
+  if (answers.empty()) return fail(ErrorCode::invalid_input, "there are no answers to fit");
+  if (std::none_of(options.free.begin(), options.free.end(), [](bool free) { return free; }))
+    return fail(ErrorCode::invalid_input, "no parameter is free");
+  for (std::size_t k = 0; k < observer_key_count; ++k) {
+    // Without any noise of its own an observer answers as with the least that can be told.
+    const bool least = k == static_cast<std::size_t>(ObserverKey::internal_noise);
+    if (options.start[k] <= most_values[k] && (least ? options.start[k] >= 0 : options.start[k] >= least_values[k]))
+      continue;
+    return fail(ErrorCode::invalid_input, std::string(to_string(all_observer_keys[k])) +
+                                              " of the observer to begin with is out of what can be fitted");
+  }
+  const auto likelihood = [&](const ObserverPlace& place) { return person_likelihood(lattice, answers, place); };
+  const Box<observer_key_count> box = domain(options);
+  std::optional<Top> top;
+  const bool only_here = options.intervals == PersonFitOptions::Intervals::none;
+  const auto starts =
+      only_here ? std::vector{place_of(options.start)} : starts_round(place_of(options.start), options.free);
+  for (const ObserverPlace& start : starts) {
+    const Top found = climb(likelihood, start, box);
+    if (!top || found.expansion.value > top->expansion.value) top = found;
+  }
+  PersonFit out;
+  out.values = values_at(top->place);
+  out.free = options.free;
+  out.covariance = inverse(*top, options.free);
+  out.log_likelihood = top->expansion.value;
+  out.answers = answers.size();
+  for (std::size_t k = 0; k < observer_key_count; ++k) {
+    if (!options.free[k]) {
+      out.values[k] = options.start[k];
+      continue;
+    }
+    out.at_limit[k] = top->place[k] <= box.lower[k] || top->place[k] >= box.upper[k];
+    if (only_here) continue;
+    Profile profile(lattice, answers, box, *top, k);
+    const double se = standard_error(out, k).value_or(0.2);
+    const double step = std::clamp(2 * se, 0.02, 0.7);
+    out.ci95[k] = {side(profile.bound(-1, step), k, -1), side(profile.bound(1, step), k, 1)};
+  }
+  return out;
+}
+
+}  // namespace todbench
