@@ -194,12 +194,13 @@ Plot with_acuity_axis(Plot plot, AxisScale scale) {
 }
 
 Plot psychometric_figure(const std::string& id, const NamedPoint& first, const NamedPoint& second,
-                         PsychometricForm form) {
+                         PsychometricForm form, std::span<const double> expected_sizes_mrad) {
   Plot plot;
   plot.id = id;
   plot.width = 460;
   plot.height = 344;
   Range sizes;
+  for (const double size : expected_sizes_mrad) sizes.include(size);
   for (const NamedPoint* point : {&first, &second}) {
     if (point->point == nullptr) continue;
     for (const AnswersAtSize& answers : answers_by_size(point->point->levels))

@@ -42,12 +42,13 @@ struct DrawnLimit {
 [[nodiscard]] Plot with_acuity_axis(Plot tod_figure, AxisScale scale);
 
 /// Proportion correct with Wilson intervals against size, fitted functions, 75 % and 25 % lines and the 95 % intervals
-/// of the thresholds. A null point is left out. `id` is unique on the page.
+/// of the thresholds. A null point is left out. `id` is unique on the page. The axis holds the sizes that were answered
+/// and `expected_sizes_mrad`, those that a run is going to show.
 struct NamedPoint {
   std::string name;
   const TodPoint* point = nullptr;  ///< borrowed for the call
 };
 [[nodiscard]] Plot psychometric_figure(const std::string& id, const NamedPoint& first, const NamedPoint& second,
-                                       PsychometricForm form);
+                                       PsychometricForm form, std::span<const double> expected_sizes_mrad = {});
 
 }  // namespace todbench

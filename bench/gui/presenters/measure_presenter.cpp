@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
 #include "bench/report/tod_figures.h"
 #include "bench/run/replay.h"
@@ -16,6 +17,18 @@ constexpr int collect_period_ms = 100;
 constexpr qint64 least_fit_period_ms = 700;
 constexpr std::size_t recent_trials = 60;
 constexpr int most_notes = 200;
+
+/// Sizes of the triangles as the camera sees them; plates that cannot be read are left to the run to complain of.
+std::vector<double> sizes_of(const Plan& plan) {
+  std::vector<double> sizes_mrad;
+  for (const std::string& name : plan.target.plates) {
+    const Result<TargetPlate> plate = load_plate(name);
+    if (!plate) continue;
+    for (const PlateTriangle& triangle : plate->triangles)
+      sizes_mrad.push_back(triangle.size_mm / plan.target.distance_m);
+  }
+  return sizes_mrad;
+}
 
 }  // namespace
 
@@ -100,6 +113,7 @@ ExperimentHost MeasurePresenter::host() {
 
 void MeasurePresenter::begin(const Plan& plan) {
   plan_ = plan;
+  sizes_mrad_ = sizes_of(plan);
   phase_ = "starting";
   notes_.clear();
   request_.reset();
@@ -320,7 +334,7 @@ QString MeasurePresenter::time_left() const {
 Plot MeasurePresenter::psychometric_plot(double set_delta_t_k) const {
   const TodPoint* measured = measured_ ? point_at(*measured_, set_delta_t_k) : nullptr;
   const TodPoint* twin = twin_ ? point_at(*twin_, set_delta_t_k) : nullptr;
-  Plot plot = psychometric_figure("live", {"measured", measured}, {"simulated", twin}, plan_.fit.form);
+  Plot plot = psychometric_figure("live", {"measured", measured}, {"simulated", twin}, plan_.fit.form, sizes_mrad_);
   plot.title = "ΔT = " + QString::number(set_delta_t_k).toStdString() + " K";
   return plot;
 }

@@ -116,6 +116,7 @@ class MeasurePresenter final : public QObject {
 
   Workbench& bench_;
   Plan plan_;
+  std::vector<double> sizes_mrad_;  ///< of the plates of the plan
   RunState state_ = RunState::idle;
   QString phase_;
   std::optional<OperatorRequest> request_;

@@ -331,6 +331,22 @@ TEST(TodFigures, NegativeContrastsAreASeriesOfTheirOwn) {
   EXPECT_DOUBLE_EQ(*plot.series[0].points[0].y, 1.8);
 }
 
+TEST(TodFigures, TheAxisHoldsTheSizesThatARunIsGoingToShow) {
+  TodPoint point = sample_point(20, 16.9, 2.083, 0.026);
+  point.levels.resize(1);
+  const std::vector<double> sizes_mrad{0.9, 8, 3};
+
+  for (const TodPoint* measured : {&point, static_cast<const TodPoint*>(nullptr)}) {
+    const Plot plot =
+        psychometric_figure("p", {"measured", measured}, {"", nullptr}, PsychometricForm::size, sizes_mrad);
+
+    EXPECT_LT(plot.x.low, 0.9);
+    EXPECT_GT(plot.x.low, 0.7);
+    EXPECT_GT(plot.x.high, 8);
+    EXPECT_LT(plot.x.high, 10);
+  }
+}
+
 TEST(TodFigures, TheFittedFunctionPassesThroughThreeQuartersAtTheThreshold) {
   const TodPoint point = sample_point(20, 16.9, 2.083, 0.026);
 
