@@ -1,18 +1,16 @@
 // todbench sweep
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <memory>
-#include <set>
+#include <utility>
 
 #include "bench/cli/commands.h"
+#include "bench/cli/sweep_engines.h"
 #include "bench/judgement/verdict.h"
+#include "bench/sweep/processes.h"
 #include "bench/sweep/result_store.h"
 #include "bench/sweep/schedulers.h"
 #include "bench/sweep/sweep_effects.h"
@@ -21,19 +19,8 @@
 #include "bench/text/folders.h"
 #include "bench/text/text.h"
 
-extern char** environ;
-
 namespace todbench {
 namespace {
-
-struct SweepArguments {
-  std::string file, scheduler = "parallel", engine = "local", options_file, csv, sqlite, response = "acuity_per_mrad";
-  std::optional<std::size_t> index, jobs;
-  std::string range;
-  std::size_t chunk = 0;  ///< 0: not said
-  std::string program = "todbench";
-  bool list = false, predict = false, partial = false, dry_run = false;
-};
 
 /// The indices from `first` to `last`, both included.
 struct IndexRange {
@@ -95,14 +82,14 @@ int run_expand(Console& console, const SweepArguments& a, const Program& program
                        {"repeat", task.repeat},
                        {"parameters", parameters_json(task)}});
   }
-  const auto chunk = task_s ? std::optional(suggested_chunk(*task_s, sweep.count())) : std::nullopt;
+  const std::size_t chunk = task_s ? suggested_chunk(*task_s, sweep.count()) : 0;
   Json json{{"tasks", sweep.count()},
             {"refused", sweep.refused()},
             {"keys", sweep.keys()},
             {"sweep_sha256", sweep.hash()},
             {"results", sweep.file().results.string()},
             {"predicted_task_s", json_number(task_s)},
-            {"suggested_chunk", chunk ? Json(*chunk) : Json()}};
+            {"suggested_chunk", chunk > 0 ? Json(chunk) : Json()}};
   if (a.list) json["list"] = std::move(tasks);
   if (console.json()) {
     console.object(json);
@@ -112,7 +99,7 @@ int run_expand(Console& console, const SweepArguments& a, const Program& program
                            sweep.refused(), sweep.file().results.string()));
   if (task_s) {
     console.text(fmt::format("about {:.3g} s a task, {:.3g} h on one core; {} tasks a job make about 15 minutes",
-                             *task_s, *task_s * static_cast<double>(sweep.count()) / 3600, *chunk));
+                             *task_s, *task_s * static_cast<double>(sweep.count()) / 3600, chunk));
   }
   if (a.list) {
     for (const auto& task : json["list"])
@@ -180,54 +167,22 @@ Result<std::optional<IndexRange>> named_range(Console& console, const SweepArgum
   return std::optional(chunk_of(found->index, chunk));
 }
 
-/// One child process for a range of tasks.
-Result<pid_t> started(const SweepArguments& a, IndexRange range) {
-  std::error_code problem;
-  const std::string self = std::filesystem::read_symlink("/proc/self/exe", problem).string();
-  std::vector<std::string> words{
-      self, "sweep", "run", a.file, "--range", fmt::format("{}-{}", range.first, range.last), "--quiet"};
-  std::vector<char*> pointers;
-  for (auto& word : words) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
-  pid_t process = 0;
-  // Its standard output is not that of the command: there is one JSON object.
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", 1, 0);
-  const int failure = ::posix_spawn(&process, self.c_str(), &actions, nullptr, pointers.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failure != 0)
-    return fail(ErrorCode::internal, "a process cannot be started: " + std::string(std::strerror(failure)));
-  return process;
-}
-
 /// Several processes, each with the next range when it is free.
 Result<int> run_in_processes(Console& console, const SweepArguments& a, const Sweep& sweep, std::stop_token stop) {
   const std::size_t tasks = sweep.count();
-  const std::size_t chunk = a.chunk > 0 ? a.chunk : std::clamp<std::size_t>(tasks / (*a.jobs * 8), 1, 500);
-  std::set<pid_t> running;
-  std::size_t next = 0, ended = 0;
-  int worst = 0;
-  while (next < tasks || !running.empty()) {
-    while (next < tasks && running.size() < *a.jobs && !stop.stop_requested()) {
-      const auto process = started(a, {next, std::min(next + chunk, tasks) - 1});
-      if (!process) return tl::unexpected(process.error());
-      running.insert(*process);
-      next += chunk;
-    }
-    if (running.empty()) break;
-    int status = 0;
-    const pid_t process = ::waitpid(-1, &status, 0);
-    if (process < 0 && errno == EINTR) continue;
-    if (process < 0) break;
-    if (running.erase(process) == 0) continue;
-    // A process that was killed leaves its tasks open; the next run does them.
-    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : exit_code(ErrorCode::internal);
-    worst = std::max(worst, code);
-    console.progress(std::min(++ended * chunk, tasks), tasks);
-  }
+  const ProcessPool pool{.tasks = tasks,
+                         .jobs = *a.jobs,
+                         .chunk = a.chunk > 0 ? a.chunk : std::clamp<std::size_t>(tasks / (*a.jobs * 8), 1, 500),
+                         .command =
+                             [&](std::size_t first, std::size_t last) {
+                               return std::vector<std::string>{
+                                   own_program(), "sweep", "run", a.file, "--range", fmt::format("{}-{}", first, last),
+                                   "--quiet"};
+                             },
+                         .on_progress = [&](std::size_t done) { console.progress(done, tasks); }};
+  const auto code = run_pool(pool, std::move(stop));
   console.end_progress();
-  return stop.stop_requested() ? exit_code(ErrorCode::interrupted) : worst;
+  return code;
 }
 
 Json counts_json(const SweepStatus& status) {
@@ -300,84 +255,12 @@ int run_status(Console& console, const SweepArguments& a) {
   return 0;
 }
 
-Result<std::vector<std::string>> site_options(const std::string& file) {
-  if (file.empty()) return std::vector<std::string>{};
-  const auto text = read_text_file(file);
-  if (!text) return tl::unexpected(text.error());
-  return site_options_from(*text, file);
-}
-
-Result<std::string> text_for(const SweepArguments& a, Scheduler scheduler, std::size_t tasks) {
-  const auto options = site_options(a.options_file);
-  if (!options) return tl::unexpected(options.error());
-  const JobList jobs{
-      .program = a.program, .sweep_file = a.file, .tasks = tasks, .chunk = std::max<std::size_t>(a.chunk, 1)};
-  return job_text(scheduler, jobs, *options);
-}
-
-int run_tasks(Console& console, const SweepArguments& a) {
-  const auto runnable = load_sweep(a.file);
-  if (!runnable) return report_error(console, runnable.error());
-  const auto scheduler = std::find_if(all_schedulers.begin(), all_schedulers.end(),
-                                      [&](Scheduler s) { return to_string(s) == a.scheduler; });
-  const auto text = text_for(a, *scheduler, runnable->sweep.count());
-  if (!text) return report_error(console, text.error());
-  if (console.json()) {
-    console.object({{"for", a.scheduler}, {"tasks", runnable->sweep.count()}, {"text", *text}});
-    return 0;
-  }
-  std::string_view rest = *text;
-  while (!rest.empty()) {
-    const auto end = std::min(rest.find('\n'), rest.size());
-    console.text(rest.substr(0, end));
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-  }
-  return 0;
-}
-
-/// Runs sbatch on a script; its exit code, or why it cannot be started.
-Result<int> submitted(const std::string& script) {
-  std::vector<std::string> words{"sbatch", script};
-  std::vector<char*> pointers{words[0].data(), words[1].data(), nullptr};
-  pid_t process = 0;
-  if (const int failure = ::posix_spawnp(&process, "sbatch", nullptr, nullptr, pointers.data(), environ);
-      failure != 0) {
-    return fail(ErrorCode::not_found,
-                "sbatch cannot be started (" + std::string(std::strerror(failure)) + "): the script is " + script);
-  }
-  int status = 0;
-  while (::waitpid(process, &status, 0) < 0) {
-    if (errno != EINTR) return fail(ErrorCode::internal, "sbatch cannot be waited for");
-  }
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
-    return fail(ErrorCode::not_found, "sbatch is not there: the script is " + script);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
-}
-
 int run_submit(Console& console, SweepArguments a, const Program& program) {
   if (a.engine == "local") {
     if (!a.jobs) a.jobs = 2;
     return run_sweep(console, a, program);
   }
-  const auto runnable = load_sweep(a.file);
-  if (!runnable) return report_error(console, runnable.error());
-  std::error_code problem;
-  a.file = std::filesystem::absolute(a.file, problem).string();
-  if (a.program == "todbench") a.program = std::filesystem::read_symlink("/proc/self/exe", problem).string();
-  const auto text = text_for(a, Scheduler::slurm, runnable->sweep.count());
-  if (!text) return report_error(console, text.error());
-  const auto script = runnable->sweep.file().results / "slurm.sh";
-  if (auto made = make_folder(script.parent_path()); !made) return report_error(console, made.error());
-  if (auto written = write_file_atomically(script, *text); !written) return report_error(console, written.error());
-  if (!a.dry_run) {
-    const auto code = submitted(script.string());
-    if (!code) return report_error(console, code.error());
-    if (*code != 0)
-      return report_error(console, {ErrorCode::not_found, fmt::format("sbatch ended with exit code {}", *code)});
-  }
-  if (console.json()) console.object({{"engine", a.engine}, {"script", script.string()}, {"submitted", !a.dry_run}});
-  console.text((a.dry_run ? "written, not submitted: " : "submitted: ") + script.string());
-  return 0;
+  return submit_to_slurm(console, std::move(a));
 }
 
 int run_collect(Console& console, const SweepArguments& a) {
@@ -453,7 +336,7 @@ void add_sweep_command(CLI::App& app, Program& program) {
   tasks->add_option("--program", a->program, "how the program is called there")->capture_default_str();
   tasks->add_option("--options", a->options_file, "file with options of the site, one a line");
   add_chunk(*tasks, a);
-  finish_command(*tasks, program, [a](Console& console) { return run_tasks(console, *a); });
+  finish_command(*tasks, program, [a](Console& console) { return print_tasks(console, *a); });
   auto* submit = add_part(*sweep, "submit", "submits the tasks", a);
   submit->add_option("--engine", a->engine, "local or slurm")
       ->check(CLI::IsMember({"local", "slurm"}))

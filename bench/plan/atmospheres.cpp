@@ -179,15 +179,21 @@ std::string without_remarks(std::string_view text) {
 Result<Atmosphere> from_file(const std::string& file, const AtmosphereRequest& request) {
   const auto text = read_text_file(file);
   if (!text) return tl::unexpected(text.error());
+  return parse_atmosphere(*text, file, request);
+}
+
+}  // namespace
+
+Result<Atmosphere> parse_atmosphere(std::string_view text, const std::string& file, const AtmosphereRequest& request) {
   Atmosphere found{.name = file, .source = "table of the file " + file};
   const bool csv = std::filesystem::path(file).extension() == ".csv";
   Result<Transmittance> air = found.air;
   if (csv) {
-    const auto table = parse_csv(without_remarks(*text), file);
+    const auto table = parse_csv(without_remarks(text), file);
     if (!table) return tl::unexpected(table.error());
     air = air_of_csv(*table, request);
   } else {
-    const auto runs = parse_tape7(*text);
+    const auto runs = parse_tape7(text);
     if (!runs) return fail(file, runs.error());
     air = air_of_tape7(*runs, request.band, request.weight_temperature_k);
     found.source = fmt::format("tape7 file {}, {} runs, band {}, weight dB/dT at {:g} K", file, runs->size(),
@@ -203,8 +209,6 @@ Result<Atmosphere> from_file(const std::string& file, const AtmosphereRequest& r
   found.air = *std::move(air);
   return found;
 }
-
-}  // namespace
 
 std::vector<std::string> atmosphere_names() {
   std::vector<std::string> names{"clear", "beer-lambert"};

@@ -40,4 +40,8 @@ struct Atmosphere {
 /// `invalid_input` in one sentence with the file, and the line where there is one.
 [[nodiscard]] Result<Atmosphere> load_atmosphere(std::string_view reference, const AtmosphereRequest& request);
 
+/// A file's text; its name says how it is read. Errors: as load_atmosphere().
+[[nodiscard]] Result<Atmosphere> parse_atmosphere(std::string_view text, const std::string& file,
+                                                  const AtmosphereRequest& request);
+
 }  // namespace todbench

@@ -1,0 +1,173 @@
+// Ranges through air, test pictures and sweeps as a user runs them.
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "bench/plan/descriptions.h"
+#include "tests/system/system_test_support.h"
+
+namespace todbench::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string content(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+TEST(RangeCommand, FindsTheClosedFormsOfAcquireAndTtpOnGivenCurves) {
+  const TemporaryFolder folder;
+  std::ostringstream mrtd, ctf;
+  mrtd.precision(17);
+  ctf.precision(17);
+  mrtd << "frequency_per_mrad,mrtd_k\n0,0.01\n3," << 0.01 * std::exp(18.0) << "\n";
+  ctf << "frequency_per_mrad,ctf\n0,0.01\n3," << 0.01 * std::exp(7.5) << "\n";
+  folder.write("m.csv", mrtd.str());
+  folder.write("c.csv", ctf.str());
+
+  const Ended acquire = todbench({"range", "--size-m", "2.3", "--delta-t-k", "2", "--extinction-per-km", "0.2",
+                                  "--mrtd", "m.csv", "--models", "acquire", "--n50", "1", "--json"},
+                                 {.folder = folder.path()});
+  const Ended ttp = todbench({"range", "--size-m", "3.11", "--delta-t-k", "2", "--extinction-per-km", "0.2", "--ctf",
+                              "c.csv", "--target-contrast", "0.3", "--v50", "14.8", "--models", "ttp", "--json"},
+                             {.folder = folder.path()});
+
+  // tests/golden/reference_mrtd_ttp_shared.json.
+  ASSERT_EQ(acquire.code, 0) << acquire.err;
+  EXPECT_NEAR(one_object(acquire)["models"]["acquire"]["r50_m"].get<double>(), 1886.397824, 1e-5);
+  ASSERT_EQ(ttp.code, 0) << ttp.err;
+  EXPECT_NEAR(one_object(ttp)["models"]["ttp"]["r75_m"].get<double>(), 405.68794744, 1e-5);
+}
+
+TEST(RangeCommand, ReadsTheSessionThroughAirAndRefusesWhatIsNone) {
+  const TemporaryFolder folder;
+  folder.write("plan.toml", small_plan(8));
+  ASSERT_TRUE(completed(todbench({"simulate", "./plan.toml", "--out", "s"}, {.folder = folder.path()})));
+  folder.write("unsorted.csv", "range_km,transmittance\n1,0.5\n0.5,0.7\n");
+  folder.write("empty.csv", "");
+  folder.write("short.csv", "range_m,tau\n10,0.99\n50,0.98\n");
+  std::ostringstream table;
+  table.precision(17);
+  table << "range_km,transmittance\n";
+  for (const double range_km : {0.01, 0.3, 40.0}) table << range_km << "," << std::exp(-0.3 * range_km) << "\n";
+  folder.write("exponential.csv", table.str());
+  const auto range = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"range", "--tod", "s", "--size-m", "4.9", "--delta-t-k", "20", "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return todbench(arguments, {.folder = folder.path()});
+  };
+
+  const Json plain = one_object(range({}));
+  const Json clear = one_object(range({"--atmosphere", "clear"}));
+  const Json lambert = one_object(range({"--extinction-per-km", "0.3"}));
+  const Json tabulated = one_object(range({"--atmosphere", "./exponential.csv"}));
+  const Json all =
+      one_object(range({"--atmosphere", "us-standard", "--models", "all", "--page", "p.html", "--svg", "p.svg"}));
+  const Ended beyond = range({"--atmosphere", "./short.csv"});
+
+  EXPECT_EQ(clear["r75_m"], plain["r75_m"]);
+  EXPECT_EQ(clear["curve"], plain["curve"]);
+  EXPECT_EQ(plain["models"]["tod"]["r75_m"], plain["r75_m"]);
+  EXPECT_NEAR(tabulated["r75_m"].get<double>() / lambert["r75_m"].get<double>(), 1, 1e-9);
+  for (const char* name : {"tod", "acquire", "ttp", "mtdp"}) {
+    EXPECT_TRUE(all["models"][name]["r75_m"].is_number()) << name;
+    EXPECT_TRUE(all["models"][name].contains("criterion"));
+  }
+  EXPECT_THAT(content(folder.path() / "p.html"), HasSubstr("ACQUIRE"));
+  EXPECT_EQ(beyond.code, 3);
+  EXPECT_TRUE(one_object(beyond)["r75_m"].is_null());
+  EXPECT_EQ(one_object(beyond)["r75_ci95_m"][0], 50.0);
+  expect_refused(range({"--atmosphere", "./unsorted.csv"}), 2, "must increase");
+  expect_refused(range({"--atmosphere", "./empty.csv"}), 2, "empty");
+  expect_refused(range({"--atmosphere", "us-standrd"}), 2, "us-standard");
+  expect_refused(range({"--background-k", "-3"}), 2, "above 0 K");
+  expect_refused(range({"--air-k", "0"}), 2, "above 0 K");
+  expect_refused(range({"--models", "tod,nvthermip"}), 2, "unknown model");
+  expect_refused(range({"--atmosphere", "tropical", "--extinction-per-km", "0.2"}), 2, "beside");
+}
+
+TEST(PatternCommand, WritesPictureAndPlate) {
+  const TemporaryFolder folder;
+  for (const char* kind : {"tod", "mrtd", "edge", "ramp", "siemens", "flat"}) {
+    for (const char* format : {"png16", "tiff", "npy"}) {
+      const std::string out = std::string(kind) + "-" + format + ".picture";
+      const Ended drawn =
+          todbench({"pattern", kind, "--pixels", "320", "240", "--format", format, "--out", out, "--json"},
+                   {.folder = folder.path()});
+      EXPECT_EQ(drawn.code, 0) << drawn.err;
+      EXPECT_FALSE(content(folder.path() / out).empty());
+      EXPECT_EQ(one_object(drawn)["truth"], std::string(kind) + "-" + format + ".toml");
+    }
+  }
+
+  const auto plate = load_plate((folder.path() / "tod-npy.toml").string());
+
+  ASSERT_TRUE(plate) << plate.error().message;
+  EXPECT_EQ(plate->width_mm, 320);
+  EXPECT_GE(plate->triangles.size(), 20u);
+  expect_refused(todbench({"pattern", "tod", "--pixels", "3", "3", "--out", "x.png"}, {.folder = folder.path()}), 2,
+                 "do not hold");
+  expect_refused(todbench({"pattern", "tod", "--pixels", "300", "300", "--out", "no/x.png"}, {.folder = folder.path()}),
+                 2, "no folder");
+}
+
+TEST(SweepCommand, HasTheSameTableHoweverItWasRun) {
+  const TemporaryFolder folder;
+  const std::string sweep =
+      "kind = \"estimate\"\n[base]\naccuracy = \"draft\"\ndelta_t_k = [16.9]\n[grid]\nnetd_k = [0.07, 0.4]\n"
+      "detector_um = [30, 42.5]\n[repeat]\nseeds = 2\n";
+  const auto in = [&](const std::string& part, std::vector<std::string> more, const ChildOptions& options = {}) {
+    more.insert(more.begin(), {"sweep", part, "s.toml"});
+    ChildOptions there = options;
+    if (there.folder.empty()) there.folder = folder.path() / "a";
+    return todbench(more, there);
+  };
+  folder.write("a/s.toml", sweep);
+  folder.write("b/s.toml", sweep);
+  folder.write("c/s.toml", sweep);
+
+  EXPECT_EQ(one_object(in("expand", {"--json"}))["tasks"], 8);
+  EXPECT_EQ(in("collect", {}).code, 3) << "nothing is there yet";
+  EXPECT_EQ(in("run", {"--range", "0-2"}).code, 0);
+  EXPECT_EQ(one_object(in("status", {"--json"}))["open"], "3-7");
+  EXPECT_EQ(in("run", {}).code, 0);
+  EXPECT_EQ(in("run", {"--jobs", "3", "--chunk", "1"}, {.folder = folder.path() / "b"}).code, 0);
+  for (const char* index : {"3", "1", "0", "2"}) {
+    const Ended job =
+        in("run", {"--chunk", "2"}, {.folder = folder.path() / "c", .setenv = {{"SLURM_ARRAY_TASK_ID", index}}});
+    EXPECT_EQ(job.code, 0) << job.err;
+  }
+  for (const char* part : {"a", "b", "c"}) EXPECT_EQ(in("collect", {}, {.folder = folder.path() / part}).code, 0);
+
+  const std::string table = content(folder.path() / "a/s.results/table.csv");
+  EXPECT_THAT(table, HasSubstr("netd_k,detector_um,repeat,seed"));
+  EXPECT_EQ(content(folder.path() / "b/s.results/table.csv"), table);
+  EXPECT_EQ(content(folder.path() / "c/s.results/table.csv"), table);
+  const Json json = one_object(in("collect", {"--json"}));
+  EXPECT_EQ(json["rows"].size(), 8u);
+  EXPECT_EQ(json["effects"][0]["parameters"][0]["key"], "netd_k");
+}
+
+TEST(SweepCommand, PrintsTaskListsAndRefusesInASentence) {
+  const TemporaryFolder folder;
+  folder.write("s.toml", "[grid]\nnetd_k = [0.03, 0.05]\n[repeat]\nseeds = 2\n");
+  folder.write("bad.toml", "[grid]\nnetd = [0.03]\n");
+  const auto run = [&](const std::vector<std::string>& arguments) {
+    return todbench(arguments, {.folder = folder.path()});
+  };
+
+  EXPECT_EQ(lines_of(run({"sweep", "tasks", "s.toml", "--for", "parallel"}).out).size(), 4u);
+  EXPECT_THAT(run({"sweep", "tasks", "s.toml", "--for", "slurm"}).out, HasSubstr("--array=0-3"));
+  EXPECT_EQ(run({"sweep", "submit", "s.toml", "--engine", "slurm", "--dry-run", "--quiet"}).code, 0);
+  EXPECT_THAT(content(folder.path() / "s.results/slurm.sh"), HasSubstr("#SBATCH --array=0-3"));
+  expect_refused(run({"sweep", "expand", "bad.toml"}), 2, "unknown parameter 'netd'");
+  expect_refused(run({"sweep", "expand", "none.toml"}), 2, "none.toml");
+  expect_refused(run({"sweep", "run", "s.toml", "--range", "9-3"}), 2, "--range");
+  expect_refused(run({"sweep", "run", "s.toml", "--index", "4"}), 2, "beyond");
+  expect_refused(run({"sweep"}), 2, "sweep");
+}
+
+}  // namespace
+}  // namespace todbench::testing
