@@ -101,6 +101,11 @@ int main(int argc, char** argv) {
 
   const QStringList arguments = options.positionalArguments();
   const auto shown = arguments.isEmpty() ? std::filesystem::path() : session_folder(arguments.constFirst());
+  if (!shown.empty() && !std::filesystem::exists(shown / "session.toml")) {
+    std::fprintf(stderr, "%s: not a session folder (there is no session.toml)\n",
+                 todbench::one_line(shown.string()).c_str());
+    return 2;
+  }
   const QString beside = arguments.isEmpty() ? "." : QString::fromStdString(shown.parent_path().string());
   const QString sessions = options.isSet("sessions") ? options.value("sessions") : beside;
   if (!QDir().mkpath(sessions)) {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "bench/report/report_csv.h"
 #include "bench/run/report_data.h"
 #include "bench/session/human_record.h"
 #include "bench/session/manifest.h"
@@ -40,7 +41,9 @@ PageWriter html_page(std::filesystem::path folder) {
   return [folder = std::move(folder)](const ReportData& data) -> Result<std::vector<std::string>> {
     if (auto written = write_file_atomically(folder / "report.html", render_report(data)); !written)
       return tl::unexpected(written.error());
-    return std::vector<std::string>{"report.html"};
+    if (auto written = write_file_atomically(folder / "report.csv", report_csv(data)); !written)
+      return tl::unexpected(written.error());
+    return std::vector<std::string>{"report.html", "report.csv"};
   };
 }
 

@@ -24,7 +24,7 @@ using PageWriter = std::function<Result<std::vector<std::string>>(const ReportDa
 /// with the path; errors of report_data_of() and of `write_pages`.
 [[nodiscard]] Result<ReportData> rebuild_report(const Session& session, const std::filesystem::path& folder,
                                                 const PageWriter& write_pages);
-/// Writes report.html.
+/// Writes report.html and report.csv.
 [[nodiscard]] PageWriter html_page(std::filesystem::path folder);
 
 }  // namespace todbench

@@ -3,9 +3,11 @@
 #include <utility>
 
 #include "bench/report/report.h"
+#include "bench/report/report_csv.h"
 #include "bench/run/report_data.h"
 #include "bench/session/ending_reserve.h"
 #include "bench/session/manifest.h"
+#include "bench/text/files.h"
 
 namespace todbench {
 namespace {
@@ -22,14 +24,25 @@ class Refusals {
   std::optional<Error> first_;
 };
 
-/// Writes report.html from what the folder holds, which is all but the manifest.
-Result<void> write_report_of(SessionFolder& folder, const ManifestEntries& entries) {
+/// What a report says of what the folder holds, which is all but the manifest.
+Result<ReportData> report_of(const SessionFolder& folder, const ManifestEntries& entries) {
   auto session = read_session(folder.path());
   if (!session) return tl::unexpected(session.error());
   session->manifest_sha256 = digest_of(entries);
-  auto data = report_data(*session, session_name(folder.path()));
-  if (!data) return tl::unexpected(data.error());
-  return folder.write_report(render_report(*data));
+  return report_data(*session, session_name(folder.path()));
+}
+
+/// Page and table, each in the manifest as far as it was written.
+void write_report_of(SessionFolder& folder, ManifestEntries& entries, Refusals& refused) {
+  const auto data = report_of(folder, entries);
+  if (!data) return refused.keep(tl::unexpected(data.error()));
+  const std::pair<const char*, Result<void>> pages[] = {
+      {"report.html", folder.write_report(render_report(*data))},
+      {"report.csv", write_file_atomically(folder.path() / "report.csv", report_csv(*data))}};
+  for (const auto& [name, written] : pages) {
+    refused.keep(written);
+    if (written) refused.keep(update_entries(folder.path(), {name}, entries));
+  }
 }
 
 /// What is known of the run when it ends.
@@ -57,9 +70,7 @@ Result<void> close_session(const SessionFrame& frame, const Provenance& provenan
   if (!entries) {
     refused.keep(tl::unexpected(entries.error()));
   } else if (last.run) {
-    const auto written = write_report_of(folder, *entries);
-    refused.keep(written);
-    if (written) refused.keep(update_entries(folder.path(), {"report.html"}, *entries));
+    write_report_of(folder, *entries, refused);
   }
   free_ending_room(folder.path(), EndingRoom::manifest);
   if (entries) refused.keep(write_manifest(folder.path(), *entries));

@@ -12,7 +12,8 @@ using namespace todbench;
 
 int main() {
   const TargetPlate plate = example_plate();
-  const SensorSpec spec;  // 320 x 240, 1.31 mrad, 70 mK
+  SensorSpec spec;  // 320 x 240, 1.31 mrad, 70 mK
+  spec.name = "mine";
   const auto model = std::make_shared<const SensorModel>(spec, full_plan(spec, {}, {}), Accuracy::draft(), 1);
   const auto scene = std::make_shared<SceneHolder>(PlateScene{.plate = plate, .distance_m = 2});
   const auto camera = simulated_source(model, scene, "1");
@@ -32,7 +33,8 @@ int main() {
   UnattendedHost host;
   const auto measured = measure(*camera, *target, observer, schedule, options, host, {}, {});
   const auto curve = measured ? tod_curve(measured->trials, {}) : tl::unexpected(measured.error());
-  if (!curve || !curve->points.front().fit.usable()) return fmt::print("no threshold\n"), 1;
+  if (!curve) return fmt::print("{}\n", curve.error().message), 1;
+  if (!curve->points.front().fit.usable()) return fmt::print("no threshold\n"), 3;
   const PsychometricFit& fit = curve->points.front().fit;
   fmt::print("S75 {:.3f} mrad, 95 % {:.3f} to {:.3f}, {} trials\n", *fit.threshold, *fit.ci95.low, *fit.ci95.high,
              fit.trials);

@@ -7,7 +7,7 @@
 inline todbench::TargetPlate example_plate() {
   using todbench::Apex;
   todbench::TargetPlate plate{.name = "example", .description = "", .width_mm = 200, .height_mm = 240, .triangles = {}};
-  const double sizes_mm[4] = {13.5, 3.2, 4.4, 6.4};
+  const double sizes_mm[4] = {13.5, 3.2, 4.4, 6.8};
   const Apex apexes[4][4] = {{Apex::left, Apex::up, Apex::down, Apex::left},
                              {Apex::down, Apex::up, Apex::left, Apex::right},
                              {Apex::right, Apex::right, Apex::up, Apex::down},

@@ -8,6 +8,7 @@ using namespace todbench;
 
 int main() {
   SensorSpec spec;  // what is not said has the numbers of an uncooled camera of 320 x 240
+  spec.name = "mine";
   spec.width = 160, spec.height = 120;
   spec.pitch_um = 17, spec.detector_um = 15;
   spec.focal_length_mm = 9;

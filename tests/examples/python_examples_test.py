@@ -44,6 +44,27 @@ class Examples(unittest.TestCase):
         for point in self.json["points"]:
             self.assertEqual(np.sum(session.trials["set_delta_t_k"] == point["delta_t_k"]), point["trials"])
 
+    def test_the_table_of_the_report_is_that_of_json(self):
+        report = todbench_session.read_table(self.session / "report.csv")
+        whole = (report["section"] == "verdict") & (report["name"] == "decision")
+        self.assertEqual(list(report["decision"][whole]), [self.json["verdict"]])
+        for point in self.json["points"]:
+            row = (report["name"] == "s75_mrad") & (report["set_delta_t_k"] == point["delta_t_k"])
+            self.assertEqual(report["section"][row][0], "simulated")
+            np.testing.assert_array_equal(report["value"][row], [point["s75_mrad"]])
+            np.testing.assert_array_equal([report["low"][row][0], report["high"][row][0]], point["s75_ci95_mrad"])
+        self.assertEqual(run(PROGRAM, "verify", self.session).returncode, 0)
+
+    def test_the_report_is_rebuilt_as_it_was(self):
+        rebuilt = self.folder / "rebuilt"
+        shutil.copytree(self.session, rebuilt)
+        (rebuilt / "report.csv").unlink()
+        self.assertEqual(run(PROGRAM, "report", rebuilt).returncode, 0)
+        # The name of the folder is the name of the session.
+        before, after = ((folder / "report.csv").read_text().splitlines()[2:] for folder in (self.session, rebuilt))
+        self.assertEqual(before, after)
+        self.assertEqual(run(PROGRAM, "verify", rebuilt).returncode, 0)
+
     def test_a_changed_session_is_refused(self):
         changed = self.folder / "changed"
         shutil.copytree(self.session, changed)

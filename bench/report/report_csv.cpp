@@ -1,0 +1,169 @@
+#include "bench/report/report_csv.h"
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include "bench/judgement/demand_kinds.h"
+#include "bench/text/text.h"
+#include "tod/psychometric/acuity.h"
+
+namespace todbench {
+namespace {
+
+struct Row {
+  std::string section, name;
+  std::optional<double> set_delta_t_k{};
+  std::optional<double> value{};
+  Interval interval{};
+  std::optional<int> interval_percent{};
+  std::optional<double> limit{};
+  std::string unit{};
+  std::string decision{};
+  std::string text{};
+};
+
+std::string field(const std::optional<double>& number) {
+  return number ? number_text(*number) : "";
+}
+
+void add(std::string& table, const Row& row) {
+  const std::array fields{csv_field(row.section),
+                          csv_field(row.name),
+                          field(row.set_delta_t_k),
+                          field(row.value),
+                          field(row.interval.low),
+                          field(row.interval.high),
+                          row.interval_percent ? std::to_string(*row.interval_percent) : std::string(),
+                          field(row.limit),
+                          csv_field(row.unit),
+                          csv_field(row.decision),
+                          csv_field(row.text)};
+  for (const std::string& text : fields) table += (&text == &fields.front() ? "" : ",") + text;
+  table += "\n";
+}
+
+void add_session(std::string& table, const ReportData& data) {
+  const auto text = [&](std::string name, const std::string& said) {
+    add(table, {.section = "session", .name = std::move(name), .text = said});
+  };
+  text("session", data.session);
+  text("description", data.description);
+  text("operator", data.operator_name);
+  text("place", data.place);
+  text("started", data.started);
+  text("finished", data.finished);
+  for (const auto& [name, value] : data.conditions) text(name, value);
+  if (data.camera) {
+    text("camera_id", data.camera->id);
+    text("camera_vendor", data.camera->vendor);
+    text("camera_model", data.camera->model);
+    text("camera_serial", data.camera->serial);
+    text("camera_firmware", data.camera->firmware);
+  }
+  text("observer", data.observer);
+  text("manifest_sha256", data.manifest_sha256);
+  if (data.interrupted) text("ended_early", *data.interrupted);
+  for (const std::string& file : data.accepted_changes) text("changed_file", file);
+}
+
+void add_verdict(std::string& table, const ReportData& data) {
+  if (report_verdict(data) == ReportVerdict::changed) {
+    add(table, {.section = "verdict",
+                .name = "decision",
+                .decision = "none",
+                .text = "files of the session are not those that the run wrote"});
+    return;
+  }
+  if (!data.verdict) return;
+  add(table, {.section = "verdict",
+              .name = "decision",
+              .decision = std::string(to_string(data.verdict->decision)),
+              .text = data.verdict->reason});
+  add(table, {.section = "verdict", .name = "rule", .text = std::string(to_string(data.verdict->rule))});
+  add(table, {.section = "verdict", .name = "judged", .text = std::string(to_string(data.verdict->judged))});
+  for (const Demand& demand : data.verdict->demands) {
+    add(table, {.section = "demand",
+                .name = std::string(to_string(demand.kind)),
+                .set_delta_t_k = demand.delta_t_k,
+                .value = demand.result,
+                .interval = demand.interval,
+                .interval_percent = demand.interval_percent,
+                .limit = demand.limit,
+                .unit = std::string(row_of(demand.kind).unit),
+                .decision = std::string(to_string(demand.decision)),
+                .text = demand.reason});
+  }
+}
+
+void add_curve(std::string& table, const std::string& section, const std::optional<TodCurve>& curve) {
+  if (!curve) return;
+  for (const TodPoint& point : curve->points) {
+    const std::string verdict(to_string(point.fit.verdict));
+    add(table, {.section = section,
+                .name = "delta_t_k",
+                .set_delta_t_k = point.set_delta_t_k,
+                .value = point.delta_t_k,
+                .unit = "K"});
+    add(table, {.section = section,
+                .name = "s75_mrad",
+                .set_delta_t_k = point.set_delta_t_k,
+                .value = point.fit.threshold,
+                .interval = point.fit.ci95,
+                .interval_percent = 95,
+                .unit = "mrad",
+                .decision = verdict});
+    add(table, {.section = section,
+                .name = "acuity_per_mrad",
+                .set_delta_t_k = point.set_delta_t_k,
+                .value = acuity_per_mrad(point.fit),
+                .interval = acuity_interval(point.fit.ci95),
+                .interval_percent = 95,
+                .unit = "1/mrad",
+                .decision = verdict});
+    add(table, {.section = section, .name = "trials", .set_delta_t_k = point.set_delta_t_k, .value = point.fit.trials});
+  }
+}
+
+void add_comparison(std::string& table, const std::optional<Comparison>& comparison) {
+  if (!comparison) return;
+  for (const ComparisonPoint& point : comparison->points) {
+    add(table, {.section = "comparison",
+                .name = "acuity_ratio",
+                .set_delta_t_k = point.set_delta_t_k,
+                .value = point.ratio,
+                .interval = point.ratio_ci95,
+                .interval_percent = 95,
+                .decision = std::string(to_string(point.verdict))});
+    add(table, {.section = "comparison",
+                .name = "equivalence_margin_percent",
+                .set_delta_t_k = point.set_delta_t_k,
+                .value = point.margin_percent,
+                .unit = "%"});
+  }
+}
+
+void add_frames(std::string& table, const ReportData& data) {
+  const auto count = [&](const std::string& name, double frames) {
+    add(table, {.section = "frames", .name = name, .value = frames});
+  };
+  count("used", static_cast<double>(data.frames_used));
+  count("lost", static_cast<double>(data.frames_lost));
+  for (const auto& [reason, frames] : data.frames_rejected) count("rejected: " + reason, static_cast<double>(frames));
+}
+
+}  // namespace
+
+std::string report_csv(const ReportData& data) {
+  std::string table = "section,name,set_delta_t_k,value,low,high,interval_percent,limit,unit,decision,text\n";
+  add_session(table, data);
+  add_verdict(table, data);
+  add_curve(table, "measured", data.measured);
+  add_curve(table, "simulated", data.simulated);
+  add_curve(table, "human", data.human);
+  add_comparison(table, data.comparison);
+  add_frames(table, data);
+  return table;
+}
+
+}  // namespace todbench
