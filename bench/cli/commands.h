@@ -53,6 +53,8 @@ void add_report_command(CLI::App& app, Program& program);
 void add_verify_command(CLI::App& app, Program& program);
 void add_noise_command(CLI::App& app, Program& program);
 void add_range_command(CLI::App& app, Program& program);
+void add_reference_set_command(CLI::App& app, Program& program);
+void add_observer_command(CLI::App& app, Program& program);
 void add_reproduce_command(CLI::App& app, Program& program);
 
 }  // namespace todbench

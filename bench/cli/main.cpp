@@ -83,6 +83,11 @@ std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, co
            " (todbench --help lists the commands)";
   }
   const CLI::App* command = app.get_subcommand(asked);
+  if (words.size() > 1) {
+    for (const CLI::App* below : command->get_subcommands({})) {
+      if (below->get_name() == words[1]) command = below;
+    }
+  }
   std::vector<std::string> options;
   for (const CLI::Option* option : command->get_options()) {
     for (const auto& name : option->get_lnames()) options.push_back("--" + name);
@@ -132,6 +137,8 @@ int run(int argc, char** argv) {
   add_noise_command(app, program);
   add_range_command(app, program);
   add_reproduce_command(app, program);
+  add_observer_command(app, program);
+  add_reference_set_command(app, program);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {
