@@ -58,6 +58,8 @@ void add_sfr_command(CLI::App& app, Program& program);
 void add_sitf_command(CLI::App& app, Program& program);
 void add_conformity_command(CLI::App& app, Program& program);
 void add_budget_command(CLI::App& app, Program& program);
+void add_reference_set_command(CLI::App& app, Program& program);
+void add_observer_command(CLI::App& app, Program& program);
 void add_reproduce_command(CLI::App& app, Program& program);
 void add_sweep_command(CLI::App& app, Program& program);
 

@@ -89,6 +89,11 @@ std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, co
            " (todbench --help lists the commands)";
   }
   const CLI::App* command = app.get_subcommand(asked);
+  if (words.size() > 1) {
+    for (const CLI::App* below : command->get_subcommands({})) {
+      if (below->get_name() == words[1]) command = below;
+    }
+  }
   std::vector<std::string> options;
   std::vector<const CLI::App*> parts{command};
   for (const CLI::App* part : command->get_subcommands([](const CLI::App*) { return true; })) parts.push_back(part);
@@ -161,6 +166,8 @@ int run(int argc, char** argv) {
   add_budget_command(app, program);
   add_range_command(app, program);
   add_reproduce_command(app, program);
+  add_observer_command(app, program);
+  add_reference_set_command(app, program);
   add_sweep_command(app, program);
   add_manual_command(app, program);
   if (argc > 1 && std::string_view(argv[1]) == "complete") {

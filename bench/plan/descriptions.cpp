@@ -1,5 +1,7 @@
 #include "bench/plan/descriptions.h"
 
+#include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -69,6 +71,34 @@ void read_key(TomlReader& reader, const SensorKey& key, SensorSpec& spec) {
   }
 }
 
+/// Where an observer was fitted to people: what `todbench observer fit` says of it. Nothing of it makes the observer,
+/// but a file that is not what the program writes is not taken for one.
+void read_fit(TomlReader fit) {
+  if (!fit.present()) return;
+  const NumberRange any = NumberRange::any(), share = NumberRange::between(0, 1);
+  (void)fit.choice("schema", std::vector<std::string>{"todbench-observer-fit-1"}, std::nullopt);
+  for (const char* key : {"program", "from", "from_sha256"}) (void)fit.text(key, std::nullopt);
+  (void)fit.texts("free", std::nullopt);
+  for (const char* key : {"persons", "answers", "seed", "draws"})
+    (void)fit.whole(key, 0, std::numeric_limits<std::int64_t>::max(), std::nullopt);
+  (void)fit.number("lapse", share, std::nullopt);
+  (void)fit.number("least_model_p", share, std::nullopt);
+  for (TomlReader& parameter : fit.sections("parameter")) {
+    (void)parameter.text("name", std::nullopt);
+    (void)parameter.number("value", any, std::nullopt);
+    for (const char* key : {"ci95_low", "ci95_high", "between_sd"}) (void)parameter.optional_number(key, any);
+  }
+  for (TomlReader& pair : fit.sections("correlation")) {
+    (void)pair.texts("of", std::nullopt);
+    (void)pair.number("value", NumberRange::between(-1, 1), std::nullopt);
+  }
+  for (TomlReader& session : fit.sections("session")) {
+    for (const char* key : {"folder", "manifest_sha256", "shown_sha256"}) (void)session.text(key, std::nullopt);
+    for (const char* key : {"person", "answers"})
+      (void)session.whole(key, 0, std::numeric_limits<std::int64_t>::max(), std::nullopt);
+  }
+}
+
 template <typename T>
 Result<T> load(ResourceKind kind, std::string_view reference, Result<T> (*parse)(const Resource&)) {
   const Result<Resource> resource = find_resource(kind, reference);
@@ -105,6 +135,7 @@ Result<TemplateObserverSpec> parse_observer(const Resource& resource) {
       reader->number("window_size_factor", NumberRange::between(0.9, 10), spec.window_size_factor);
   spec.window_margin_pitch =
       reader->number("window_margin_pitch", NumberRange::between(0, 100), spec.window_margin_pitch);
+  read_fit(reader->section("fit"));
   return checked(*reader, resource, std::move(spec));
 }
 

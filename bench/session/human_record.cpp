@@ -24,8 +24,10 @@ constexpr const char* fits_name = "fits_human.json";
 constexpr const char* shown_name = "shown_human.csv";
 constexpr const char* shown_header =
     "answer_number,presentation,triangle,frame,truth,answer,response_s,limit_ms,magnification,black_k,white_k,rows,"
-    "columns,kelvin";
-constexpr std::size_t shown_columns = 14;
+    "columns,kelvin,noise_k";
+constexpr std::size_t shown_columns = 15;
+/// Files of earlier versions end before these.
+constexpr std::size_t later_shown_columns = 1;
 
 /// Samples row by row, separated by blanks; they read back exactly.
 std::string shown_text(const HumanRecord& record) {
@@ -41,7 +43,7 @@ std::string shown_text(const HumanRecord& record) {
             "," + std::to_string(patch.kelvin.cols) + ",";
     std::string samples;
     for (const float kelvin : patch.kelvin) samples += (samples.empty() ? "" : " ") + number_text(kelvin);
-    text += samples + "\n";
+    text += samples + "," + (patch.noise_k ? number_text(*patch.noise_k) : "") + "\n";
   }
   return text;
 }
@@ -65,7 +67,8 @@ Result<std::vector<ShownPatch>> read_shown(const std::filesystem::path& file, st
   if (!text) return tl::unexpected(text.error());
   const auto table = parse_csv(*text, file.string());
   if (!table) return tl::unexpected(table.error());
-  if (table->header.size() != shown_columns)
+  const bool has_noise = table->header.size() == shown_columns;
+  if (!has_noise && table->header.size() + later_shown_columns != shown_columns)
     return table->wrong(1, "expected the columns " + std::string(shown_header));
   if (table->rows.size() != trials)
     return table->wrong(1, "expected one row for each of the trials of trials_human.csv");
@@ -75,14 +78,16 @@ Result<std::vector<ShownPatch>> read_shown(const std::filesystem::path& file, st
     constexpr double most = 4096;  // samples on a side
     const auto rows = number(11), columns = number(12), magnification = number(8);
     if (!rows || !columns || !(*rows >= 1 && *rows <= most && *columns >= 1 && *columns <= most) || !number(6) ||
-        !magnification || !number(9) || !number(10) || (!row.fields[7].empty() && !number(7)))
+        !magnification || !number(9) || !number(10) || (!row.fields[7].empty() && !number(7)) ||
+        (has_noise && !row.fields[14].empty() && !(number(14).value_or(-1) >= 0)))
       return table->wrong(row.line, "a number is missing or out of range");
     ShownPatch patch{.kelvin = samples_from(row.fields[13], static_cast<int>(*rows), static_cast<int>(*columns)),
                      .black_k = *number(9),
                      .white_k = *number(10),
                      .magnification = static_cast<int>(*magnification),
                      .limit_ms = {},
-                     .response_s = *number(6)};
+                     .response_s = *number(6),
+                     .noise_k = has_noise ? number(14) : std::nullopt};
     if (const auto limit = number(7)) patch.limit_ms = static_cast<int>(*limit);
     if (patch.kelvin.empty()) return table->wrong(row.line, "column kelvin: expected rows x columns numbers");
     out.push_back(std::move(patch));

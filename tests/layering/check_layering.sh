@@ -50,12 +50,13 @@ BEGIN {
   may["bench/session"] = science " bench/text bench/plan bench/judgement"
   may["bench/report"] = science " bench/text bench/plan bench/judgement bench/session"
   devices = "acquisition/recording acquisition/aravis acquisition/v4l2 acquisition/usb tod/instruments sim_devices/lab"
+  may["bench/reference_set"] = science " acquisition/recording bench/text bench/plan bench/judgement bench/session"
   may["bench/observer_fit"] = science " bench/text bench/plan bench/judgement bench/session bench/report"
   may["bench/run"] = science " " devices " bench/text bench/plan bench/judgement bench/session bench/report"
   may["bench/studies"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
   may["bench/sweep"] = science " bench/text bench/plan bench/judgement bench/session bench/run"
   may["bench/doctor"] = core " bench/text"
-  bench = "bench/text bench/plan bench/judgement bench/session bench/report bench/observer_fit bench/run bench/studies bench/sweep"
+  bench = "bench/text bench/plan bench/judgement bench/session bench/report bench/observer_fit bench/reference_set bench/run bench/studies bench/sweep"
   may["bench/cli"] = science " acquisition/recording bench/doctor " bench
   may["bench/gui/presenters"] = science " " bench
   may["bench/gui/views"] = science " " bench " bench/gui/presenters"

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "acquisition/core/rng.h"
+#include "tod/observer_fit/person_likelihood.h"
 
 namespace todbench {
 namespace {

@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "tod/observer_fit/person_likelihood.h"
+
 namespace todbench {
 namespace {
 
@@ -84,6 +86,36 @@ class Profile {
   ObserverPlace last_{};
 };
 
+/// At most four steps of Fisher's scoring, each halved until it climbs. One step from a point within the scatter of the
+/// estimate is as good as the maximum (Le Cam 1956); the further ones mend that the scatter is not small.
+Top few_steps(AnswerLattice& lattice, std::span<const PersonAnswer> answers, const ObserverPlace& start,
+              const Box<observer_key_count>& box) {
+  Top at{start, person_likelihood(lattice, answers, start), {}};
+  for (int step_count = 0; step_count < 4; ++step_count) {
+    at.free = free_variables(at.place, at.expansion.gradient, box);
+    const auto step = solve_information(at.expansion.hessian, at.expansion.gradient, at.free, 1e-3);
+    if (!step) return at;
+    bool climbed = false;
+    for (double share = 1; !climbed && share > 0.1; share /= 2) {
+      ObserverPlace next = at.place;
+      for (std::size_t k = 0; k < observer_key_count; ++k) {
+        // Half a unit of a logarithm at a time.
+        if (at.free[k])
+          next[k] = std::clamp(next[k] + share * std::clamp((*step)[k], -0.5, 0.5), box.lower[k], box.upper[k]);
+      }
+      const auto there = person_likelihood(lattice, answers, next);
+      climbed = there.value > at.expansion.value;
+      if (!climbed) continue;
+      const double gain = there.value - at.expansion.value;
+      at.place = next;
+      at.expansion = there;
+      if (gain < 0.01) return at;
+    }
+    if (!climbed) return at;
+  }
+  return at;
+}
+
 std::optional<Matrix> inverse(const Top& top, const std::array<bool, observer_key_count>& free) {
   Matrix out{};
   for (std::size_t k = 0; k < observer_key_count; ++k) {
@@ -153,7 +185,7 @@ Result<PersonFit> fit_person(AnswerLattice& lattice, std::span<const PersonAnswe
   const auto starts =
       only_here ? std::vector{place_of(options.start)} : starts_round(place_of(options.start), options.free);
   for (const ObserverPlace& start : starts) {
-    const Top found = climb(likelihood, start, box);
+    const Top found = only_here ? few_steps(lattice, answers, start, box) : climb(likelihood, start, box);
     if (!top || found.expansion.value > top->expansion.value) top = found;
   }
   PersonFit out;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "acquisition/core/result.h"
-#include "tod/observer_fit/person_likelihood.h"
+#include "tod/observer_fit/observer_values.h"
 #include "tod/psychometric/psychometric_fit.h"
 
 namespace todbench {
@@ -15,7 +15,10 @@ namespace todbench {
 struct PersonFitOptions {
   ObserverValues start{0.6, 0.07, 1, 0};  ///< where the search begins, and what is not free stays
   std::array<bool, observer_key_count> free{};
-  enum class Intervals { none, profile } intervals = Intervals::profile;
+  enum class Intervals {
+    none,  ///< and a few steps from the start instead of several climbs: for answers whose maximum is near it
+    profile,
+  } intervals = Intervals::profile;
 };
 
 struct PersonFit {

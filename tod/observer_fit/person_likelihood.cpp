@@ -39,32 +39,6 @@ std::array<double, alternatives> difference(const Logs& logs, double x, double l
 
 }  // namespace
 
-std::string_view to_string(ObserverKey key) {
-  switch (key) {
-    case ObserverKey::blur_sigma_samples:
-      return "blur_sigma_samples";
-    case ObserverKey::internal_noise:
-      return "internal_noise";
-    case ObserverKey::sensor_noise_factor:
-      return "sensor_noise_factor";
-    case ObserverKey::lapse:
-      return "lapse";
-  }
-  return "";
-}
-
-ObserverPlace place_of(const ObserverValues& values) {
-  ObserverPlace place = values;
-  for (const std::size_t k : {blur, internal, factor}) place[k] = std::log(std::max(values[k], least_values[k]));
-  return place;
-}
-
-ObserverValues values_at(const ObserverPlace& place) {
-  ObserverValues values = place;
-  for (const std::size_t k : {blur, internal, factor}) values[k] = std::exp(place[k]);
-  return values;
-}
-
 double own_noise(const AnsweredPatch& patch, const ObserverValues& values) {
   const double seen = patch.noise_k / patch.contrast_k;
   return std::sqrt(values[internal] * values[internal] + (values[factor] * values[factor] - 1) * seen * seen);

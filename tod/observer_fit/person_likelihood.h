@@ -4,40 +4,11 @@
 #include <array>
 #include <cstddef>
 #include <span>
-#include <string_view>
-#include <vector>
 
-#include "hvs/observer/answer_lattice.h"
+#include "tod/observer_fit/observer_values.h"
 #include "tod/psychometric/bounded_newton.h"
 
 namespace todbench {
-
-/// What can be fitted. Lapse is the share of answers that do not depend on the patch and are spread evenly over the
-/// alternatives; no parameter of the template observer.
-enum class ObserverKey { blur_sigma_samples, internal_noise, sensor_noise_factor, lapse };
-inline constexpr std::array all_observer_keys{ObserverKey::blur_sigma_samples, ObserverKey::internal_noise,
-                                              ObserverKey::sensor_noise_factor, ObserverKey::lapse};
-[[nodiscard]] std::string_view to_string(ObserverKey key);
-inline constexpr std::size_t observer_key_count = all_observer_keys.size();
-
-/// By ObserverKey.
-using ObserverValues = std::array<double, observer_key_count>;
-
-/// Within which values are looked for, by ObserverKey.
-inline constexpr ObserverValues least_values{AnswerLattice::least_sigma, AnswerLattice::least_noise, 1, 0};
-inline constexpr ObserverValues most_values{AnswerLattice::most_sigma, 5, 10, 0.5};
-
-/// The first three are looked for by their logarithm, the lapse as it is.
-using ObserverPlace = std::array<double, observer_key_count>;
-[[nodiscard]] ObserverPlace place_of(const ObserverValues& values);
-[[nodiscard]] ObserverValues values_at(const ObserverPlace& place);
-
-/// An answer to a patch of the lattice.
-struct PersonAnswer {
-  std::size_t patch = 0;  ///< index in the lattice
-  int answer = 0, truth = 0;
-  int cell = 0;  ///< contrast and size, numbered by the caller: residuals are looked at by it
-};
 
 /// Of one patch at one place: each alternative's probability and its derivatives.
 struct AnswerExpansion {

@@ -106,7 +106,8 @@ void HumanPresenter::answer(Apex apex) {
                     .white_k = grey.high,
                     .magnification = options_.magnification,
                     .limit_ms = options_.shown_ms,
-                    .response_s = static_cast<double>(since_shown_.nsecsElapsed()) * 1e-9});
+                    .response_s = static_cast<double>(since_shown_.nsecsElapsed()) * 1e-9,
+                    .noise_k = patch.noise_k});
   Trial trial = patch.trial;
   trial.answer = apex;
   trial.scores = {};

@@ -87,7 +87,7 @@ ExperimentListener MeasurePresenter::listener() {
     cv::Mat1f kelvin;
     patch.kelvin.convertTo(kelvin, CV_32F);
     const std::lock_guard lock(inbox_.mutex);
-    inbox_.trials.push_back({curve, trial, std::move(kelvin)});
+    inbox_.trials.push_back({curve, trial, std::move(kelvin), patch.noise_k});
   };
   return out;
 }

@@ -25,7 +25,8 @@ namespace todbench {
 struct JudgedTrial {
   SessionCurve curve = SessionCurve::main;
   Trial trial;
-  cv::Mat1f patch_k;  ///< kelvin
+  cv::Mat1f patch_k;   ///< kelvin
+  double noise_k = 0;  ///< temporal noise of a sample, as the observer was told
 };
 
 enum class RunState { idle, running, paused, stopping };

@@ -4,6 +4,7 @@
 #include "tests/tod/observer_fit/simulated_people.h"
 #include "tod/observer_fit/goodness.h"
 #include "tod/observer_fit/people.h"
+#include "tod/observer_fit/person_likelihood.h"
 
 namespace todbench::testing {
 namespace {

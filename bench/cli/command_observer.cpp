@@ -1,0 +1,181 @@
+// todbench observer fit
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include "bench/cli/commands.h"
+#include "bench/cli/session_argument.h"
+#include "bench/judgement/verdict.h"
+#include "bench/observer_fit/observer_file.h"
+#include "bench/observer_fit/observer_fit_json.h"
+#include "bench/observer_fit/observer_fit_page.h"
+#include "bench/plan/descriptions.h"
+#include "bench/plan/resources.h"
+#include "bench/report/html.h"
+#include "bench/text/files.h"
+#include "bench/text/text.h"
+
+namespace todbench {
+namespace {
+
+struct ObserverFitArguments {
+  std::vector<std::string> sessions;
+  std::string from = "hvs-1", out;
+  std::vector<std::string> free;
+  bool one_person = false, overwrite = false;
+  int replicates = 299, draws = 384;
+  Opening opening{};
+};
+
+Result<std::array<bool, observer_key_count>> free_keys(const std::vector<std::string>& names) {
+  std::vector<std::string> known;
+  for (const ObserverKey key : all_observer_keys) known.emplace_back(to_string(key));
+  std::array<bool, observer_key_count> out{};
+  for (const std::string& name : names) {
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end()) {
+      return fail(ErrorCode::invalid_input, "--free: unknown parameter '" + one_line(name) + "'" +
+                                                nearest_name_hint(name, known) + " (known: " + quoted_list(known) +
+                                                ")");
+    }
+    bool& free = out[static_cast<std::size_t>(found - known.begin())];
+    if (free) return fail(ErrorCode::invalid_input, "--free: '" + name + "' is there twice");
+    free = true;
+  }
+  return out;
+}
+
+/// The name of the observer is that of its file. What was published under a name stays.
+Result<std::string> name_for(const ObserverFitArguments& arguments) {
+  const std::filesystem::path file = arguments.out;
+  const auto refuse = [&](const std::string& why) {
+    return fail(ErrorCode::invalid_input, "--out: " + one_line(arguments.out) + ": " + why);
+  };
+  if (file.extension() != ".toml") return refuse("expected a file that ends with .toml");
+  std::string name = file.stem().string();
+  if (name.empty() || name != one_line(name) || name != valid_text(name))
+    return refuse("that is no name of an observer");
+  for (const std::string& shipped : resource_names(ResourceKind::observer)) {
+    if (name == shipped) return refuse("an observer of this name is built in");
+  }
+  std::error_code none;
+  if (std::filesystem::is_directory(file, none)) return refuse("is a folder");
+  if (!arguments.overwrite && std::filesystem::exists(file, none))
+    return refuse("exists already (--force writes over it)");
+  return name;
+}
+
+Result<PeopleFitOptions> options_of(const ObserverFitArguments& arguments, const Program& program) {
+  PeopleFitOptions options;
+  const auto free = free_keys(arguments.free);
+  if (!free) return tl::unexpected(free.error());
+  const auto name = name_for(arguments);
+  if (!name) return tl::unexpected(name.error());
+  const auto from = find_resource(ResourceKind::observer, arguments.from);
+  if (!from) return tl::unexpected(from.error());
+  const auto spec = parse_observer(*from);
+  if (!spec) return tl::unexpected(spec.error());
+  options.from = *spec;
+  options.from_sha256 = sha256_of(from->text);
+  options.name = *name;
+  options.free = *free;
+  options.persons = arguments.one_person ? PersonsAre::one : PersonsAre::sessions;
+  options.replicates = arguments.replicates;
+  options.draws = arguments.draws + arguments.draws % 2;
+  options.seed = program.common.seed;
+  return options;
+}
+
+void print_fit(const Console& console, const PeopleFit& fit) {
+  std::vector<TableRow> rows;
+  for (std::size_t k = 0; k < observer_key_count; ++k) {
+    if (!fit.options.free[k]) continue;
+    rows.push_back({std::string(to_string(all_observer_keys[k])), fixed(fit.values[k], 4), range(fit.ci95[k], 4),
+                    fixed(fit.spread[k].between_sd, 3)});
+  }
+  console.table({"parameter", "value", "95 %", "between people (sd of ln)"}, rows);
+  console.text("model against the answers: p " + fixed(fit.least_p, 3) + (fit.accepted ? "" : ", refused"));
+}
+
+Result<Json> fitted(Console& console, const ObserverFitArguments& arguments, const Program& program, PeopleFit& out) {
+  auto options = options_of(arguments, program);
+  if (!options) return tl::unexpected(options.error());
+  std::vector<AnsweredSession> sessions;
+  std::vector<std::string> accepted;
+  for (const std::string& folder : arguments.sessions) {
+    const auto session = opened(console, folder, arguments.opening);
+    if (!session) return tl::unexpected(session.error());
+    for (const std::string& file : session->accepted_changes)
+      accepted.push_back((std::filesystem::path(folder) / file).generic_string());
+    auto answered = answered_session(folder, *session);
+    if (!answered) return tl::unexpected(answered.error());
+    sessions.push_back(*std::move(answered));
+  }
+  console.phase("fitting the observer");
+  options->on_progress = [&console](std::size_t done, std::size_t planned) { console.progress(done, planned); };
+  auto fit = fit_people(std::move(sessions), *options, program.stop->token());
+  console.end_progress();
+  if (!fit) return tl::unexpected(fit.error());
+  out = *std::move(fit);
+  Json json = people_fit_json(out);
+  add_accepted_changes(json, arguments.opening, accepted);
+  return json;
+}
+
+int run_observer_fit(Console& console, const ObserverFitArguments& arguments, const Program& program) {
+  PeopleFit fit;
+  auto json = fitted(console, arguments, program, fit);
+  if (!json) return report_error(console, json.error());
+  std::filesystem::path page = arguments.out;
+  page.replace_extension(".html");
+  if (auto written = write_file_atomically(page, render_html(people_fit_document(fit))); !written)
+    return report_error(console, written.error());
+  if (fit.usable()) {
+    if (auto written = write_file_atomically(arguments.out, observer_file(fit)); !written)
+      return report_error(console, written.error());
+  }
+  (*json)["parameter_file"] = fit.usable() ? Json(arguments.out) : Json(nullptr);
+  (*json)["page"] = page.string();
+  if (console.json()) {
+    console.object(*json);
+  } else {
+    print_fit(console, fit);
+    console.text("page: " + page.string());
+    if (fit.usable()) console.text("observer: " + arguments.out);
+  }
+  if (fit.usable()) return 0;
+  console.warning(fit.accepted ? "no observer was written: " + fit.not_identified.front()
+                               : "no observer was written: these answers are not those of such an observer (p " +
+                                     fixed(fit.least_p, 3) + ")");
+  return exit_code(ErrorCode::not_identifiable);
+}
+
+}  // namespace
+
+void add_observer_command(CLI::App& app, Program& program) {
+  auto* observer = app.add_subcommand("observer", "observers fitted to the answers of people");
+  observer->require_subcommand(1);
+  auto* command = observer->add_subcommand(
+      "fit", "fits the parameters of an observer to the human runs of sessions, every answer given its very patch");
+  auto a = std::make_shared<ObserverFitArguments>();
+  command->add_option("SESSION", a->sessions, "session folders with a human run")->required();
+  command->add_option("--from", a->from, "observer to begin with, name or file")->capture_default_str();
+  command
+      ->add_option("--free", a->free,
+                   "what is fitted, with commas: blur_sigma_samples, internal_noise, sensor_noise_factor, lapse")
+      ->delimiter(',')
+      ->required();
+  command->add_option("--out", a->out, "parameter file to write, NAME.toml; the page stands beside it")->required();
+  command->add_flag("--one-person", a->one_person, "the same person answered in all sessions");
+  command->add_option("--replicates", a->replicates, "answers of the model itself to hold the person's against")
+      ->check(whole_number(99, 100000))
+      ->capture_default_str();
+  command->add_option("--draws", a->draws, "of the observer's own noise for the probabilities of a patch")
+      ->check(whole_number(32, 100000))
+      ->capture_default_str();
+  command->add_flag("--force", a->overwrite, "write over an existing file");
+  add_accept_changed(*command, a->opening.accept_changed);
+  finish_command(*command, program, [a, &program](Console& console) { return run_observer_fit(console, *a, program); });
+}
+
+}  // namespace todbench

@@ -1,0 +1,96 @@
+#include "bench/observer_fit/observer_file.h"
+
+#include <fmt/format.h>
+
+#include "bench/session/build_info.h"
+#include "bench/text/text.h"
+
+namespace todbench {
+namespace {
+
+/// A basic string of TOML.
+std::string toml_text(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : one_line(text)) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+/// With a point or an exponent, so that it is a float of TOML.
+std::string decimal(double value) {
+  const std::string text = number_text(value);
+  return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
+}
+
+std::string parameter(const PeopleFit& fit, std::size_t k) {
+  std::string text = "\n[[fit.parameter]]\nname = " + toml_text(to_string(all_observer_keys[k])) +
+                     "\nvalue = " + decimal(fit.values[k]) + "\n";
+  if (fit.ci95[k].low) text += "ci95_low = " + decimal(*fit.ci95[k].low) + "\n";
+  if (fit.ci95[k].high) text += "ci95_high = " + decimal(*fit.ci95[k].high) + "\n";
+  if (fit.spread[k].between_sd) {
+    text += "between_sd = " + decimal(*fit.spread[k].between_sd) + "  # between people, of " +
+            (all_observer_keys[k] == ObserverKey::lapse ? "the value" : "its logarithm") + "\n";
+  }
+  return text;
+}
+
+std::string correlations(const PersonFit& fit) {
+  std::string text;
+  for (std::size_t a = 0; a < observer_key_count; ++a) {
+    for (std::size_t b = a + 1; b < observer_key_count; ++b) {
+      if (const auto r = correlation(fit, a, b)) {
+        text += "\n[[fit.correlation]]\nof = [" + toml_text(to_string(all_observer_keys[a])) + ", " +
+                toml_text(to_string(all_observer_keys[b])) + "]\nvalue = " + decimal(*r) + "\n";
+      }
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string observer_file(const PeopleFit& fit) {
+  const TemplateObserverSpec spec = fitted_observer(fit);
+  std::size_t answers = 0;
+  for (const FittedPerson& person : fit.people) answers += person.fit.answers;
+  std::string free;
+  for (std::size_t k = 0; k < observer_key_count; ++k) {
+    if (fit.options.free[k]) free += (free.empty() ? "" : ", ") + toml_text(to_string(all_observer_keys[k]));
+  }
+  std::string text = fmt::format(
+      "# Template observer fitted to {} answers of {} by todbench observer fit: the model whose parameters suit these\n"
+      "# people best under these conditions, not a model of people in general.\n"
+      "name = {}\n\n"
+      "blur_sigma_samples = {}\ninternal_noise = {}\nsensor_noise_factor = {}\nsearch_range_samples = {}\n"
+      "search_step_samples = {}\nwindow_size_factor = {}\nwindow_margin_pitch = {}\n",
+      answers, fit.people.size() == 1 ? "one person" : fmt::format("{} people", fit.people.size()),
+      toml_text(spec.name), decimal(spec.blur_sigma_samples), decimal(spec.internal_noise),
+      decimal(spec.sensor_noise_factor), decimal(spec.search_range_samples), decimal(spec.search_step_samples),
+      decimal(spec.window_size_factor), decimal(spec.window_margin_pitch));
+  const BuildInfo info = build_info();
+  text += fmt::format(
+      "\n[fit]\nschema = \"todbench-observer-fit-1\"\nprogram = {}\nfrom = {}\nfrom_sha256 = {}\nfree = [{}]\n"
+      "persons = {}\nanswers = {}\nlapse = {}\nleast_model_p = {}\nseed = {}\ndraws = {}\n",
+      toml_text(std::string(info.version) + " " + std::string(info.commit)), toml_text(fit.options.from.name),
+      toml_text(fit.options.from_sha256), free, fit.people.size(), answers,
+      decimal(fit.values[static_cast<std::size_t>(ObserverKey::lapse)]), decimal(fit.least_p), fit.options.seed,
+      fit.options.draws);
+  for (std::size_t k = 0; k < observer_key_count; ++k) {
+    if (fit.options.free[k]) text += parameter(fit, k);
+  }
+  if (fit.people.size() == 1) text += correlations(fit.people.front().fit);
+  for (std::size_t p = 0; p < fit.people.size(); ++p) {
+    for (const std::size_t s : fit.people[p].sessions) {
+      const AnsweredSession& session = fit.sessions[s];
+      text += fmt::format(
+          "\n[[fit.session]]\nfolder = {}\nperson = {}\nanswers = {}\nmanifest_sha256 = {}\nshown_sha256 = {}\n",
+          toml_text(session.folder), p + 1, session.human.trials.size(), toml_text(session.manifest_sha256),
+          toml_text(session.shown_sha256));
+    }
+  }
+  return text;
+}
+
+}  // namespace todbench

@@ -1,0 +1,13 @@
+// What `observer fit --json` says.
+#pragma once
+
+#include "bench/observer_fit/people_fit.h"
+#include "bench/text/json.h"
+
+namespace todbench {
+
+/// "observer", "from", "free", "estimates", "correlations", "goodness", "accepted", "not_identified", "persons",
+/// "between_persons".
+[[nodiscard]] Json people_fit_json(const PeopleFit& fit);
+
+}  // namespace todbench

@@ -1,0 +1,207 @@
+#include "bench/observer_fit/observer_fit_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "bench/report/number_format.h"
+#include "bench/report/plot.h"
+#include "bench/report/report_pieces.h"
+#include "bench/report/tod_figures.h"
+
+namespace todbench {
+namespace {
+
+RichText estimate(const std::optional<double>& value, const Interval& interval) {
+  return value ? interval_or_missing(value, interval, "not identified") : missing("not identified");
+}
+
+VerdictBox verdict(const PeopleFit& fit) {
+  VerdictBox box;
+  box.mood = fit.usable() ? Mood::good : fit.accepted ? Mood::open : Mood::bad;
+  box.word = fit.usable() ? "✓ MODEL FITS" : fit.accepted ? "? NOT IDENTIFIED" : "✗ MODEL REFUSED";
+  box.paragraphs.push_back(plain(fmt::format(
+      "Smallest probability over the people that the fitted model answers as unusually as the person did: {}. It is "
+      "refused at {} shared by the people or less.",
+      probability(fit.least_p), probability(fit.options.least_p))));
+  for (const std::string& sentence : fit.not_identified) box.paragraphs.push_back(plain(sentence));
+  return box;
+}
+
+Section parameters(const PeopleFit& fit) {
+  Table table;
+  table.header = {"Parameter", "Before", fit.people.size() == 1 ? "Fitted, 95 %" : "Mean over people, 95 %"};
+  const bool several = fit.people.size() > 1;
+  if (several) table.header.insert(table.header.end(), {"Between people, 95 %", "All the same: p"});
+  const ObserverValues before{fit.options.from.blur_sigma_samples, fit.options.from.internal_noise,
+                              fit.options.from.sensor_noise_factor, 0};
+  for (std::size_t k = 0; k < observer_key_count; ++k) {
+    std::vector<RichText> row{plain(to_string(all_observer_keys[k])), plain(stated(before[k])),
+                              fit.options.free[k] ? estimate(fit.values[k], fit.ci95[k]) : missing("not free")};
+    if (several) {
+      const PeopleSpread& spread = fit.spread[k];
+      row.push_back(estimate(spread.between_sd, spread.between_sd_ci95));
+      row.push_back(spread.heterogeneity_p ? plain(probability(*spread.heterogeneity_p)) : missing("not free"));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  Section out{"Parameters", {std::move(table)}};
+  if (several)
+    out.blocks.emplace_back(note(plain("Between people: standard deviation of the logarithm; of the lapse itself.")));
+  return out;
+}
+
+Section worth() {
+  return {
+      "What it is worth",
+      {Paragraph{plain("These are the parameters with which the template observer gives answers most like these, to "
+                       "these patches, in this presentation, for the people named here. A model that is not refused "
+                       "is not proven: it only was not told apart from these people by so many answers. Blur and "
+                       "internal noise stand for whatever acts like them, the display and its distance included.")}}};
+}
+
+PlotSeries curve_series(const FittedPerson& person, double contrast, PlotTone tone, bool model) {
+  PlotSeries series;
+  series.label = (model ? "model, " : "person, ") + stated(contrast) + " K";
+  series.tone = tone;
+  series.marker = model ? PlotMarker::none : PlotMarker::disc;
+  series.line = model ? PlotLine::solid : PlotLine::none;
+  for (const AnswerCell& cell : person.goodness.cells) {
+    const ShownSize& shown = person.cells[static_cast<std::size_t>(cell.cell)];
+    if (shown.set_delta_t_k != contrast) continue;
+    PlotPoint point;
+    point.x = shown.size_mrad;
+    point.y = (model ? cell.expected : cell.correct) / cell.answers;
+    if (!model) point.y_interval = wilson_interval(cell.correct, cell.answers);
+    series.points.push_back(point);
+  }
+  return series;
+}
+
+Plot psychometric_plot(const FittedPerson& person, const std::string& id) {
+  Plot plot;
+  plot.id = id;
+  plot.title = "Proportion correct against size";
+  plot.description =
+      "Share of right answers of the person with Wilson intervals and of the fitted observer, by contrast.";
+  double low = person.cells.front().size_mrad, high = low;
+  std::set<double> contrasts;
+  for (const ShownSize& shown : person.cells) {
+    low = std::min(low, shown.size_mrad);
+    high = std::max(high, shown.size_mrad);
+    contrasts.insert(shown.set_delta_t_k);
+  }
+  plot.x = {
+      .label = "Size S (mrad)", .scale = AxisScale::logarithmic, .low = low / 1.1, .high = high * 1.1, .ticks = {}};
+  plot.y = {.label = "Proportion correct", .scale = AxisScale::linear, .low = 0, .high = 1.05, .ticks = {}};
+  plot.references = {{0.25, "guessing"}, {0.75, "75 %"}};
+  const PlotTone tones[] = {PlotTone::first, PlotTone::second, PlotTone::third, PlotTone::muted};
+  std::size_t index = 0;
+  for (auto contrast = contrasts.rbegin(); contrast != contrasts.rend(); ++contrast) {
+    const PlotTone tone = tones[index++ % 4];
+    plot.series.push_back(curve_series(person, *contrast, tone, true));
+    plot.series.push_back(curve_series(person, *contrast, tone, false));
+  }
+  return plot;
+}
+
+Plot residual_plot(const FittedPerson& person, const std::string& id) {
+  Plot plot = psychometric_plot(person, id);
+  plot.title = "Residuals against size";
+  plot.description = "Number correct less what the fitted observer expects, over its standard deviation.";
+  double most = 3;
+  for (PlotSeries& series : plot.series) series.points.clear();
+  std::erase_if(plot.series, [](const PlotSeries& series) { return series.marker == PlotMarker::none; });
+  std::size_t index = 0;
+  std::map<double, std::size_t, std::greater<>> rank;
+  for (const ShownSize& shown : person.cells) rank[shown.set_delta_t_k] = 0;
+  for (auto& [contrast, at] : rank) at = index++;
+  for (const AnswerCell& cell : person.goodness.cells) {
+    if (!(cell.sd > 0)) continue;
+    const ShownSize& shown = person.cells[static_cast<std::size_t>(cell.cell)];
+    PlotPoint point;
+    point.x = shown.size_mrad;
+    point.y = (cell.correct - cell.expected) / std::max(cell.sd, 0.2);
+    most = std::max(most, std::abs(*point.y) + 0.5);
+    plot.series[rank[shown.set_delta_t_k]].points.push_back(point);
+  }
+  plot.y = {.label = "Residual (sd)", .scale = AxisScale::linear, .low = -most, .high = most, .ticks = {}};
+  plot.references = {{0, ""}};
+  return plot;
+}
+
+Table confusion(const Goodness& goodness) {
+  Table table;
+  table.caption = "Answers by the direction of the triangle: given, and in brackets what the fitted observer expects";
+  table.header = {"Triangle"};
+  for (const Apex apex : all_apexes) table.header.push_back("Answer " + std::string(to_string(apex)));
+  for (std::size_t t = 0; t < 4; ++t) {
+    std::vector<RichText> row{plain(to_string(all_apexes[t]))};
+    for (std::size_t o = 0; o < 4; ++o) {
+      row.push_back(
+          unbroken(shown(goodness.confusion[t][o], 0) + " (" + shown(goodness.expected_confusion[t][o], 1) + ")"));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+Table tests(const Goodness& goodness) {
+  Table table;
+  table.caption =
+      fmt::format("What the answers were held against; {} answers of the model itself", goodness.replicates);
+  table.header = {"Looked at", "Statistic", "Expected", "p"};
+  for (std::size_t k = 0; k < all_misfit_kinds.size(); ++k) {
+    const MisfitTest& test = goodness.tests[k];
+    table.rows.push_back({plain(words(to_string(all_misfit_kinds[k]))), plain(shown(test.statistic, 1)),
+                          plain(shown(test.expected, 1)), plain(probability(test.p))});
+  }
+  table.rows.push_back({plain("all together"), missing("the smallest of them"), missing("the smallest of them"),
+                        plain(probability(goodness.p))});
+  return table;
+}
+
+Section person_section(const PeopleFit& fit, std::size_t index) {
+  const FittedPerson& person = fit.people[index];
+  const std::string id = "person-" + std::to_string(index + 1);
+  ValueTable values;
+  for (const std::size_t s : person.sessions)
+    values.values.push_back({"Session", plain(fit.sessions[s].folder + ", " +
+                                              std::to_string(fit.sessions[s].human.trials.size()) + " answers")});
+  for (std::size_t k = 0; k < observer_key_count; ++k) {
+    if (person.fit.free[k])
+      values.values.push_back(
+          {std::string(to_string(all_observer_keys[k])), estimate(person.fit.values[k], person.fit.ci95[k])});
+  }
+  for (std::size_t a = 0; a < observer_key_count; ++a) {
+    for (std::size_t b = a + 1; b < observer_key_count; ++b) {
+      if (const auto r = correlation(person.fit, a, b))
+        values.values.push_back({"Correlation of " + std::string(to_string(all_observer_keys[a])) + " and " +
+                                     std::string(to_string(all_observer_keys[b])),
+                                 plain(shown(*r, 2))});
+    }
+  }
+  return {"Person " + std::to_string(index + 1),
+          {std::move(values),
+           FigurePairs{{Figure{drawn(psychometric_plot(person, id + "-curve")), "Answers and fitted observer"},
+                        Figure{drawn(residual_plot(person, id + "-residuals")), "Residuals by size and contrast"}}},
+           tests(person.goodness), confusion(person.goodness)}};
+}
+
+}  // namespace
+
+Document people_fit_document(const PeopleFit& fit) {
+  Document out{.title = "Observer " + fit.options.name,
+               .heading = "Observer " + fit.options.name,
+               .subtitle = "Fitted to people, from " + fit.options.from.name,
+               .page_label = "Observer " + fit.options.name,
+               .opening = {verdict(fit)},
+               .sections = {parameters(fit), worth()}};
+  for (std::size_t p = 0; p < fit.people.size(); ++p) out.sections.push_back(person_section(fit, p));
+  return out;
+}
+
+}  // namespace todbench

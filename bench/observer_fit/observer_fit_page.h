@@ -1,0 +1,12 @@
+// The page of an observer fitted to people.
+#pragma once
+
+#include "bench/observer_fit/people_fit.h"
+#include "bench/report/document.h"
+
+namespace todbench {
+
+/// Parameters with intervals, what they are worth, and for each person residuals, figures and the confusion matrix.
+[[nodiscard]] Document people_fit_document(const PeopleFit& fit);
+
+}  // namespace todbench

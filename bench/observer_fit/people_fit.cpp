@@ -1,0 +1,189 @@
+#include "bench/observer_fit/people_fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "bench/text/files.h"
+#include "bench/text/text.h"
+
+namespace todbench {
+namespace {
+
+struct PersonQuestion {
+  std::vector<AnsweredPatch> patches;
+  std::vector<PersonAnswer> answers;
+  std::vector<ShownSize> cells;
+};
+
+ShownSize shown_size(const Trial& trial) {
+  // Sizes of one row of a plate may differ in the last bit of their description.
+  return {trial.set_delta_t_k, std::round(trial.size_mrad * 1e6) / 1e6};
+}
+
+PersonQuestion question_of(const std::vector<AnsweredSession>& sessions, const std::vector<std::size_t>& own) {
+  PersonQuestion out;
+  std::set<ShownSize> sizes;
+  for (const std::size_t s : own) {
+    for (const Trial& trial : sessions[s].human.trials) sizes.insert(shown_size(trial));
+  }
+  out.cells.assign(sizes.begin(), sizes.end());
+  for (const std::size_t s : own) {
+    const AnsweredSession& session = sessions[s];
+    for (std::size_t i = 0; i < session.human.trials.size(); ++i) {
+      const Trial& trial = session.human.trials[i];
+      const ShownPatch& shown = session.human.shown[i];
+      const auto cell = std::lower_bound(out.cells.begin(), out.cells.end(), shown_size(trial)) - out.cells.begin();
+      out.answers.push_back({.patch = out.patches.size(),
+                             .answer = static_cast<int>(trial.answer),
+                             .truth = static_cast<int>(trial.truth),
+                             .cell = static_cast<int>(cell)});
+      out.patches.push_back({.kelvin = shown.kelvin,
+                             .contrast_k = trial.delta_t_k,
+                             .noise_k = shown.noise_k.value_or(session.noise_k),
+                             .size_samples = trial.size_px,
+                             .samples_per_pitch = session.samples_per_pitch});
+    }
+  }
+  return out;
+}
+
+std::string folders_of(const std::vector<AnsweredSession>& sessions, const std::vector<std::size_t>& own) {
+  std::string text;
+  for (const std::size_t s : own) text += (text.empty() ? "" : ", ") + sessions[s].folder;
+  return text;
+}
+
+Result<FittedPerson> fitted_person(const std::vector<AnsweredSession>& sessions, std::vector<std::size_t> own,
+                                   const PeopleFitOptions& options, std::stop_token stop) {
+  PersonQuestion question = question_of(sessions, own);
+  auto lattice = AnswerLattice::create(options.from, triangle_alternatives(), std::move(question.patches),
+                                       {.draws = options.draws, .seed = options.seed});
+  const std::string where = folders_of(sessions, own) + ": shown_human.csv";
+  if (!lattice) return fail(where, lattice.error());
+  const PersonFitOptions how{
+      .start = {options.from.blur_sigma_samples, options.from.internal_noise, options.from.sensor_noise_factor, 0},
+      .free = options.free};
+  auto fit = fit_person(*lattice, question.answers, how);
+  if (!fit) return fail(where, fit.error());
+  auto goodness = goodness_of(*lattice, question.answers, *fit,
+                              {.replicates = options.replicates, .seed = options.seed}, std::move(stop));
+  if (!goodness) return tl::unexpected(goodness.error());
+  return FittedPerson{std::move(own), *std::move(fit), *std::move(goodness), std::move(question.cells)};
+}
+
+/// What the answers of one person leave open of a parameter.
+std::optional<std::string> left_open(const PersonFit& fit, std::size_t k) {
+  if (!fit.free[k]) return std::nullopt;
+  const std::string name(to_string(all_observer_keys[k]));
+  if (!fit.ci95[k].low && !fit.ci95[k].high) return "the answers say nothing of " + name;
+  const bool harmless = fit.values[k] <= least_values[k] * 1.0001 && fit.ci95[k].high &&
+                        all_observer_keys[k] != ObserverKey::blur_sigma_samples;
+  if (fit.at_limit[k] && !harmless)
+    return name + " runs to the end of what is looked for, " + number_text(fit.values[k]);
+  if (!fit.ci95[k].high) return name + " has no upper limit";
+  return std::nullopt;
+}
+
+void find_left_open(PeopleFit& out) {
+  for (const FittedPerson& person : out.people) {
+    const std::string who = folders_of(out.sessions, person.sessions) + ": ";
+    for (std::size_t k = 0; k < observer_key_count; ++k) {
+      if (const auto open = left_open(person.fit, k)) out.not_identified.push_back(who + *open);
+    }
+    const auto free = static_cast<std::size_t>(std::count(person.fit.free.begin(), person.fit.free.end(), true));
+    if (!person.fit.covariance) out.not_identified.push_back(who + "the answers do not tell the parameters apart");
+    if (person.fit.answers < 10 * free) {
+      out.not_identified.push_back(
+          who + fmt::format("{} answers are too few for {} parameters (ten each)", person.fit.answers, free));
+    }
+  }
+}
+
+void put_together(PeopleFit& out) {
+  if (out.people.size() == 1) {
+    out.values = out.people.front().fit.values;
+    out.ci95 = out.people.front().fit.ci95;
+    return;
+  }
+  std::vector<PersonFit> fits;
+  for (const FittedPerson& person : out.people) fits.push_back(person.fit);
+  out.values = fits.front().values;
+  for (std::size_t k = 0; k < observer_key_count; ++k) {
+    if (!out.options.free[k]) continue;
+    out.spread[k] = people_spread(fits, k);
+    if (!out.spread[k].mean) {
+      out.not_identified.push_back(std::string(to_string(all_observer_keys[k])) +
+                                   ": fewer than two people have a standard error");
+      continue;
+    }
+    out.values[k] = std::clamp(*out.spread[k].mean, least_values[k], most_values[k]);
+    out.ci95[k] = out.spread[k].mean_ci95;
+  }
+}
+
+}  // namespace
+
+Result<AnsweredSession> answered_session(const std::filesystem::path& folder, const Session& session) {
+  auto human = read_human(folder);
+  if (!human) return tl::unexpected(human.error());
+  const auto refuse = [&](const std::string& why) {
+    return fail(ErrorCode::invalid_input, folder.string() + ": " + why);
+  };
+  if (!*human || (*human)->trials.empty()) return refuse("nobody has answered in this session");
+  if ((*human)->shown.empty()) return refuse("what was shown was not kept (there is no shown_human.csv)");
+  auto sum = sha256_of_file(folder / "shown_human.csv");
+  if (!sum) return tl::unexpected(sum.error());
+  SensorSpec sensor = session.parts.sensor;
+  sensor.microscan = session.plan.simulation.microscan;
+  const auto whole = std::filesystem::absolute(folder).lexically_normal();
+  return AnsweredSession{.folder = (whole.has_filename() ? whole : whole.parent_path()).filename().string(),
+                         .manifest_sha256 = session.manifest_sha256,
+                         .shown_sha256 = *std::move(sum),
+                         .samples_per_pitch = sensor.samples_per_pitch(),
+                         .noise_k = session.provenance.run ? session.provenance.run->temporal_noise_k : 0,
+                         .human = **std::move(human)};
+}
+
+Result<PeopleFit> fit_people(std::vector<AnsweredSession> sessions, const PeopleFitOptions& options,
+                             std::stop_token stop) {
+  PeopleFit out;
+  out.options = options;
+  out.sessions = std::move(sessions);
+  std::map<std::string, std::string> seen;
+  for (const AnsweredSession& session : out.sessions) {
+    const auto [first, added] = seen.try_emplace(session.shown_sha256, session.folder);
+    if (!added)
+      return fail(ErrorCode::invalid_input, session.folder + " and " + first->second + " hold the same answers");
+  }
+  std::vector<std::vector<std::size_t>> people;
+  for (std::size_t s = 0; s < out.sessions.size(); ++s) {
+    if (people.empty() || options.persons == PersonsAre::sessions) people.emplace_back();
+    people.back().push_back(s);
+  }
+  for (auto& own : people) {
+    auto person = fitted_person(out.sessions, std::move(own), options, stop);
+    if (!person) return tl::unexpected(person.error());
+    out.least_p = std::min(out.least_p, person->goodness.p);
+    out.people.push_back(*std::move(person));
+    if (options.on_progress) options.on_progress(out.people.size(), people.size());
+  }
+  out.accepted = out.least_p > options.least_p / static_cast<double>(out.people.size());
+  find_left_open(out);
+  put_together(out);
+  return out;
+}
+
+TemplateObserverSpec fitted_observer(const PeopleFit& fit) {
+  TemplateObserverSpec spec = fit.options.from;
+  spec.name = fit.options.name;
+  spec.blur_sigma_samples = fit.values[0];
+  spec.internal_noise = fit.values[1];
+  spec.sensor_noise_factor = fit.values[2];
+  return spec;
+}
+
+}  // namespace todbench

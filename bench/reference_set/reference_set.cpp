@@ -1,0 +1,158 @@
+#include "bench/reference_set/reference_set.h"
+
+#include <memory>
+#include <utility>
+
+#include "acquisition/recording/frame_stream.h"
+#include "acquisition/recording/tiff_writer.h"
+#include "bench/plan/descriptions.h"
+#include "bench/plan/resources.h"
+#include "bench/reference_set/reference_files.h"
+#include "bench/text/files.h"
+#include "bench/text/folders.h"
+#include "bench/text/text.h"
+#include "sim_devices/sensor/simulated_camera.h"
+#include "tod/schedule/schedule.h"
+
+namespace todbench {
+namespace {
+
+constexpr std::array<std::string_view, 2> plate_names{"tcat-a", "tcat-b"};
+
+Result<void> write_descriptions(const std::filesystem::path& folder, const ReferenceSetOptions& options) {
+  for (const char* name : {"plates", "observers", "sensors"}) {
+    if (auto made = make_folder(folder / name); !made) return made;
+  }
+  std::vector<std::pair<ResourceKind, std::string_view>> copies{{ResourceKind::observer, reference_observer}};
+  for (const auto name : plate_names) copies.emplace_back(ResourceKind::plate, name);
+  for (const auto& [kind, name] : copies) {
+    const auto resource = find_resource(kind, name);
+    if (!resource) return tl::unexpected(resource.error());
+    const auto file = folder / (kind == ResourceKind::plate ? "plates" : "observers") / (std::string(name) + ".toml");
+    if (auto written = write_file_atomically(file, resource->text); !written) return written;
+  }
+  for (const ReferenceCase& c : options.cases) {
+    const auto file = folder / "sensors" / (c.sensor.name + ".toml");
+    if (auto written = write_file_atomically(file, sensor_description(c.sensor)); !written) return written;
+  }
+  return {};
+}
+
+/// The frames of one case in both formats, and what they show.
+class CaseWriter {
+ public:
+  static Result<CaseWriter> create(const std::filesystem::path& folder, const ReferenceCase& c,
+                                   const SourceInfo& info) {
+    StreamHeader header;
+    header.info = info;
+    // The hour is no part of what is recorded: the same seed gives the same bytes.
+    header.created_utc = "1970-01-01T00:00:00Z";
+    header.annotations = {{"reference_set", std::string(reference_set_name)}, {"case", c.name}};
+    auto stream = FrameStreamWriter::create(folder / (c.name + ".todrec"), header);
+    if (!stream) return tl::unexpected(stream.error());
+    auto tiff = TiffWriter::create(folder / (c.name + ".tif"));
+    if (!tiff) return tl::unexpected(tiff.error());
+    return CaseWriter(*std::move(stream), *std::move(tiff));
+  }
+
+  Result<void> append(Frame frame, const PlateScene& scene, const SensorSpec& sensor) {
+    frame.host_time_ns = frame.device_time_ns;
+    if (auto kept = stream_.append(frame); !kept) return kept;
+    if (auto kept = tiff_.append(frame.counts); !kept) return kept;
+    const std::string number = std::to_string(frame.sequence);
+    frames_ += number + "," + scene.plate.name + "," + std::string(to_string(scene.plate.mounting)) + "," +
+               number_text(scene.shift_mm.x) + "," + number_text(scene.shift_mm.y) + "\n";
+    for (const PlateTriangle& t : scene.plate.triangles) {
+      const cv::Point2d at =
+          scene_pixel(scene, t.position_mm, sensor.ifov_mrad(), {frame.counts.cols, frame.counts.rows});
+      triangles_ += number + "," + csv_field(t.name) + "," + number_text(t.size_mm) + "," +
+                    number_text(t.size_mm / scene.distance_m) + "," + std::string(to_string(t.apex)) + "," +
+                    number_text(at.x) + "," + number_text(at.y) + "\n";
+    }
+    return {};
+  }
+
+  Result<void> finish(const std::filesystem::path& folder, const std::string& name) {
+    if (auto frames = stream_.verified_frames(); !frames) return tl::unexpected(frames.error());
+    if (auto pages = tiff_.verified_pages(); !pages) return tl::unexpected(pages.error());
+    if (auto written = write_file_atomically(folder / (name + "-frames.csv"), frames_); !written) return written;
+    return write_file_atomically(folder / (name + "-triangles.csv"), triangles_);
+  }
+
+ private:
+  CaseWriter(FrameStreamWriter stream, TiffWriter tiff) : stream_(std::move(stream)), tiff_(std::move(tiff)) {}
+  FrameStreamWriter stream_;
+  TiffWriter tiff_;
+  std::string frames_ = "frame,plate,mounting,shift_x_mm,shift_y_mm\n";
+  std::string triangles_ = "frame,triangle,size_mm,size_mrad,apex,x_px,y_px\n";
+};
+
+/// Presentations of a case: both plates, every mounting in turn, sub-pixel shifts spread evenly.
+std::vector<TargetState> presentations(const ReferenceCase& c, int frames, const RandomStream& stream) {
+  const auto shifts = spread_phases(frames, stream);
+  const double pixel_mm = c.sensor.ifov_mrad() * reference_distance_m;
+  std::vector<TargetState> out;
+  for (int i = 0; i < frames; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    out.push_back({.plate = std::string(plate_names[k * 2 / static_cast<std::size_t>(frames)]),
+                   .mounting = all_mountings[k % all_mountings.size()],
+                   .delta_t_k = c.delta_t_k,
+                   .shift_mm = pixel_mm * shifts[k]});
+  }
+  return out;
+}
+
+Result<void> write_case(const std::filesystem::path& folder, const ReferenceCase& c, std::uint64_t number,
+                        const ReferenceSetOptions& options, const std::vector<TargetPlate>& plates,
+                        const std::stop_token& stop) {
+  const RandomStream stream = RandomStream(options.seed, "reference_set").sub(number);
+  const auto model =
+      std::make_shared<const SensorModel>(c.sensor, full_plan(c.sensor, {}, {}), Accuracy::normal(), stream.stream());
+  PlateScene first;
+  first.plate = plates.front();
+  first.distance_m = reference_distance_m;
+  first.background_k = reference_background_k;
+  const auto scene = std::make_shared<SceneHolder>(first);
+  const auto camera = simulated_source(model, scene, c.name);
+  const auto target = scene_target(scene, plates);
+  auto writer = CaseWriter::create(folder, c, camera->info());
+  if (!writer) return tl::unexpected(writer.error());
+  if (auto started = camera->start(); !started) return started;
+  for (const TargetState& state : presentations(c, options.frames, stream.sub(1))) {
+    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+    if (auto shown = target->present(state, stop); !shown) return tl::unexpected(shown.error());
+    auto frame = camera->next(std::chrono::milliseconds(0));
+    if (!frame) return tl::unexpected(frame.error());
+    if (auto kept = writer->append(*std::move(frame), *scene->scene(), c.sensor); !kept) return kept;
+  }
+  return writer->finish(folder, c.name);
+}
+
+}  // namespace
+
+Result<void> write_reference_set(const std::filesystem::path& folder, const ReferenceSetOptions& options,
+                                 std::stop_token stop) {
+  std::vector<TargetPlate> plates;
+  for (const auto name : plate_names) {
+    auto plate = load_plate(name);
+    if (!plate) return tl::unexpected(plate.error());
+    plates.push_back(*std::move(plate));
+  }
+  const auto truths = reference_truths(options.cases, stop);
+  if (!truths) return tl::unexpected(truths.error());
+  if (auto made = make_folder(folder); !made) return made;
+  if (auto written = write_descriptions(folder, options); !written) return written;
+  for (std::size_t i = 0; i < options.cases.size(); ++i) {
+    if (auto written = write_case(folder, options.cases[i], i, options, plates, stop); !written)
+      return fail(options.cases[i].name, written.error());
+    if (options.on_progress) options.on_progress(i + 1, options.cases.size());
+  }
+  if (auto written = write_file_atomically(folder / "set.json", set_description(options, *truths)); !written)
+    return written;
+  if (auto written = write_file_atomically(folder / "README.md", set_readme(options)); !written) return written;
+  const auto sums = set_sums(folder);
+  if (!sums) return tl::unexpected(sums.error());
+  return write_file_atomically(folder / "SHA256SUMS", *sums);
+}
+
+}  // namespace todbench
