@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <locale>
@@ -336,7 +337,7 @@ TEST(TodFigures, TheAxisHoldsTheSizesThatARunIsGoingToShow) {
   point.levels.resize(1);
   const std::vector<double> sizes_mrad{0.9, 8, 3};
 
-  for (const TodPoint* measured : {&point, static_cast<const TodPoint*>(nullptr)}) {
+  for (const TodPoint* measured : std::array<const TodPoint*, 2>{&point, nullptr}) {
     const Plot plot =
         psychometric_figure("p", {"measured", measured}, {"", nullptr}, PsychometricForm::size, sizes_mrad);
 
