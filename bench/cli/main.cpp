@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "bench/cli/command_module.h"
 #include "bench/cli/commands.h"
 #include "bench/judgement/verdict.h"
 #include "bench/session/build_info.h"
@@ -138,6 +139,7 @@ int run(int argc, char** argv) {
   add_range_command(app, program);
   add_reproduce_command(app, program);
   add_sweep_command(app, program);
+  add_module_command(app, program);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {
