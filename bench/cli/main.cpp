@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bench/cli/command_line.h"
+#include "bench/cli/command_module.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/exit_codes.h"
 #include "bench/judgement/verdict.h"
@@ -169,6 +170,7 @@ int run(int argc, char** argv) {
   add_observer_command(app, program);
   add_reference_set_command(app, program);
   add_sweep_command(app, program);
+  add_module_command(app, program);
   add_manual_command(app, program);
   if (argc > 1 && std::string_view(argv[1]) == "complete") {
     print_completions(app, {argv + 2, argv + argc});

@@ -173,7 +173,7 @@ SweepStatus sweep_status(const Sweep& sweep) {
 
 std::string failure_of(const Sweep& sweep, std::size_t index) {
   const auto text = read_text_file(with_ending(result_file(sweep, sweep.task(index)), ".failed"));
-  return text ? one_line(*text) : "";
+  return text ? one_line(std::string_view(*text).substr(0, text->find('\n'))) : "";
 }
 
 TaskOutcome run_and_store(const RunnableSweep& runnable, std::size_t index, std::stop_token stop) {

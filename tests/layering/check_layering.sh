@@ -33,6 +33,7 @@ BEGIN {
   tod = hvs " tod/plate tod/pattern tod/presentation tod/registration tod/psychometric tod/schedule tod/measurement tod/comparison tod/adequacy tod/observer_fit tod/range tod/measures"
   may["sim_devices/scene"] = hvs " tod/plate"
   may["sim_devices/atmosphere"] = core " tod/range"
+  may["sim_devices/module"] = core
   may["sim_devices/sensor"] = hvs " tod/plate tod/presentation sim_devices/scene"
   may["sim_devices/prediction"] = tod " sim_devices/scene sim_devices/sensor"
   may["sim_devices/lab/device_nodes"] = core
@@ -43,7 +44,7 @@ BEGIN {
   may["sim_devices/lab/usb"] = core " acquisition/usb acquisition/pixel_formats sim_devices/lab/device_nodes sim_devices/lab/genicam sim_devices/lab/video"
   lab = "sim_devices/lab/device_nodes sim_devices/lab/genicam sim_devices/lab/instruments sim_devices/lab/gige sim_devices/lab/video sim_devices/lab/usb"
   may["sim_devices/lab"] = core " acquisition/aravis acquisition/v4l2 tod/plate sim_devices/scene sim_devices/sensor " lab
-  science = tod " sim_devices/scene sim_devices/atmosphere sim_devices/sensor sim_devices/prediction"
+  science = tod " sim_devices/scene sim_devices/module sim_devices/atmosphere sim_devices/sensor sim_devices/prediction"
   may["bench/text"] = core " tod/psychometric"
   may["bench/plan"] = science " bench/text"
   may["bench/judgement"] = science " bench/text bench/plan"

@@ -169,5 +169,14 @@ TEST(SweepCommand, PrintsTaskListsAndRefusesInASentence) {
   expect_refused(run({"sweep"}), 2, "sweep");
 }
 
+TEST(ModuleCommand, EndsWithFiveWhereAProgramBreaksTheContract) {
+  expect_refused(todbench({"module", "check", "/no/such/program"}), 5, "ended before it answered");
+  // It sends the header back, which is no picture.
+  expect_refused(todbench({"module", "check", "cat"}), 5, "shape");
+  const Ended silent = todbench({"module", "check", "sleep 60", "--limit-ms", "200", "--json"});
+  EXPECT_EQ(silent.code, 5);
+  EXPECT_EQ(one_object(silent)["ok"], false);
+}
+
 }  // namespace
 }  // namespace todbench::testing

@@ -1,0 +1,71 @@
+#include "bench/cli/command_module.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "sim_devices/module/module_check.h"
+
+namespace todbench {
+namespace {
+
+struct ModuleArguments {
+  std::string command;
+  int limit_ms = 5000;
+};
+
+Json report_json(const ModuleReport& report) {
+  Json shapes = Json::array(), response = Json::array();
+  for (const auto& shape : report.shapes) shapes.push_back({shape.height, shape.width});
+  for (int j = 0; j < report.impulse_response.rows; ++j) {
+    Json row = Json::array();
+    for (int i = 0; i < report.impulse_response.cols; ++i)
+      row.push_back(json_number(static_cast<double>(report.impulse_response(j, i))));
+    response.push_back(std::move(row));
+  }
+  return {{"ok", true},
+          {"deterministic", true},
+          {"shapes", shapes},
+          {"latency_ms", json_number(report.latency_ms)},
+          {"linear", report.linear},
+          {"linearity_deviation", json_number(report.linearity_deviation)},
+          {"impulse_sum", json_number(report.impulse_sum)},
+          {"impulse_response", response},
+          {"reason", nullptr}};
+}
+
+int run_check(Console& console, const ModuleArguments& a) {
+  const auto report =
+      check_module({.command = a.command,
+                    .header = R"({"protocol": "todbench-module", "version": 1, "place": "picture", "parameters": {}})",
+                    .limit = std::chrono::milliseconds(a.limit_ms)});
+  if (!report) {
+    if (console.json()) console.object({{"ok", false}, {"reason", report.error().message}});
+    return report_error(console, report.error());
+  }
+  if (console.json()) {
+    console.object(report_json(*report));
+    return 0;
+  }
+  console.text(
+      fmt::format("keeps the contract: {} shapes answered, two processes agree bit for bit", report->shapes.size()));
+  console.text(fmt::format("{:.3f} ms an exchange of 320 x 240 numbers", report->latency_ms));
+  console.text(fmt::format("{}, deviation {:.2g}; response to an impulse: sum {:.4g}, middle {:.4g}",
+                           report->linear ? "linear" : "not linear", report->linearity_deviation, report->impulse_sum,
+                           report->impulse_response(4, 4)));
+  return 0;
+}
+
+}  // namespace
+
+void add_module_command(CLI::App& app, Program& program) {
+  auto* module = app.add_subcommand("module", "stages of the chain as programs of the user's");
+  module->require_subcommand(1);
+  auto* check = module->add_subcommand("check", "whether a program keeps the contract of a module, and what it does");
+  auto a = std::make_shared<ModuleArguments>();
+  check->add_option("COMMAND", a->command, "for a shell, in quotes")->required();
+  check->add_option("--limit-ms", a->limit_ms, "for an answer")->check(whole_number(1, 600000))->capture_default_str();
+  finish_command(*check, program, [a](Console& console) { return run_check(console, *a); });
+}
+
+}  // namespace todbench

@@ -1,0 +1,95 @@
+#include "sim_devices/module/module_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "acquisition/core/rng.h"
+
+namespace todbench {
+namespace {
+
+cv::Mat1f noise(cv::Size size, std::uint64_t index) {
+  cv::Mat1f picture(size);
+  RandomStream(1, "module.check").sub(index).fill_normal({picture.ptr<float>(), picture.total()});
+  return picture;
+}
+
+/// The answers of a new process to the pictures in their order.
+Result<std::vector<cv::Mat1f>> answers_to(const ModuleOptions& options, const std::vector<cv::Mat1f>& pictures) {
+  auto module = ModuleProcess::start(options);
+  if (!module) return tl::unexpected(module.error());
+  std::vector<cv::Mat1f> answers;
+  for (const auto& picture : pictures) {
+    auto answer = module->exchange(picture);
+    if (!answer)
+      return fail(
+          fmt::format("picture {} of {}, {} x {}", answers.size() + 1, pictures.size(), picture.cols, picture.rows),
+          answer.error());
+    answers.push_back(*answer);
+  }
+  return answers;
+}
+
+/// Median of twenty exchanges; a process that remembers is asked with pictures that it has seen.
+Result<double> latency_ms(const ModuleOptions& options) {
+  auto module = ModuleProcess::start(options);
+  if (!module) return tl::unexpected(module.error());
+  const cv::Mat1f picture = noise({320, 240}, 9);
+  std::vector<double> times;
+  for (int i = 0; i < 21; ++i) {
+    const auto begin = std::chrono::steady_clock::now();
+    if (auto answer = module->exchange(picture); !answer) return tl::unexpected(answer.error());
+    times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+  }
+  std::nth_element(times.begin() + 1, times.begin() + 11, times.end());  // the first starts the program
+  return times[11];
+}
+
+/// The answer of a process of its own: one that remembers has nothing to remember.
+Result<cv::Mat1f> fresh_answer(const ModuleOptions& options, const cv::Mat1f& picture) {
+  auto answers = answers_to(options, {picture});
+  if (!answers) return tl::unexpected(answers.error());
+  return answers->front();
+}
+
+double largest(const cv::Mat1f& picture) {
+  return cv::norm(picture, cv::NORM_INF);
+}
+
+}  // namespace
+
+Result<ModuleReport> check_module(const ModuleOptions& options) {
+  ModuleReport report;
+  constexpr int side = 33;
+  const std::vector<cv::Mat1f> pictures{noise({32, 24}, 1), noise({24, 32}, 2), noise({1, 1}, 3), noise({160, 120}, 4)};
+  const auto first = answers_to(options, pictures), second = answers_to(options, pictures);
+  if (!first) return tl::unexpected(first.error());
+  if (!second) return tl::unexpected(second.error());
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    if (cv::norm((*first)[i], (*second)[i], cv::NORM_INF) != 0)
+      return fail(ErrorCode::integrity, "two processes of the module answered the same pictures differently");
+    report.shapes.push_back(pictures[i].size());
+  }
+  const auto time = latency_ms(options);
+  if (!time) return tl::unexpected(time.error());
+  report.latency_ms = *time;
+  const cv::Mat1f a = noise({side, side}, 5), b = noise({side, side}, 6), zero = cv::Mat1f::zeros(side, side);
+  cv::Mat1f impulse = zero.clone();
+  impulse(side / 2, side / 2) = 1;
+  std::vector<cv::Mat1f> answers;
+  for (const auto& picture : {zero, a, b, cv::Mat1f(2 * a - 0.5 * b), impulse}) {
+    auto answer = fresh_answer(options, picture);
+    if (!answer) return tl::unexpected(answer.error());
+    answers.push_back(*answer - (answers.empty() ? cv::Mat1f(zero) : answers.front()));
+  }
+  const double scale = std::max({largest(answers[1]), largest(answers[2]), 1e-12});
+  report.linearity_deviation = largest(answers[3] - (2 * answers[1] - 0.5 * answers[2])) / scale;
+  report.linear = report.linearity_deviation < 1e-4;
+  report.impulse_response = answers[4](cv::Rect(side / 2 - 4, side / 2 - 4, 9, 9)).clone();
+  report.impulse_sum = cv::sum(answers[4])[0];
+  return report;
+}
+
+}  // namespace todbench

@@ -1,0 +1,51 @@
+// A stage of the chain as a process of the user's, in any language.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "acquisition/core/result.h"
+
+namespace todbench {
+
+/// How a module is started and how long it may take.
+struct ModuleOptions {
+  std::string command{};                  ///< for a shell
+  std::string header = "{}";              ///< JSON that is sent first, as a byte array
+  std::chrono::milliseconds limit{5000};  ///< for an answer, the start of the process included in the first
+};
+
+/// Picture to picture: writes one .npy array to the module's standard input and reads one of the same shape from its
+/// standard output. Its own process group, which ends with the object. What goes wrong is said with the last line of
+/// its standard error; after an error the module is dead. The program has to ignore SIGPIPE. Move-only; one thread at a
+/// time.
+class ModuleProcess {
+ public:
+  /// `internal` where no process can be made; a command that does not exist is noticed by the first exchange.
+  [[nodiscard]] static Result<ModuleProcess> start(const ModuleOptions& options);
+  ModuleProcess(ModuleProcess&& other) noexcept;
+  ModuleProcess& operator=(ModuleProcess&& other) = delete;
+  ~ModuleProcess();
+
+  /// `disconnected`: it died. `timeout`: no answer in time. `integrity`: no array, another shape, a type that is none,
+  /// a number that is not finite, bytes behind the answer.
+  [[nodiscard]] Result<cv::Mat1f> exchange(const cv::Mat1f& picture);
+
+ private:
+  explicit ModuleProcess(const ModuleOptions& options) : options_(options) {}
+  [[nodiscard]] Result<void> transfer(std::chrono::steady_clock::time_point until, std::size_t most_values);
+  void take_errors();
+  [[nodiscard]] Error died() const;
+  [[nodiscard]] Error with_last_words(Error error) const;
+  void end();
+
+  ModuleOptions options_;
+  pid_t process_ = -1;
+  int in_ = -1, out_ = -1, err_ = -1;  ///< our ends of its standard streams
+  std::string to_write_, read_, errors_;
+};
+
+}  // namespace todbench

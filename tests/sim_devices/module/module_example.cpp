@@ -1,0 +1,62 @@
+// A module: picture in, picture out. The argument says what it does with it, or how it breaks the contract.
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <string>
+
+#include "sim_devices/module/npy_message.h"
+
+namespace {
+
+void write_all(const std::string& bytes) {
+  std::fwrite(bytes.data(), 1, bytes.size(), stdout);
+  std::fflush(stdout);
+}
+
+cv::Mat1f processed(const std::string& mode, const todbench::NpyMessage& message) {
+  cv::Mat1f picture(static_cast<int>(message.shape[0]), static_cast<int>(message.shape[1]));
+  for (std::size_t i = 0; i < message.values.size(); ++i)
+    picture.begin()[static_cast<int>(i)] = static_cast<float>(message.values[i]);
+  if (mode == "double") picture *= 2;
+  if (mode == "square") picture = picture.mul(picture);
+  if (mode == "nan") picture(0, 0) = std::numeric_limits<float>::quiet_NaN();
+  if (mode == "shape") picture = cv::Mat1f::zeros(2, 3);
+  if (mode == "random") picture(0, 0) += static_cast<float>(::getpid());
+  return picture;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string mode = argc > 1 ? argv[1] : "identity";
+  if (mode == "crash") {
+    std::fprintf(stderr, "the licence has expired\n");
+    return 3;
+  }
+  std::string stream;
+  bool header_read = false;
+  while (true) {
+    const auto found = todbench::read_message(stream, 1 << 24);
+    if (!found) return 1;
+    if (!found->message) {
+      char buffer[65536];
+      const ssize_t got = ::read(0, buffer, sizeof buffer);
+      if (got <= 0) return 0;
+      stream.append(buffer, static_cast<std::size_t>(got));
+      continue;
+    }
+    const todbench::NpyMessage message = *found->message;
+    stream.erase(0, found->bytes);
+    if (!header_read) {
+      header_read = true;
+      continue;
+    }
+    if (mode == "hang") ::pause();
+    if (mode == "text") write_all("thank you\n");
+    const std::string answer = todbench::to_message(processed(mode, message));
+    write_all(answer);
+    if (mode == "twice") write_all(answer);
+  }
+}

@@ -1,0 +1,93 @@
+// Modules as programs: what keeps the contract, and every way to break it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include "sim_devices/module/module_check.h"
+#include "sim_devices/module/npy_message.h"
+
+namespace todbench {
+namespace {
+
+using ::testing::HasSubstr;
+
+ModuleOptions example(const std::string& mode) {
+  ::signal(SIGPIPE, SIG_IGN);
+  // A test waits as long as a busy machine needs; only the hanging module is given a short time.
+  return {.command = std::string(TODBENCH_MODULE_EXAMPLE) + " " + mode,
+          .limit = std::chrono::milliseconds(mode == "hang" ? 500 : 60000)};
+}
+
+TEST(Npy, PicturesAndTextsComeBackFromAnyPieceOfTheStream) {
+  cv::Mat1f picture(2, 3);
+  for (int i = 0; i < 6; ++i) picture(i / 3, i % 3) = static_cast<float>(i) / 4;
+  const std::string bytes = to_message(picture) + to_message(std::string_view("{}"));
+
+  for (std::size_t length = 0; length < bytes.size() - 66; ++length) {
+    const auto part = read_message(std::string_view(bytes).substr(0, length), 100);
+    ASSERT_TRUE(part) << length;
+    EXPECT_EQ(part->message.has_value(), length >= to_message(picture).size()) << length;
+  }
+  const auto whole = read_message(bytes, 100);
+  ASSERT_TRUE(whole && whole->message);
+  EXPECT_EQ(whole->message->shape, (std::vector<std::size_t>{2, 3}));
+  EXPECT_EQ(whole->message->values[5], 1.25);
+  const auto text = read_message(std::string_view(bytes).substr(whole->bytes), 100);
+  EXPECT_EQ(text->message->values, (std::vector<double>{'{', '}'}));
+}
+
+TEST(Npy, RefusesWhatIsNoArray) {
+  cv::Mat1f picture = cv::Mat1f::zeros(20, 20);
+  std::string complex = to_message(picture), columns = complex;
+  complex.replace(complex.find("<f4"), 3, "<c8");
+  columns.replace(columns.find("False"), 5, "True ");
+  EXPECT_FALSE(read_message("hello", 100));
+  EXPECT_FALSE(read_message(complex, 1000));
+  EXPECT_FALSE(read_message(columns, 1000));
+  EXPECT_FALSE(read_message(to_message(picture), 100)) << "too many numbers";
+}
+
+TEST(ModuleProcess, AnswersPictureByPicture) {
+  auto module = ModuleProcess::start(example("double"));
+  ASSERT_TRUE(module) << module.error().message;
+  for (int i = 1; i <= 3; ++i) {
+    const cv::Mat1f picture(480, 640, static_cast<float>(i));
+    const auto answer = module->exchange(picture);
+    ASSERT_TRUE(answer) << answer.error().message;
+    EXPECT_EQ(cv::norm(*answer, 2 * picture, cv::NORM_INF), 0);
+  }
+}
+
+TEST(ModuleCheck, FindsWhatAModuleDoes) {
+  const auto doubled = check_module(example("double")), squared = check_module(example("square"));
+
+  ASSERT_TRUE(doubled) << doubled.error().message;
+  EXPECT_TRUE(doubled->linear);
+  EXPECT_FLOAT_EQ(doubled->impulse_response(4, 4), 2);
+  EXPECT_NEAR(doubled->impulse_sum, 2, 1e-6);
+  EXPECT_EQ(doubled->shapes.size(), 4u);
+  ASSERT_TRUE(squared) << squared.error().message;
+  EXPECT_FALSE(squared->linear);
+}
+
+TEST(ModuleCheck, NamesEveryWayToBreakTheContract) {
+  const auto refused = [](const std::string& mode) {
+    const auto report = check_module(example(mode));
+    EXPECT_FALSE(report) << mode;
+    return report ? Error{} : report.error();
+  };
+
+  EXPECT_THAT(refused("crash").message, HasSubstr("it said: the licence has expired"));
+  EXPECT_EQ(refused("crash").code, ErrorCode::disconnected);
+  EXPECT_EQ(refused("hang").code, ErrorCode::timeout);
+  EXPECT_THAT(refused("nan").message, HasSubstr("not finite"));
+  EXPECT_THAT(refused("shape").message, HasSubstr("shape (2, 3)"));
+  EXPECT_THAT(refused("text").message, HasSubstr("no .npy array"));
+  EXPECT_THAT(refused("random").message, HasSubstr("differently"));
+  EXPECT_EQ(refused("twice").code, ErrorCode::integrity);
+  EXPECT_EQ(check_module({.command = "/no/such/program", .limit = std::chrono::seconds(60)}).error().code,
+            ErrorCode::disconnected);
+}
+
+}  // namespace
+}  // namespace todbench
