@@ -63,9 +63,9 @@ endforeach()
 set(todbench_package "${CMAKE_INSTALL_LIBDIR}/cmake/todbench")
 install(TARGETS ${todbench_installed_libraries} todbench_options todbench_all EXPORT todbench COMPONENT development)
 install(EXPORT todbench NAMESPACE todbench:: FILE todbench-targets.cmake DESTINATION "${todbench_package}" COMPONENT development)
-foreach(folder acquisition/core hvs tod sim_devices/scene sim_devices/sensor sim_devices/prediction)
+foreach(folder acquisition/core hvs tod sim_devices)
   install(DIRECTORY "${folder}/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/todbench/${folder}" COMPONENT development
-    FILES_MATCHING PATTERN "*.h" PATTERN observers EXCLUDE)
+    FILES_MATCHING PATTERN "*.h" PATTERN lab EXCLUDE PATTERN observers EXCLUDE PATTERN sensors EXCLUDE)
 endforeach()
 
 add_custom_target(package_libraries DEPENDS ${todbench_installed_libraries})

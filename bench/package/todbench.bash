@@ -11,6 +11,8 @@ _todbench() {
   COMPREPLY=()
   local word
   for word in "${offered[@]}"; do
+    # A camera calls itself what it likes, and what is offered becomes part of a command.
+    [[ "$word" == *[!A-Za-z0-9:._/-]* ]] && continue
     [[ "$word" == "$cur"* ]] && COMPREPLY+=("$word")
   done
   __ltrim_colon_completions "$cur"

@@ -40,6 +40,11 @@ typed() {
 is "bash: commands" "$(typed todbench mea)" "measure"
 is "bash: options" "$(typed todbench simulate --sens)" "--sensor"
 is "bash: words" "$(typed todbench render --apex l)" "left"
+hostile=$(mktemp)
+printf '#!/bin/sh\nprintf "%%s\\n" "gige:FLIR-1" "gige:x;reboot" "gige:\$(id)" "gige:a b"\n' >"$hostile"
+chmod +x "$hostile"
+is "bash: names that are commands" "$(typed "$hostile" record gi)" "gige:FLIR-1"
+rm "$hostile"
 cd "$source"
 is "bash: files beside names" "$(typed todbench verify CHANGE)" "CHANGELOG.md"
 exit $failed
