@@ -20,7 +20,7 @@ struct ShownPatch {
   int magnification = 1;            ///< screen pixels per sample, bicubic
   std::optional<int> limit_ms;      ///< shown so long at most; nothing: until answered
   double response_s = 0;            ///< from showing to answering
-  std::optional<double> noise_k;    ///< temporal noise of a sample that the model was told; older files do not have it
+  std::optional<double> noise_k{};  ///< temporal noise of a sample that the model was told; older files do not have it
 };
 
 /// Answers and the curve fitted to them. The trials have the format of the model's, with the person's answer and scores

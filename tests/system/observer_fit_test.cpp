@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 /// A session of the simulated sensor, with a human run that a template observer of known parameters answered.
 class ObserverFitCommand : public ::testing::Test {
  protected:
-  /// Every fourth patch of a small session: 80.
+  /// Every fifth patch of a small session: 64.
   void answer(const std::string& name, const TemplateObserverSpec& person, std::uint64_t seed) const {
     const auto plan = read_plan(folder_.write(name + ".toml", small_plan(16)).string());
     ASSERT_TRUE(plan) << plan.error().message;
@@ -29,7 +29,7 @@ class ObserverFitCommand : public ::testing::Test {
     std::uint64_t number = 0;
     ExperimentListener listener;
     listener.on_trial = [&](SessionCurve, const Trial& trial, const Patch& patch) {
-      if (++number % 4 != 0) return;
+      if (++number % 5 != 0) return;
       const auto prepared = *observer.prepare(trial.size_px, 1);
       ShownPatch kept{.kelvin = {}, .limit_ms = {}, .noise_k = patch.noise_k};
       patch.kelvin.convertTo(kept.kelvin, CV_32F);
@@ -54,8 +54,8 @@ class ObserverFitCommand : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-const std::vector<std::string> quick{"observer",     "fit", "a",     "--free", "blur_sigma_samples,internal_noise",
-                                     "--replicates", "99",  "--json"};
+const std::vector<std::string> quick{"observer",     "fit", "a",       "--free", "blur_sigma_samples,internal_noise",
+                                     "--replicates", "99",  "--draws", "48",     "--json"};
 
 std::vector<std::string> with(std::vector<std::string> arguments, const std::vector<std::string>& more) {
   arguments.insert(arguments.end(), more.begin(), more.end());
