@@ -64,6 +64,20 @@ std::filesystem::path session_folder(const QString& argument) {
   return path;
 }
 
+QList<QCommandLineOption> known_options() {
+  QCommandLineOption manual("manual", "Writes the page for man(1) and ends.", "FILE");
+  manual.setFlags(QCommandLineOption::HiddenFromHelp);
+  return {{"sessions",
+           "Where sessions are listed and written, made where it is not there; default: the current folder, or that of "
+           "SESSION.",
+           "FOLDER"},
+          {"theme", "light or dark; default: as last time.", "NAME"},
+          {"size", "Size of the window in pixels.", "WIDTHxHEIGHT"},
+          {"screenshots", "Writes a picture of every view and ends.", "FOLDER"},
+          {"report", "Writes report.html and report.pdf of a session and ends; needs no screen.", "SESSION"},
+          manual};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -81,22 +95,11 @@ int main(int argc, char** argv) {
   options.setApplicationDescription("The bench of todbench as a window");
   options.addHelpOption();
   options.addVersionOption();
-  QCommandLineOption manual("manual", "Writes the page for man(1) and ends.", "FILE");
-  manual.setFlags(QCommandLineOption::HiddenFromHelp);
-  const QList<QCommandLineOption> known{
-      {"sessions",
-       "Where sessions are listed and written, made where it is not there; default: the current folder, or that of "
-       "SESSION.",
-       "FOLDER"},
-      {"theme", "light or dark; default: as last time.", "NAME"},
-      {"size", "Size of the window in pixels.", "WIDTHxHEIGHT"},
-      {"screenshots", "Writes a picture of every view and ends.", "FOLDER"},
-      {"report", "Writes report.html and report.pdf of a session and ends; needs no screen.", "SESSION"},
-      manual};
+  const QList<QCommandLineOption> known = known_options();
   options.addOptions(known);
   options.addPositionalArgument("SESSION", "Folder of a session, or its session.toml: shown at once.", "[SESSION]");
   options.process(application);
-  if (options.isSet(manual)) return write_manual(known, options.value(manual));
+  if (options.isSet("manual")) return write_manual(known, options.value("manual"));
   if (options.isSet("report")) return write_reports(options.value("report"));
 
   const QStringList arguments = options.positionalArguments();
