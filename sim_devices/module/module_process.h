@@ -6,8 +6,10 @@
 #include <chrono>
 #include <opencv2/core.hpp>
 #include <string>
+#include <vector>
 
 #include "acquisition/core/result.h"
+#include "sim_devices/module/npy_message.h"
 
 namespace todbench {
 
@@ -36,7 +38,7 @@ class ModuleProcess {
 
  private:
   explicit ModuleProcess(const ModuleOptions& options) : options_(options) {}
-  [[nodiscard]] Result<void> transfer(std::chrono::steady_clock::time_point until, std::size_t most_values);
+  [[nodiscard]] Result<MessageRead> transfer(std::chrono::steady_clock::time_point until, std::size_t most_values);
   void take_errors();
   [[nodiscard]] Error died() const;
   [[nodiscard]] Error with_last_words(Error error) const;
@@ -46,6 +48,7 @@ class ModuleProcess {
   pid_t process_ = -1;
   int in_ = -1, out_ = -1, err_ = -1;  ///< our ends of its standard streams
   std::string to_write_, read_, errors_;
+  std::vector<char> buffer_ = std::vector<char>(1 << 20);  ///< for reading
 };
 
 }  // namespace todbench

@@ -31,23 +31,27 @@ std::string with_header(std::string_view type, const std::string& shape) {
 }
 
 template <typename T>
-double number_at(const char* bytes) {
-  T value;
-  std::memcpy(&value, bytes, sizeof value);
-  return static_cast<double>(value);
+std::vector<double> numbers_at(const char* bytes, std::size_t count) {
+  std::vector<double> values(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    T value;
+    std::memcpy(&value, bytes + i * sizeof value, sizeof value);
+    values[i] = static_cast<double>(value);
+  }
+  return values;
 }
 
 struct Type {
   std::string_view name;
   std::size_t bytes;
-  double (*read)(const char*);
+  std::vector<double> (*read)(const char* bytes, std::size_t count);
 };
 constexpr std::array types{
-    Type{"<f4", 4, number_at<float>},        Type{"<f8", 8, number_at<double>},
-    Type{"|u1", 1, number_at<std::uint8_t>}, Type{"|i1", 1, number_at<std::int8_t>},
-    Type{"|b1", 1, number_at<std::uint8_t>}, Type{"<u2", 2, number_at<std::uint16_t>},
-    Type{"<i2", 2, number_at<std::int16_t>}, Type{"<u4", 4, number_at<std::uint32_t>},
-    Type{"<i4", 4, number_at<std::int32_t>},
+    Type{"<f4", 4, numbers_at<float>},        Type{"<f8", 8, numbers_at<double>},
+    Type{"|u1", 1, numbers_at<std::uint8_t>}, Type{"|i1", 1, numbers_at<std::int8_t>},
+    Type{"|b1", 1, numbers_at<std::uint8_t>}, Type{"<u2", 2, numbers_at<std::uint16_t>},
+    Type{"<i2", 2, numbers_at<std::int16_t>}, Type{"<u4", 4, numbers_at<std::uint32_t>},
+    Type{"<i4", 4, numbers_at<std::int32_t>},
 };
 
 /// What stands behind 'KEY': in the header's dictionary, up to `end`.
@@ -119,10 +123,7 @@ Result<MessageRead> read_message(std::string_view stream, std::size_t most_value
   }
   const std::size_t bytes = begin + length + count * type->bytes;
   if (stream.size() < bytes) return MessageRead{};
-  NpyMessage message{*shape, {}};
-  message.values.reserve(count);
-  for (std::size_t i = 0; i < count; ++i)
-    message.values.push_back(type->read(stream.data() + begin + length + i * type->bytes));
+  NpyMessage message{*shape, type->read(stream.data() + begin + length, count)};
   return MessageRead{std::move(message), bytes};
 }
 
