@@ -203,9 +203,10 @@ TEST_F(MeasuredSession, ReplaysWithTheSameTrialsAndTheSameReadings) {
     EXPECT_EQ(content_of(at("r") / file), content_of(at("m") / file)) << file;
 }
 
-TEST_F(MeasuredSession, OfGradedAnswersReplaysWithTheSameProbabilities) {
+TEST_F(MeasuredSession, OfGradedAnswersReplaysWithTheSameProbabilitiesAndTheFunctionOfTheTwin) {
   plan_.schedule.answers = AnswerKind::graded;
   plan_.schedule.frames_per_presentation = 3;
+  plan_.fit.estimator = FitEstimator::twin_shape;
   ASSERT_TRUE(measure("m"));
 
   const auto replay = replay_session(at("m"), options("r"), {}, {});
@@ -219,6 +220,13 @@ TEST_F(MeasuredSession, OfGradedAnswersReplaysWithTheSameProbabilities) {
     EXPECT_TRUE(trial.probability_correct);
     EXPECT_EQ(trial.frames, 3);
   }
+  for (const TodPoint& point : session->curve->points) {
+    ASSERT_TRUE(point.fit.twin_shape) << point.set_delta_t_k;
+    EXPECT_NEAR(point.fit.twin_shape->size_ratio, 1, 0.1);
+    EXPECT_EQ(point.fit.interval, IntervalKind::two_way) << "one set-up";
+    EXPECT_TRUE(point.fit.usable());
+  }
+  EXPECT_THAT(content_of(at("r") / "report.html"), HasSubstr("The function is that of the simulated twin"));
 }
 
 TEST_F(MeasuredSession, OfAVersionThatKeptLessOfATrialReplaysAsFarAsItIsKnown) {
