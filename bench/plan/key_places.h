@@ -20,6 +20,12 @@ constexpr const auto& values_of(const TargetKind&) {
 constexpr const auto& values_of(const ScheduleKind&) {
   return all_schedule_kinds;
 }
+constexpr const auto& values_of(const AnswerKind&) {
+  return all_answer_kinds;
+}
+constexpr const auto& values_of(const FitEstimator&) {
+  return all_fit_estimators;
+}
 constexpr const auto& values_of(const PsychometricForm&) {
   return all_psychometric_forms;
 }

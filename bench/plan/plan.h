@@ -78,8 +78,10 @@ inline constexpr std::array all_schedule_kinds{ScheduleKind::constant, ScheduleK
 /// [schedule]: of camera and twin.
 struct SchedulePlan {
   ScheduleKind kind = ScheduleKind::constant;
-  double half_width_percent = 10;  ///< adaptive: wanted half-width of the 95 % interval of S75
-  int max_presentations = 1000;    ///< adaptive: hard cap over all contrasts
+  double half_width_percent = 10;           ///< adaptive: wanted half-width of the 95 % interval of S75
+  int max_presentations = 1000;             ///< adaptive: hard cap over all contrasts
+  AnswerKind answers = AnswerKind::binary;  ///< graded: the probability of the right answer given what was seen, too
+  int frames_per_presentation = 1;          ///< successive good ones, over which graded answers are averaged
   bool operator==(const SchedulePlan&) const = default;
 };
 
@@ -89,6 +91,7 @@ inline constexpr std::array all_psychometric_forms{PsychometricForm::size, Psych
 struct FitPlan {
   PsychometricForm form = PsychometricForm::size;
   std::optional<double> lapse = 0.0;  ///< nothing: free
+  FitEstimator estimator = FitEstimator::weibull;
   bool operator==(const FitPlan&) const = default;
 };
 

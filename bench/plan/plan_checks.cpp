@@ -68,6 +68,16 @@ ValueMistakes check_force(const Plan& plan, std::size_t /*row*/) {
   return mistakes;
 }
 
+ValueMistakes check_frames_per_presentation(const Plan& plan, std::size_t /*row*/) {
+  if (plan.schedule.frames_per_presentation == 1 || plan.schedule.answers == AnswerKind::graded) return {};
+  return {{std::nullopt, "more than one frame needs answers = \"graded\": right or wrong is the answer to one frame"}};
+}
+
+ValueMistakes check_estimator(const Plan& plan, std::size_t /*row*/) {
+  if (plan.fit.estimator == FitEstimator::weibull || plan.fit.lapse == 0.0) return {};
+  return {{std::nullopt, "the function of the twin has no lapse: \"twin-shape\" needs lapse = 0"}};
+}
+
 ValueMistakes check_limit_contrast(const Plan& plan, std::size_t row) {
   ValueMistakes mistakes;
   const double limit = plan.limits.acuity[row].delta_t_k;

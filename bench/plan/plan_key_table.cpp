@@ -256,7 +256,16 @@ PlanSection schedule_section() {
                    {.name = "max_presentations",
                     .type = WholeKey{1, 1000000},
                     .sentence = "adaptive: hard cap over all contrasts",
-                    .place = of(&SchedulePlan::max_presentations)}}};
+                    .place = of(&SchedulePlan::max_presentations)},
+                   {.name = "answers",
+                    .type = ChoiceKey{names_of(all_answer_kinds)},
+                    .sentence = "right or wrong, or how probable the right answer is for what was seen",
+                    .place = of(&SchedulePlan::answers)},
+                   {.name = "frames_per_presentation",
+                    .type = WholeKey{1, 1000},
+                    .sentence = "successive good frames over which graded answers are averaged",
+                    .place = of(&SchedulePlan::frames_per_presentation),
+                    .check = check_frames_per_presentation}}};
 }
 
 PlanSection fit_section() {
@@ -269,7 +278,12 @@ PlanSection fit_section() {
                    {.name = "lapse",
                     .type = NumberOrWordKey{NumberRange::between(0, 0.1), "free"},
                     .sentence = "share of wrong answers to triangles that are plainly seen",
-                    .place = in(&Plan::fit, &FitPlan::lapse)}}};
+                    .place = in(&Plan::fit, &FitPlan::lapse)},
+                   {.name = "estimator",
+                    .type = ChoiceKey{names_of(all_fit_estimators)},
+                    .sentence = "the form above, or the function of the simulated twin, stretched in size",
+                    .place = in(&Plan::fit, &FitPlan::estimator),
+                    .check = check_estimator}}};
 }
 
 PlanSection measurement_section() {

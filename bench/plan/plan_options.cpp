@@ -19,6 +19,8 @@ MeasurementOptions measurement_options(const Plan& plan, const std::vector<Targe
   options.registration_frames = plan.measurement.registration_frames;
   options.contrast_frames = plan.measurement.contrast_frames;
   options.min_reference_px = plan.measurement.min_reference_px;
+  options.answers = plan.schedule.answers;
+  options.frames_per_presentation = plan.schedule.frames_per_presentation;
   options.frames_after_change = plan.measurement.frames_after_change;
   options.nuc_interval_s = plan.camera.nuc_interval_s;
   options.nuc_wait_s = plan.camera.nuc_wait_s;

@@ -152,7 +152,21 @@ const TodPoint* point_of(const std::optional<TodCurve>& curve, double contrast) 
   return curve ? point_at(*curve, contrast) : nullptr;
 }
 
+bool by_twin(const ReportData& data) {
+  for (const std::optional<TodCurve>* curve : {&data.measured, &data.simulated}) {
+    if (!*curve) continue;
+    for (const TodPoint& point : (*curve)->points)
+      if (point.fit.twin_shape) return true;
+  }
+  return false;
+}
+
 std::string form_in_words(const ReportData& data) {
+  if (by_twin(data)) {
+    return "The function is that of the simulated twin, averaged over phases and noise without a form and stretched in "
+           "ln S to the answers by quasi-likelihood; S₇₅ is the size at which it passes 0.75. The slope b is that of "
+           "the Weibull function with the same rise there.";
+  }
   const std::string form = data.fit.form == PsychometricForm::size
                                ? "ψ(S) = 0.25 + (0.75 − λ)(1 − exp(−(S/a)^b)), a Weibull function of size"
                                : "ψ(S) = 0.25 + (0.75 − λ) exp(−(a/S)^b), a Weibull function of acuity 1/S";

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "bench/report/number_format.h"
 #include "tod/psychometric/acuity.h"
+#include "tod/psychometric/twin_shape.h"
 
 namespace todbench {
 namespace {
@@ -91,9 +94,15 @@ PlotSeries fitted_curve(const PsychometricFit& fit, PsychometricForm form, const
   series.marker = PlotMarker::none;
   series.line = layer.line;
   if (!fit.threshold || !fit.slope || !(*fit.threshold > 0)) return series;
+  std::optional<TwinShape> shape;
+  if (fit.twin_shape) {
+    if (auto made = TwinShape::of(fit.twin_shape->table)) shape = *std::move(made);
+  }
   for (int i = 0; i <= steps; ++i) {
     const double size = sizes.low * std::pow(sizes.high / sizes.low, static_cast<double>(i) / steps);
-    series.points.push_back({size, psychometric(form, size, *fit.threshold, *fit.slope, fit.lapse), {}, {}});
+    const double proportion = shape ? shape->at(twin_ln_size(*shape, *fit.twin_shape, std::log(size))).proportion
+                                    : psychometric(form, size, *fit.threshold, *fit.slope, fit.lapse);
+    series.points.push_back({size, proportion, {}, {}});
   }
   return series;
 }

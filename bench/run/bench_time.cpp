@@ -57,7 +57,7 @@ class Walk {
  private:
   void take_frames(bool new_set_up, bool new_contrast) {
     const MeasurementPlan& measurement = plan_.measurement;
-    int frames = measurement.frames_after_change + 1;
+    int frames = measurement.frames_after_change + plan_.schedule.frames_per_presentation;
     if (new_set_up) frames += measurement.registration_frames;
     if (new_set_up || new_contrast) frames += measurement.contrast_frames;
     // Where a hand has moved the plate it is looked for.

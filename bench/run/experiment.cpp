@@ -13,6 +13,7 @@
 #include "bench/run/session_frame.h"
 #include "bench/run/simulated_responses.h"
 #include "bench/run/simulated_set_up.h"
+#include "bench/run/twin_shapes.h"
 #include "bench/text/text.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "sim_devices/sensor/effect_quantisation.h"
@@ -123,14 +124,9 @@ DirectResults direct_results(const TodCurve& curve, const ExperimentInputs& inpu
                              const std::map<double, double>& shown_delta_t_k, std::uint64_t seed,
                              std::stop_token stop) {
   TemplateObserver observer(inputs.observer, triangle_alternatives());
-  DirectEstimateOptions options{
-      .motion = inputs.motion, .accuracy = inputs.accuracy, .seed = seed, .stop = std::move(stop)};
+  const DirectEstimateOptions options = direct_options(curve, inputs, shown_delta_t_k, seed, std::move(stop));
   std::vector<double> contrasts;
-  for (const auto& point : curve.points) {
-    contrasts.push_back(point.delta_t_k);
-    const auto shown = shown_delta_t_k.find(point.set_delta_t_k);
-    options.scene_delta_t_k[point.delta_t_k] = shown == shown_delta_t_k.end() ? point.set_delta_t_k : shown->second;
-  }
+  for (const auto& point : curve.points) contrasts.push_back(point.delta_t_k);
   DirectResults results;
   // Together they share their images. Where one has no threshold the others are estimated alone.
   std::vector<std::vector<double>> attempts{contrasts};
@@ -147,6 +143,21 @@ DirectResults direct_results(const TodCurve& curve, const ExperimentInputs& inpu
     }
   }
   return results;
+}
+
+/// Fits a curve with the functions of its simulated sensor, where the plan asks for it.
+void give_shape(TodCurve& curve, MeasurementResult& result, const Plan& plan, const ExperimentInputs& inputs,
+                const std::map<double, double>& shown_delta_t_k, const SessionFrame& frame, std::stop_token stop) {
+  if (plan.fit.estimator != FitEstimator::twin_shape || result.ended_by) return;
+  phase(frame.folder, frame.listener, "fitting with the functions of " + inputs.sensor.name);
+  TwinShapesOutcome outcome =
+      fit_twin_shapes(curve, result.trials, inputs, fit_options(plan),
+                      direct_options(curve, inputs, shown_delta_t_k, plan.seed, std::move(stop)));
+  result.ended_by = std::move(outcome.ended_by);
+  for (auto& sentence : outcome.notes) {
+    note(frame.folder, frame.listener, sentence);
+    result.notes.push_back(std::move(sentence));
+  }
 }
 
 Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, SessionFolder& folder,
@@ -172,6 +183,7 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
     point.lag1_correlation = run.result.lag1_correlation;
   }
 
+  give_shape(run.curve, run.result, plan, inputs, shown_delta_t_k, {folder, listener}, stop);
   if (!run.result.ended_by) {
     phase(folder, listener, "estimating " + inputs.sensor.name + " directly");
     DirectResults direct = direct_results(run.curve, inputs, shown_delta_t_k, plan.seed, std::move(stop));
@@ -365,11 +377,17 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   }
   result->notes.insert(result->notes.end(), inputs.warnings.begin(), inputs.warnings.end());
   if (!forecast.empty()) result->notes.push_back(forecast);
-  provenance.run = run_record(*result, seconds_since(begin));
   bench = {};
 
   auto curve = tod_curve(result->trials, fit_options(plan));
-  if (!curve) return abandon(frame, plan, provenance, curve.error());
+  if (!curve) {
+    provenance.run = run_record(*result, seconds_since(begin));
+    return abandon(frame, plan, provenance, curve.error());
+  }
+  std::map<double, double> shown;
+  for (const auto& point : curve->points) shown[point.set_delta_t_k] = point.delta_t_k;
+  give_shape(*curve, *result, plan, inputs, shown, frame, stop);
+  provenance.run = run_record(*result, seconds_since(begin));
   curve->sensor = info.model + " " + info.serial;
   curve->observer = inputs.observer.name;
   for (auto& point : curve->points) {

@@ -1,12 +1,39 @@
 #include "bench/run/replay.h"
 
+#include <algorithm>
+
 #include "bench/run/recorded_bench.h"
 #include "bench/session/fit_record.h"
+#include "bench/session/trials_csv.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
 
 namespace todbench {
 namespace {
+
+/// The trials as the columns of a file know them: an earlier version kept less of a trial.
+std::vector<Trial> in_columns_of(std::vector<Trial> trials, std::string_view header) {
+  for (Trial& trial : trials) {
+    if (header.find("saturated_pixels") == std::string_view::npos) trial.saturated_pixels = 0;
+    if (header.find("probability_correct") != std::string_view::npos) continue;
+    trial.probability_correct.reset();
+    trial.frames = 1;
+  }
+  return trials;
+}
+
+/// The same of files with other columns: what both know.
+Result<bool> same_as_far_as_known(const std::filesystem::path& then, std::string_view header,
+                                  const std::filesystem::path& now, bool cut_off) {
+  const auto old_trials = read_trials(then);
+  if (!old_trials) return tl::unexpected(old_trials.error());
+  const auto read = read_trials(now);
+  if (!read) return tl::unexpected(read.error());
+  const std::vector<Trial> trials = in_columns_of(*read, header);
+  const auto both = static_cast<std::ptrdiff_t>(std::min(trials.size(), old_trials->size()));
+  return (cut_off || trials.size() == old_trials->size()) &&
+         std::equal(trials.begin(), trials.begin() + both, old_trials->begin());
+}
 
 /// Equal files; of a session that was cut off, in which frames and trials need not end together, equal as far as both
 /// go.
@@ -15,6 +42,9 @@ Result<bool> same_trials(const std::filesystem::path& session, const std::filesy
   if (!then) return tl::unexpected(then.error());
   const auto now = read_text_file(replay / "trials.csv");
   if (!now) return tl::unexpected(now.error());
+  const auto header_of = [](const std::string& text) { return std::string_view(text).substr(0, text.find('\n')); };
+  if (header_of(*then) != header_of(*now))
+    return same_as_far_as_known(session / "trials.csv", header_of(*then), replay / "trials.csv", cut_off);
   return *now == *then || (cut_off && (now->starts_with(*then) || then->starts_with(*now)));
 }
 

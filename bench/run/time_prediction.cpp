@@ -41,7 +41,7 @@ struct Counts {
   double contrasts = 0;
 };
 
-/// The decisions on one picture, and what preparing for them takes.
+/// The decisions on the pictures of a presentation, and what preparing for them takes.
 Result<void> time_answers(const TargetPlate& plate, const Registration& registration, const cv::Mat1d& picture,
                           TemplateObserver& observer, const MeasurementOptions& options, double contrast_k,
                           PlateSpeed& speed) {
@@ -54,9 +54,15 @@ Result<void> time_answers(const TargetPlate& plate, const Registration& registra
     if ((window.pixels & cv::Rect({0, 0}, picture.size())) != window.pixels) continue;
     speed.answers += seconds_of([&] {
       const Patch patch{.kelvin = picture(window.pixels).clone(), .phase = window.phase, .noise_k = 0};
-      (void)(*prepared)->choose(patch, contrast_k, RandomStream(1, "time_prediction"));
+      const RandomStream noise(1, "time_prediction");
+      if (options.answers == AnswerKind::graded) {
+        (void)(*prepared)->judge(patch, contrast_k, noise, MeasurementOptions::graded_draws);
+      } else {
+        (void)(*prepared)->choose(patch, contrast_k, noise);
+      }
     });
   }
+  speed.answers *= options.frames_per_presentation;
   return {};
 }
 
@@ -113,7 +119,7 @@ double looking_s(const PlateSpeed& speed, const Counts& counts) {
 
 double frames_of(const Plan& plan, const Counts& counts) {
   return counts.set_ups * (plan.measurement.registration_frames + counts.contrasts * plan.measurement.contrast_frames) +
-         counts.presentations;
+         counts.presentations * plan.schedule.frames_per_presentation;
 }
 
 Counts counts_of(const Plan& plan, const ExperimentInputs& inputs, int phases) {

@@ -31,6 +31,12 @@ std::optional<double> FieldReader::optional_number() {
   return number();
 }
 
+std::optional<double> FieldReader::optional_probability() {
+  if (skip_empty()) return std::nullopt;
+  const auto value = parse_number(fields_[position_]);
+  return taken(value && *value >= 0 && *value <= 1 ? value : std::nullopt, "a number from 0 to 1");
+}
+
 bool FieldReader::skip_empty() {
   if (!fields_[position_].empty()) return false;
   ++position_;

@@ -40,6 +40,8 @@ class FieldReader {
   [[nodiscard]] double number();
   /// Nothing for an empty field.
   [[nodiscard]] std::optional<double> optional_number();
+  /// Nothing for an empty field.
+  [[nodiscard]] std::optional<double> optional_probability();
   template <typename Whole>
   [[nodiscard]] Whole whole() {
     return taken(parse_whole<Whole>(fields_[position_]), "a whole number");

@@ -15,6 +15,48 @@ constexpr std::array fit_verdicts{
 constexpr std::array comparison_verdicts{ComparisonVerdict::equivalent, ComparisonVerdict::different,
                                          ComparisonVerdict::inconclusive};
 
+Json numbers_json(const std::vector<double>& values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(json_number(value));
+  return list;
+}
+
+std::vector<double> numbers_from(const JsonReader& reader) {
+  std::vector<double> values;
+  for (const JsonReader& item : reader.elements()) values.push_back(item.number());
+  return values;
+}
+
+Json twin_shape_record(const TwinShapeUse& use) {
+  Json json;
+  json["size_ratio"] = json_number(use.size_ratio);
+  json["slope_ratio"] = json_number(use.slope_ratio);
+  json["slope_fitted"] = use.slope_fitted;
+  json["departure"] = json_number(use.departure);
+  json["departure_limit"] = json_number(use.departure_limit);
+  json["departure_shift"] = json_number(use.departure_shift);
+  json["shape_se_ln_threshold"] = json_number(use.shape_se_ln_threshold);
+  json["size_mrad"] = numbers_json(use.table.size_mrad);
+  json["proportion_correct"] = numbers_json(use.table.proportion_correct);
+  json["standard_error"] = numbers_json(use.table.standard_error);
+  return json;
+}
+
+std::optional<TwinShapeUse> read_twin_shape(const JsonReader& reader) {
+  if (reader.is_null()) return std::nullopt;
+  TwinShapeUse use;
+  use.size_ratio = reader.at("size_ratio").number();
+  use.slope_ratio = reader.at("slope_ratio").number();
+  use.slope_fitted = reader.at("slope_fitted").flag();
+  use.departure = reader.at("departure").number();
+  use.departure_limit = reader.at("departure_limit").number();
+  use.departure_shift = reader.at("departure_shift").number();
+  use.shape_se_ln_threshold = reader.at("shape_se_ln_threshold").number();
+  use.table = {numbers_from(reader.at("size_mrad")), numbers_from(reader.at("proportion_correct")),
+               numbers_from(reader.at("standard_error"))};
+  return use;
+}
+
 Json fit_record(const PsychometricFit& fit) {
   Json json = fit_json(fit);
   json["ci90"] = json_interval(fit.ci90);
@@ -22,6 +64,9 @@ Json fit_record(const PsychometricFit& fit) {
   json["trials"] = json_number(fit.trials);
   json["clusters"] = json_number(fit.clusters);
   json["variance_inflation"] = json_number(fit.variance_inflation);
+  json["interval"] = to_string(fit.interval);
+  json["dispersion"] = json_number(fit.dispersion);
+  json["twin_shape"] = fit.twin_shape ? twin_shape_record(*fit.twin_shape) : Json(nullptr);
   return json;
 }
 
@@ -41,6 +86,13 @@ PsychometricFit read_fit(const JsonReader& reader) {
   fit.trials = reader.at("trials").number();
   fit.clusters = reader.at("clusters").number();
   fit.variance_inflation = reader.at("variance_inflation").number();
+  if (const JsonReader kind = reader.at_if_there("interval"); !kind.is_null()) {
+    fit.interval = kind.named(all_interval_kinds);
+  } else if (fit.clusters > 0) {
+    fit.interval = IntervalKind::clusters;
+  }
+  fit.dispersion = reader.at_if_there("dispersion").optional_number();
+  fit.twin_shape = read_twin_shape(reader.at_if_there("twin_shape"));
   if (const JsonReader posterior = reader.at("posterior"); !posterior.is_null()) {
     const Interval interval = posterior.at("ci95").interval();
     fit.posterior = Posterior{posterior.at("median").number(), interval.low.value_or(0), interval.high.value_or(0),

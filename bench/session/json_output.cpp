@@ -70,6 +70,10 @@ Json curve_json(const TodCurve& curve, const SensorPlan& plan, const RunFigures&
     json["acuity_per_mrad"] = json_number(acuity_per_mrad(point.fit));
     json["trials"] = static_cast<std::int64_t>(std::llround(point.fit.trials));
     json["verdict"] = to_string(point.fit.verdict);
+    json["estimator"] = to_string(point.fit.twin_shape ? FitEstimator::twin_shape : FitEstimator::weibull);
+    json["interval"] = to_string(point.fit.interval);
+    json["dispersion"] = json_number(point.fit.dispersion);
+    json["clusters"] = json_number(point.fit.clusters);
     json["adequacy"] = adequacy_json(point.adequacy);
     points.push_back(std::move(json));
   }

@@ -22,7 +22,9 @@ bool same_trials(const std::vector<Trial>& a, const std::vector<Trial>& b) {
   return both > 0 && std::equal(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(both), b.begin(), same_trial);
 }
 
-std::string in_words(const FitOptions& fit) {
+std::string in_words(const Plan& plan) {
+  if (plan.fit.estimator == FitEstimator::twin_shape) return "the functions of the simulated twin";
+  const FitOptions fit = fit_options(plan);
   return "the " + std::string(to_string(fit.form)) + " form with " +
          (fit.fixed_lapse ? "a lapse of " + number_text(*fit.fixed_lapse) : std::string("a free lapse"));
 }
@@ -58,10 +60,9 @@ Result<void> check_comparable(const Session& a, const Session& b) {
   if (same_trials(a.trials, b.trials))
     return fail(ErrorCode::invalid_input,
                 "both sessions hold the same trials: comparing a session with itself shows nothing");
-  const FitOptions fit_a = fit_options(a.plan), fit_b = fit_options(b.plan);
-  if (fit_a.form != fit_b.form || fit_a.fixed_lapse != fit_b.fixed_lapse)
+  if (!(a.plan.fit == b.plan.fit))
     return fail(ErrorCode::invalid_input,
-                "the curves were fitted differently: " + in_words(fit_a) + ", and " + in_words(fit_b));
+                "the curves were fitted differently: " + in_words(a.plan) + ", and " + in_words(b.plan));
   const TemplateObserverSpec &observer_a = a.parts.observer, &observer_b = b.parts.observer;
   if (observer_a.name != observer_b.name)
     return fail(ErrorCode::invalid_input,

@@ -15,14 +15,33 @@ namespace todbench {
 
 namespace {
 
-constexpr std::array<std::string_view, 22> trial_columns{
-    "presentation",   "plate",        "mounting",    "triangle",        "set_delta_t_k", "delta_t_k",
-    "size_mm",        "size_mrad",    "size_px",     "truth",           "answer",        "score_up",
-    "score_right",    "score_down",   "score_left",  "phase_x_px",      "phase_y_px",    "frame",
-    "device_time_ns", "host_time_ns", "since_nuc_s", "saturated_pixels"};
+constexpr std::array<std::string_view, 24> trial_columns{"presentation",
+                                                         "plate",
+                                                         "mounting",
+                                                         "triangle",
+                                                         "set_delta_t_k",
+                                                         "delta_t_k",
+                                                         "size_mm",
+                                                         "size_mrad",
+                                                         "size_px",
+                                                         "truth",
+                                                         "answer",
+                                                         "score_up",
+                                                         "score_right",
+                                                         "score_down",
+                                                         "score_left",
+                                                         "phase_x_px",
+                                                         "phase_y_px",
+                                                         "frame",
+                                                         "device_time_ns",
+                                                         "host_time_ns",
+                                                         "since_nuc_s",
+                                                         "saturated_pixels",
+                                                         "probability_correct",
+                                                         "frames"};
 
-/// Files of earlier versions end before these.
-constexpr std::size_t later_columns = 1;
+/// Files of earlier versions end before saturated_pixels, or before probability_correct.
+constexpr std::array<std::size_t, 2> earlier_columns{21, 22};
 
 Trial read_trial(FieldReader& fields, std::size_t columns) {
   Trial trial;
@@ -44,7 +63,11 @@ Trial read_trial(FieldReader& fields, std::size_t columns) {
   trial.device_time_ns = fields.whole<std::int64_t>();
   trial.host_time_ns = fields.whole<std::int64_t>();
   trial.since_nuc_s = fields.optional_number().value_or(-1);
-  if (columns == trial_columns.size()) trial.saturated_pixels = fields.count();
+  if (columns > earlier_columns[0]) trial.saturated_pixels = fields.count();
+  if (columns > earlier_columns[1]) {
+    trial.probability_correct = fields.optional_probability();
+    trial.frames = fields.count();
+  }
   return trial;
 }
 
@@ -67,12 +90,15 @@ std::string trial_line(const Trial& trial) {
   add(std::to_string(trial.host_time_ns));
   add(trial.since_nuc_s < 0 ? std::string() : number_text(trial.since_nuc_s));
   add(std::to_string(trial.saturated_pixels));
+  add(trial.probability_correct ? number_text(*trial.probability_correct) : std::string());
+  add(std::to_string(trial.frames));
   return line + "\n";
 }
 
 bool all_finite(const Trial& trial) {
-  for (const double value : {trial.set_delta_t_k, trial.delta_t_k, trial.size_mm, trial.size_mrad, trial.size_px,
-                             trial.phase_x_px, trial.phase_y_px, trial.since_nuc_s}) {
+  for (const double value :
+       {trial.set_delta_t_k, trial.delta_t_k, trial.size_mm, trial.size_mrad, trial.size_px, trial.phase_x_px,
+        trial.phase_y_px, trial.since_nuc_s, trial.probability_correct.value_or(0)}) {
     if (!std::isfinite(value)) return false;
   }
   for (const double score : trial.scores) {
@@ -159,7 +185,7 @@ Result<std::vector<Trial>> read_trials(const std::filesystem::path& file) {
   const Result<CsvTable> table = parse_csv(*text, file.string());
   if (!table) return tl::unexpected(table.error());
   std::span<const std::string_view> columns(trial_columns);
-  if (table->header.size() + later_columns == columns.size()) columns = columns.first(table->header.size());
+  if (std::ranges::count(earlier_columns, table->header.size()) > 0) columns = columns.first(table->header.size());
   if (const Result<void> as_expected = check_columns(*table, columns); !as_expected)
     return tl::unexpected(as_expected.error());
   std::vector<Trial> trials;

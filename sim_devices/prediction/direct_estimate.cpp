@@ -258,12 +258,8 @@ bool needs_pixels(const SensorSpec& sensor, const SensorPlan& plan, double delta
          reaches_an_end(sensor, scene_k, options.background_k.value_or(sensor.scene_temperature_k));
 }
 
-}  // namespace
-
-Result<std::vector<DirectPoint>> direct_estimate(const SensorSpec& spec, const SensorPlan& plan,
-                                                 TemplateObserver& observer, const std::vector<double>& delta_t_k,
-                                                 const DirectEstimateOptions& options) {
-  const ImageChain chain(spec, plan, options.accuracy, options.motion);
+TrialConditions trial_conditions(const SensorSpec& spec, const SensorPlan& plan, const TemplateObserver& observer,
+                                 const DirectEstimateOptions& options) {
   TrialConditions conditions{.sensor = as_planned(spec, plan),
                              .motion = options.motion,
                              .samples_per_pitch = options.samples_per_pitch,
@@ -272,25 +268,71 @@ Result<std::vector<DirectPoint>> direct_estimate(const SensorSpec& spec, const S
                              .orientations = options.orientations};
   if (options.samples_per_pitch == 0) conditions.samples_per_pitch = conditions.sensor.samples_per_pitch();
   if (conditions.sensor.super_resolution_frames == 0) conditions.sensor.microscan = conditions.samples_per_pitch;
+  return conditions;
+}
+
+/// Asked of a sensor as its conditions have it.
+Result<AskedContrast> asked_contrast(const SensorSpec& sensor, const SensorPlan& plan,
+                                     const TemplateObserverSpec& observer, double delta_t_k,
+                                     const DirectEstimateOptions& options) {
+  const double magnitude = std::abs(delta_t_k);
+  if (!(magnitude > 0)) return fail(ErrorCode::invalid_input, "a contrast of 0 K has no threshold");
+  const double white_k = std::sqrt(white_variance_k2(sensor, plan, observer.sensor_noise_factor));
+  AskedContrast asked{.delta_t_k = delta_t_k,
+                      .white = {.sensor = white_k / magnitude, .internal = observer.internal_noise},
+                      .pixels = std::nullopt};
+  if (needs_pixels(sensor, plan, delta_t_k, options)) {
+    const auto pixels = pixel_contrast(sensor, plan, observer, delta_t_k, options);
+    if (!pixels) return tl::unexpected(pixels.error());
+    asked.pixels = *pixels;
+  }
+  return asked;
+}
+
+/// Sizes at which an answer says something: from next to chance to next to certainty.
+Result<ProportionCurve> curve_of(SizeLadder& ladder, const AskedContrast& asked, int draws) {
+  constexpr double next_to_chance = 0.26, next_to_certainty = 0.9985;
+  const auto middle = bracket(ladder, asked);
+  if (!middle) return tl::unexpected(middle.error());
+  std::map<int, Proportion> found;
+  for (int index = *middle; index >= smallest_index; --index) {
+    const auto p = ladder.proportion(index, asked, draws);
+    if (!p) return tl::unexpected(p.error());
+    found[index] = *p;
+    if (p->mean < next_to_chance) break;
+  }
+  for (int index = *middle + 1; index <= largest_index; ++index) {
+    const auto p = ladder.proportion(index, asked, draws);
+    if (!p) return tl::unexpected(p.error());
+    found[index] = *p;
+    if (p->mean > next_to_certainty) break;
+  }
+  ProportionCurve curve;
+  curve.delta_t_k = asked.delta_t_k;
+  for (const auto& [index, p] : found) {
+    curve.sizes_pitch.push_back(size_of(index));
+    curve.proportion_correct.push_back(p.mean);
+    curve.standard_error.push_back(std::sqrt(p.variance));
+  }
+  return curve;
+}
+
+}  // namespace
+
+Result<std::vector<DirectPoint>> direct_estimate(const SensorSpec& spec, const SensorPlan& plan,
+                                                 TemplateObserver& observer, const std::vector<double>& delta_t_k,
+                                                 const DirectEstimateOptions& options) {
+  const ImageChain chain(spec, plan, options.accuracy, options.motion);
+  TrialConditions conditions = trial_conditions(spec, plan, observer, options);
   const SensorSpec sensor = conditions.sensor;
-  const auto by_pixels = [&](double contrast) { return needs_pixels(sensor, plan, contrast, options); };
   SizeLadder ladder(chain, observer, conditions, options);
   conditions.by_pixels = true;
   SizeLadder pixel_ladder(chain, observer, std::move(conditions), options);
-  const double white_k = std::sqrt(white_variance_k2(sensor, plan, observer.spec().sensor_noise_factor));
   std::vector<DirectPoint> points;
   for (const double contrast : delta_t_k) {
-    const double magnitude = std::abs(contrast);
-    if (!(magnitude > 0)) return fail(ErrorCode::invalid_input, "a contrast of 0 K has no threshold");
-    AskedContrast asked{.delta_t_k = contrast,
-                        .white = {.sensor = white_k / magnitude, .internal = observer.spec().internal_noise},
-                        .pixels = std::nullopt};
-    if (by_pixels(contrast)) {
-      const auto pixels = pixel_contrast(sensor, plan, observer.spec(), contrast, options);
-      if (!pixels) return tl::unexpected(pixels.error());
-      asked.pixels = *pixels;
-    }
-    auto point = estimate_contrast(asked.pixels ? pixel_ladder : ladder, asked, options.accuracy, [&](double s75) {
+    const auto asked = asked_contrast(sensor, plan, observer.spec(), contrast, options);
+    if (!asked) return tl::unexpected(asked.error());
+    auto point = estimate_contrast(asked->pixels ? pixel_ladder : ladder, *asked, options.accuracy, [&](double s75) {
       return predicted_direct_seconds(observer.spec(), sensor, s75, Accuracy::max_noise_draws,
                                       options.accuracy.phases_per_axis);
     });
@@ -298,6 +340,26 @@ Result<std::vector<DirectPoint>> direct_estimate(const SensorSpec& spec, const S
     points.push_back(std::move(*point));
   }
   return points;
+}
+
+Result<std::vector<ProportionCurve>> proportion_curves(const SensorSpec& spec, const SensorPlan& plan,
+                                                       TemplateObserver& observer, const std::vector<double>& delta_t_k,
+                                                       const DirectEstimateOptions& options) {
+  const ImageChain chain(spec, plan, options.accuracy, options.motion);
+  TrialConditions conditions = trial_conditions(spec, plan, observer, options);
+  const SensorSpec sensor = conditions.sensor;
+  SizeLadder ladder(chain, observer, conditions, options);
+  conditions.by_pixels = true;
+  SizeLadder pixel_ladder(chain, observer, std::move(conditions), options);
+  std::vector<ProportionCurve> curves;
+  for (const double contrast : delta_t_k) {
+    const auto asked = asked_contrast(sensor, plan, observer.spec(), contrast, options);
+    if (!asked) return tl::unexpected(asked.error());
+    auto curve = curve_of(asked->pixels ? pixel_ladder : ladder, *asked, options.accuracy.noise_draws);
+    if (!curve) return tl::unexpected(curve.error());
+    curves.push_back(std::move(*curve));
+  }
+  return curves;
 }
 
 double predicted_direct_seconds(const TemplateObserverSpec& observer, const SensorSpec& sensor, double s75_pitch,

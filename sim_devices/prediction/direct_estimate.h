@@ -53,6 +53,22 @@ struct DirectEstimateOptions {
                                                                const std::vector<double>& delta_t_k,
                                                                const DirectEstimateOptions& options);
 
+/// Proportion correct over size at one contrast.
+struct ProportionCurve {
+  double delta_t_k = 0;
+  std::vector<double> sizes_pitch;         ///< rising, in steps of 8 %
+  std::vector<double> proportion_correct;  ///< averaged over phases and noise
+  std::vector<double> standard_error;      ///< of each
+};
+
+/// The function behind direct_estimate(), from next to chance to next to certainty (at most 0.2 to 40 pitches), one
+/// curve per contrast, from as many draws as the accuracy has, whatever standard error it demands. Errors as there, but
+/// for that demand.
+[[nodiscard]] Result<std::vector<ProportionCurve>> proportion_curves(const SensorSpec& spec, const SensorPlan& plan,
+                                                                     TemplateObserver& observer,
+                                                                     const std::vector<double>& delta_t_k,
+                                                                     const DirectEstimateOptions& options);
+
 /// Predicted time on one core of about 2 x 10^10 template samples a second, for one contrast near `s75_pitch`.
 [[nodiscard]] double predicted_direct_seconds(const TemplateObserverSpec& observer, const SensorSpec& sensor,
                                               double s75_pitch, int noise_draws, int phases_per_axis);

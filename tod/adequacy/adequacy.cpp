@@ -50,13 +50,20 @@ Consequence consequence(const PsychometricFit& fit, double ln_shift, const std::
 
 class Examination {
  public:
-  Examination(const TodPoint& point, const FitOptions& options) : point_(point), fit_(point.fit), options_(options) {}
+  Examination(const TodPoint& point, const FitOptions& options) : point_(point), fit_(point.fit), options_(options) {
+    options_.graded = is_quasi(fit_.interval);
+  }
 
   Adequacy made() {
     if (fit_.threshold) {
-      examine_slope();
+      const bool regular = fit_.verdict == FitVerdict::ok || fit_.verdict == FitVerdict::extrapolated;
+      if (!fit_.twin_shape) examine_slope();
       examine_extrapolation();
-      if (fit_.verdict == FitVerdict::ok || fit_.verdict == FitVerdict::extrapolated) examine_model();
+      if (fit_.twin_shape) {
+        examine_twin_shape();
+      } else if (regular) {
+        examine_model();
+      }
       examine_direct_estimate();
     }
     examine_frames();
@@ -96,12 +103,25 @@ class Examination {
   void examine_model() {
     std::optional<PsychometricFit> free_fit = point_.free_lapse_fit;
     if (!free_fit && options_.fixed_lapse) {
-      if (auto made = fit_psychometric(point_.levels, {options_.form, std::nullopt, false})) free_fit = *made;
+      if (auto made = fit_psychometric(point_.levels, {options_.form, std::nullopt, false, options_.graded}))
+        free_fit = *made;
     }
     const ModelTest test = test_model(point_.levels, fit_, free_fit, options_, false_alarms);
     if (test.departure && test.departure->score > test.departure->limit) add_departure(*test.departure);
     if (test.lapse && test.lapse->statistic > test.lapse->limit) add_lapse(*test.lapse, *free_fit);
     add_scatter(test.scatter);
+  }
+
+  void examine_twin_shape() {
+    const TwinShapeUse& use = *fit_.twin_shape;
+    if (!(use.departure_limit > 0) || std::abs(use.departure) <= use.departure_limit) return;
+    const char* asked = use.slope_fitted ? "a bend" : "another slope";
+    const Consequence of = consequence(fit_, use.departure_shift, asked);
+    add(FindingKind::deviance, use.departure, use.departure_limit,
+        fmt::format("the answers ask for {} than the function of the twin has, by {:.2g} standard errors (chance: "
+                    "{:.2g}): its shape does not fit; {}",
+                    use.slope_fitted ? "another bend" : asked, std::abs(use.departure), use.departure_limit, of.words),
+        of.unfit);
   }
 
   void add_departure(const Departure& departure) {
@@ -186,7 +206,7 @@ class Examination {
 
   const TodPoint& point_;
   const PsychometricFit& fit_;
-  const FitOptions& options_;
+  FitOptions options_;
   std::vector<AdequacyFinding> findings_;
 };
 

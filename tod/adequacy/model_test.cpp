@@ -85,18 +85,19 @@ struct Test {
 
 class Tester {
  public:
-  Tester(const ModelResiduals& model, std::span<const Level> levels, double clusters)
-      : model_(model), levels_(levels), clusters_(clusters), make_(model) {}
+  Tester(const ModelResiduals& model, std::span<const Level> levels, const PsychometricFit& fit)
+      : model_(model), levels_(levels), clusters_(fit.clusters), graded_(is_quasi(fit.interval)), make_(model) {}
 
   void add(std::string towards, std::string away, Sides sides, double share, std::vector<double> weights) {
     if (auto direction = make_.direction(std::move(weights)))
       tests_.push_back({std::move(towards), std::move(away), sides, share, *std::move(direction)});
   }
 
-  // Variance of a score over clusters, at least 1.
+  // Variance of a score over clusters, at least 1; graded answers scatter less than right and wrong ones.
   [[nodiscard]] double variance(const Direction& direction) const {
     if (clusters_ < 2) return 1;
-    return std::max(1.0, cluster_covariance(model_, levels_, {&direction, 1}, clusters_).front());
+    const double found = cluster_covariance(model_, levels_, {&direction, 1}, clusters_).front();
+    return graded_ && found > 0 ? found : std::max(1.0, found);
   }
 
   [[nodiscard]] std::optional<Departure> strongest(double probability) const {
@@ -131,6 +132,7 @@ class Tester {
   const ModelResiduals& model_;
   std::span<const Level> levels_;
   double clusters_;
+  bool graded_;
   Directions make_;
   std::vector<Test> tests_;
 };
@@ -157,7 +159,7 @@ ModelTest test_model(std::span<const Level> levels, const PsychometricFit& fit,
   const bool lapse_fitted = !options.fixed_lapse && fit.lapse > 0 && fit.lapse < max_free_lapse;
   const PsychometricPlace place{counts.relative(*fit.threshold), std::log(*fit.slope), fit.lapse};
   const ModelResiduals model = model_residuals(counts, options.form, place, {true, true, lapse_fitted});
-  Tester tester(model, levels, fit.clusters);
+  Tester tester(model, levels, fit);
   const bool size = options.form == PsychometricForm::size;
   const PsychometricForm other = size ? PsychometricForm::acuity : PsychometricForm::size;
   tester.add(std::string("towards the ") + (size ? "acuity" : "size") + " form", "", Sides::one, 0.5,
@@ -177,6 +179,8 @@ ModelTest test_model(std::span<const Level> levels, const PsychometricFit& fit,
     if (direction && free_fit->lapse > *options.fixed_lapse)
       result.lapse = LapseTest{free_fit->lapse, std::max(0.0, gain) / tester.variance(*direction), limit * limit};
   }
+  // How much graded answers scatter is estimated, not expected.
+  if (is_quasi(fit.interval)) return result;
   result.scatter = dispersions(model, levels, tester.left(probability.departure), fit.clusters);
   return result;
 }

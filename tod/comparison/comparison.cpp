@@ -128,6 +128,22 @@ const TodPoint* partner(const TodPoint& point, const TodCurve& own, const TodCur
   return found != nullptr && point_at(own, found->set_delta_t_k) == &point ? found : nullptr;
 }
 
+// Two-sided, of a ratio as far from 1 as this one if there were none: by likelihood ratio, or, where the function of a
+// twin has no likelihood in common with another, from the standard errors.
+Result<double> difference_probability(const TodPoint& a, const TodPoint& b, const DifferenceSpread& spread,
+                                      const ComparisonOptions& options) {
+  if ((a.fit.twin_shape || b.fit.twin_shape) && a.fit.se_ln_threshold && b.fit.se_ln_threshold) {
+    const double plain = std::hypot(*a.fit.se_ln_threshold, *b.fit.se_ln_threshold);
+    const double distance = std::abs(std::log(*a.fit.threshold / *b.fit.threshold));
+    return std::min(1.0, 2 * upper_tail(distance / (plain * std::sqrt(spread.inflation)), spread.degrees_of_freedom));
+  }
+  FitOptions fit = options.fit;
+  fit.graded = is_quasi(a.fit.interval) || is_quasi(b.fit.interval);
+  const auto test = test_thresholds(a.levels, b.levels, SlopeModel::separate, options.margin_percent, fit);
+  if (!test) return tl::unexpected(test.error());
+  return std::min(1.0, 2 * upper_tail(std::sqrt(test->lr / spread.inflation), spread.degrees_of_freedom));
+}
+
 Result<ComparisonPoint> compare_points(const TodPoint& a, const TodPoint& b, const ComparisonOptions& options) {
   ComparisonPoint point;
   point.set_delta_t_k = a.set_delta_t_k;
@@ -139,10 +155,10 @@ Result<ComparisonPoint> compare_points(const TodPoint& a, const TodPoint& b, con
   point.ratio = std::exp(*tb - *ta);
   point.ratio_ci95 = ratio_interval(*ta, a.fit.ci95, *tb, b.fit.ci95);
   point.ratio_ci90 = ratio_interval(*ta, a.fit.ci90, *tb, b.fit.ci90);
-  const auto test = test_thresholds(a.levels, b.levels, SlopeModel::separate, options.margin_percent, options.fit);
-  if (!test) return tl::unexpected(test.error());
   const DifferenceSpread spread = spread_of(a.fit, b.fit);
-  point.p_difference = std::min(1.0, 2 * upper_tail(std::sqrt(test->lr / spread.inflation), spread.degrees_of_freedom));
+  auto p_difference = difference_probability(a, b, spread, options);
+  if (!p_difference) return tl::unexpected(p_difference.error());
+  point.p_difference = *p_difference;
   point.p_equivalence =
       equivalence_probability(*tb - *ta, point.ratio_ci90, options.margin_percent, spread.degrees_of_freedom);
   point.verdict = unfit(a) || unfit(b) ? ComparisonVerdict::inconclusive : verdict_of(point);

@@ -215,9 +215,7 @@ class Run {
       for (const auto& problem : problems) text += (text.empty() ? "" : "; ") + sentence(problem);
       return fail(ErrorCode::calibration, "the plate is too near the edge of the picture: " + text);
     }
-    auto frame = taker_.next(stop_);
-    if (!frame) return tl::unexpected(frame.error());
-    if (auto answered = answer(*plate, mounted_plate, *registration, state, *frame); !answered) return answered;
+    if (auto answered = answer(*plate, mounted_plate, *registration, state); !answered) return answered;
     ++presentation_;
     return {};
   }
@@ -353,44 +351,80 @@ class Run {
     return {};
   }
 
-  /// Every triangle of the frame is a trial.
+  /// Every triangle is a trial. Nothing of a presentation is said before its last frame is there.
   Result<void> answer(const PreparedPlate& plate, const TargetPlate& mounted_plate, const Registration& registration,
-                      const TargetState& state, const Frame& frame) {
-    const RandomStream presentation_noise = answers_.sub(static_cast<std::uint64_t>(presentation_));
-    for (std::size_t i = 0; i < mounted_plate.triangles.size(); ++i) {
-      const auto& t = mounted_plate.triangles[i];
-      const auto window = patch_window(registration.pixel(t.position_mm), plate.observers[i]->window_samples());
-      auto kelvin = window_kelvin(frame, window.pixels);
-      if (!kelvin) return tl::unexpected(kelvin.error());
-      const Patch patch{.kelvin = *kelvin, .phase = window.phase, .noise_k = noise_of_frame_k_};
-      const Choice choice = plate.observers[i]->choose(patch, contrast_k_, presentation_noise.sub(i));
-      Trial trial;
-      trial.presentation = presentation_;
-      trial.plate = state.plate;
-      trial.mounting = state.mounting;
-      trial.triangle = t.name;
-      trial.set_delta_t_k = state.delta_t_k;
-      trial.delta_t_k = contrast_k_;
-      trial.size_mm = t.size_mm;
-      trial.size_mrad = t.size_mm / options_.distance_m;
-      trial.size_px = plate.size_px[i];
-      trial.truth = t.apex;
-      trial.answer = static_cast<Apex>(choice.alternative);
-      for (std::size_t o = 0; o < trial.scores.size(); ++o) trial.scores[o] = choice.scores[o];
-      trial.phase_x_px = window.phase.x;
-      trial.phase_y_px = window.phase.y;
-      trial.frame = frame.sequence;
-      trial.device_time_ns = frame.device_time_ns;
-      trial.host_time_ns = frame.host_time_ns;
-      trial.since_nuc_s = taker_.since_nuc_s(frame);
-      trial.saturated_pixels = saturation_.saturated_pixels(frame, window.pixels);
-      result_.trials.push_back(trial);
-      if (listener_.on_trial) listener_.on_trial(trial);
-      if (listener_.on_patch) listener_.on_patch(trial, patch);
+                      const TargetState& state) {
+    const std::size_t count = mounted_plate.triangles.size();
+    std::vector<Trial> trials;
+    std::vector<Patch> patches;
+    std::vector<double> probabilities(count);
+    for (int k = 0; k < options_.frames_per_presentation; ++k) {
+      auto frame = taker_.next(stop_);
+      if (!frame) return tl::unexpected(frame.error());
+      for (std::size_t i = 0; i < count; ++i) {
+        const PlateTriangle& t = mounted_plate.triangles[i];
+        const auto window = patch_window(registration.pixel(t.position_mm), plate.observers[i]->window_samples());
+        auto kelvin = window_kelvin(*frame, window.pixels);
+        if (!kelvin) return tl::unexpected(kelvin.error());
+        Patch patch{.kelvin = *std::move(kelvin), .phase = window.phase, .noise_k = noise_of_frame_k_};
+        const GradedChoice judged = judge(*plate.observers[i], patch, i, k);
+        const int saturated = saturation_.saturated_pixels(*frame, window.pixels);
+        probabilities[i] += judged.answers.probability[static_cast<std::size_t>(t.apex)];
+        if (k == 0) {
+          Trial trial = first_answer(t, state, *frame, judged.choice, window.phase);
+          trial.size_px = plate.size_px[i];
+          trials.push_back(std::move(trial));
+          patches.push_back(std::move(patch));
+        }
+        trials[i].saturated_pixels = std::max(trials[i].saturated_pixels, saturated);
+      }
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      if (options_.answers == AnswerKind::graded) {
+        trials[i].probability_correct = std::min(1.0, probabilities[i] / options_.frames_per_presentation);
+        trials[i].frames = options_.frames_per_presentation;
+      }
+      result_.trials.push_back(trials[i]);
+      if (listener_.on_trial) listener_.on_trial(trials[i]);
+      if (listener_.on_patch) listener_.on_patch(trials[i], patches[i]);
     }
     return {};
   }
 
+  /// The answer is that to the first frame, drawn as it is where nobody asks for probabilities; every further frame has
+  /// a stream of its own below that of the trial.
+  [[nodiscard]] GradedChoice judge(const PreparedObserver& observer, const Patch& patch, std::size_t triangle,
+                                   int frame) const {
+    RandomStream noise = answers_.sub(static_cast<std::uint64_t>(presentation_)).sub(triangle);
+    if (options_.answers == AnswerKind::binary) return {observer.choose(patch, contrast_k_, noise), {}};
+    if (frame > 0) noise = noise.sub(further_frames_stream + static_cast<std::uint64_t>(frame));
+    return observer.judge(patch, contrast_k_, noise, MeasurementOptions::graded_draws);
+  }
+
+  [[nodiscard]] Trial first_answer(const PlateTriangle& t, const TargetState& state, const Frame& frame,
+                                   const Choice& choice, cv::Point2d phase) const {
+    Trial trial;
+    trial.presentation = presentation_;
+    trial.plate = state.plate;
+    trial.mounting = state.mounting;
+    trial.triangle = t.name;
+    trial.set_delta_t_k = state.delta_t_k;
+    trial.delta_t_k = contrast_k_;
+    trial.size_mm = t.size_mm;
+    trial.size_mrad = t.size_mm / options_.distance_m;
+    trial.truth = t.apex;
+    trial.answer = static_cast<Apex>(choice.alternative);
+    for (std::size_t o = 0; o < trial.scores.size(); ++o) trial.scores[o] = choice.scores[o];
+    trial.phase_x_px = phase.x;
+    trial.phase_y_px = phase.y;
+    trial.frame = frame.sequence;
+    trial.device_time_ns = frame.device_time_ns;
+    trial.host_time_ns = frame.host_time_ns;
+    trial.since_nuc_s = taker_.since_nuc_s(frame);
+    return trial;
+  }
+
+  static constexpr std::uint64_t further_frames_stream = 1'000'000;
   static constexpr double search_px = 6;  ///< how far a hand may move the plate between two presentations
 
   FrameSource& source_;

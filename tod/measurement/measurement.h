@@ -35,9 +35,12 @@ struct MeasurementOptions {
   /// By plate name: what effective_contrast() reads of a contrast of 1 K, blur included, from a simulated picture; 1
   /// where it is not known. Measured contrasts are divided by it.
   std::map<std::string, double> contrast_response;
-  int frames_after_change = 2;  ///< exposures discarded after the target moved (frames in flight)
-  double nuc_interval_s = 0;    ///< correct the camera's non-uniformity this often; 0: never commanded
-  double nuc_wait_s = 1;        ///< frames within this time after a correction are not measured
+  static constexpr int graded_draws = 32;   ///< of the observer's own noise, for the probabilities of one frame
+  AnswerKind answers = AnswerKind::binary;  ///< graded: Trial::probability_correct too
+  int frames_per_presentation = 1;          ///< successive good ones, over which graded answers are averaged; 1 or more
+  int frames_after_change = 2;              ///< exposures discarded after the target moved (frames in flight)
+  double nuc_interval_s = 0;                ///< correct the camera's non-uniformity this often; 0: never commanded
+  double nuc_wait_s = 1;                    ///< frames within this time after a correction are not measured
   /// Beyond it, what the target says it shows is a note beside what it was told; 0: what it says is not looked at.
   double max_readback_deviation_k = 0;
   double max_rejected_share = 0.05;  ///< beyond it, after 100 frames, the run ends with `integrity`
@@ -64,7 +67,7 @@ struct SetUpRecord;
 /// anything. A slow listener slows the measurement, it never loses trials.
 struct MeasurementListener {
   std::function<void(const Trial&)> on_trial{};
-  /// After on_trial: what the observer saw; lent for the call.
+  /// After on_trial: what the observer saw in the first frame; lent for the call.
   std::function<void(const Trial&, const Patch&)> on_patch{};
   /// The target was there; before the trials of the presentation, and also when none could be made.
   std::function<void(const Presentation&)> on_presentation{};

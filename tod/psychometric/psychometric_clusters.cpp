@@ -6,6 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
+#include <vector>
+
+#include "tod/psychometric/clustered_variance.h"
 
 namespace todbench {
 namespace {
@@ -92,6 +96,55 @@ ClusterEffect cluster_effect(std::span<const Level> levels, const PooledCounts& 
   }
   if (independent > 0)
     effect.inflation = std::max(1.0, sum_of_squares(levels, per_answer) / independent * small_sample);
+  return effect;
+}
+
+namespace {
+
+// d mu / d parameter = psi (d ln psi / d parameter), over the free parameters.
+AnswerScore score_of(const GradedAnswer& answer, const PooledCounts& counts, PsychometricForm form,
+                     const Maximum<3>& maximum) {
+  AnswerScore score{.direction = {},
+                    .residual = 0,
+                    .presentation = answer.presentation,
+                    .place = answer.place,
+                    .set_up = answer.set_up};
+  const double ln_size = counts.relative(answer.size);
+  const Link link = make_link(form, maximum.place[place_lapse]);
+  const double slope = std::exp(maximum.place[place_q]);
+  const LogProbabilities p = log_probabilities(link, link.sign * slope * (ln_size - maximum.place[place_t]));
+  const double right = std::exp(p.right), sd = std::sqrt(right * std::exp(p.wrong));
+  // Where the model knows the answer it has no variance to be measured by.
+  if (!(sd > 1e-12)) return score;
+  score.residual = (answer.probability_correct - right) / sd;
+  const Scores at = scores_at(form, maximum.place, ln_size);
+  std::size_t parameter = 0;
+  for (std::size_t k = 0; k < most_parameters; ++k)
+    if (maximum.free[k]) score.direction[parameter++] = right * at.right[k] / sd;
+  return score;
+}
+
+}  // namespace
+
+GradedEffect graded_effect(std::span<const GradedAnswer> answers, const PooledCounts& counts, PsychometricForm form,
+                           const Maximum<3>& maximum, std::optional<double> se_t) {
+  std::vector<AnswerScore> scores;
+  std::set<int> presentations, places;
+  for (const GradedAnswer& answer : answers) {
+    if (!(answer.size > 0)) continue;
+    presentations.insert(answer.presentation);
+    places.insert(answer.place);
+    scores.push_back(score_of(answer, counts, form, maximum));
+  }
+  GradedEffect effect;
+  effect.clusters.clusters = std::max(1.0, static_cast<double>(std::min(presentations.size(), places.size())));
+  if (!se_t || !maximum.free[place_t]) return effect;
+  const auto parameters = static_cast<std::size_t>(std::ranges::count(maximum.free, true));
+  const ClusteredVariance found = clustered_variance(scores, parameters, 0);
+  effect.dispersion = found.dispersion;
+  effect.kind = found.kind;
+  if (!std::isfinite(found.variance)) return effect;
+  effect.clusters = {.clusters = found.degrees_of_freedom + 1, .inflation = found.variance / (*se_t * *se_t)};
   return effect;
 }
 

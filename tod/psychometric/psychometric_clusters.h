@@ -21,6 +21,18 @@ struct ClusterEffect {
                                            PsychometricForm form, const Maximum<3>& maximum,
                                            std::optional<double> se_t);
 
+/// The same of graded answers, with their dispersion.
+struct GradedEffect {
+  ClusterEffect clusters;  ///< effective number; the inflation may be below 1
+  IntervalKind kind = IntervalKind::two_way;
+  std::optional<double> dispersion;  ///< as PsychometricFit::dispersion
+};
+
+/// From the variance over presentations and places (clustered_variance.h). Where the fit has no information, or there
+/// are too few clusters of either kind, their number is the smaller one and the inflation that of single answers.
+[[nodiscard]] GradedEffect graded_effect(std::span<const GradedAnswer> answers, const PooledCounts& counts,
+                                         PsychometricForm form, const Maximum<3>& maximum, std::optional<double> se_t);
+
 /// 2 (llmax - ll) at a two-sided confidence limit: chi-square with one degree of freedom, or with clusters the inflated
 /// square of Student's t with G - 1 degrees of freedom; infinite for one cluster. `confidence` e.g. 0.95.
 [[nodiscard]] double confidence_drop(const ClusterEffect& effect, double confidence);

@@ -180,13 +180,14 @@ PsychometricFit describe(const Surface& s, const Judgement& judgement) {
 
 // Profile crossings; should the march meet a higher place than the search found, everything is described anew from
 // there.
-ProfileCrossings add_intervals(Surface& s, PsychometricFit& fit, std::span<const Level> levels) {
+template <typename EffectOf>
+ProfileCrossings add_intervals(Surface& s, PsychometricFit& fit, const EffectOf& effect_of) {
   constexpr int most_restarts = 3;
   ProfileCrossings crossings;
   for (int attempt = 0; attempt <= most_restarts; ++attempt) {
     const Judgement judgement = judge(s);
     fit = describe(s, judgement);
-    const ClusterEffect effect = cluster_effect(levels, s.counts, s.form, s.maximum, fit.se_ln_threshold);
+    const ClusterEffect effect = effect_of(s, fit);
     fit.clusters = effect.clusters;
     fit.variance_inflation = effect.inflation;
     ProfileRequest request;
@@ -212,6 +213,30 @@ std::string_view to_string(PsychometricForm form) {
       return "size";
     case PsychometricForm::acuity:
       return "acuity";
+  }
+  return "unknown";
+}
+
+std::string_view to_string(FitEstimator estimator) {
+  switch (estimator) {
+    case FitEstimator::weibull:
+      return "weibull";
+    case FitEstimator::twin_shape:
+      return "twin-shape";
+  }
+  return "unknown";
+}
+
+std::string_view to_string(IntervalKind kind) {
+  switch (kind) {
+    case IntervalKind::independent:
+      return "independent";
+    case IntervalKind::clusters:
+      return "clusters";
+    case IntervalKind::two_way:
+      return "two_way";
+    case IntervalKind::set_ups:
+      return "set_ups";
   }
   return "unknown";
 }
@@ -244,10 +269,11 @@ bool PsychometricFit::usable() const {
   return (verdict == FitVerdict::ok || verdict == FitVerdict::extrapolated) && ci95.low && ci95.high;
 }
 
-Result<PsychometricFit> fit_psychometric(std::span<const Level> levels, const FitOptions& options) {
-  if (auto checked = validate(levels); !checked) return tl::unexpected(checked.error());
-  if (options.fixed_lapse && !(*options.fixed_lapse >= 0 && *options.fixed_lapse <= max_free_lapse))
-    return fail(ErrorCode::invalid_input, "lapse must be from 0 to 0.1");
+namespace {
+
+/// Everything but what becomes of clusters: `effect_of(surface, fit)` says it, and may note more in the fit.
+template <typename EffectOf>
+PsychometricFit fitted(std::span<const Level> levels, const FitOptions& options, const EffectOf& effect_of) {
   PooledCounts counts = pool(levels);
   PsychometricFit fit;
   fit.lapse = options.fixed_lapse.value_or(0.0);
@@ -257,7 +283,7 @@ Result<PsychometricFit> fit_psychometric(std::span<const Level> levels, const Fi
   const bool in_groups = counts.levels.size() > most_levels;
   Surface s = survey(in_groups ? grouped(counts, most_levels) : counts, options);
   s.maximum = ridge_foot(s);
-  const ProfileCrossings crossings = add_intervals(s, fit, levels);
+  const ProfileCrossings crossings = add_intervals(s, fit, effect_of);
   fit.ci95 = interval95(s.counts, crossings);
   fit.ci90 = interval(s.counts, crossings.below.narrow, crossings.above.narrow);
   if (fit.verdict == FitVerdict::step) {
@@ -265,9 +291,45 @@ Result<PsychometricFit> fit_psychometric(std::span<const Level> levels, const Fi
     join_steps(s, confidence_drop(effect, 0.95), fit.ci95);
     join_steps(s, confidence_drop(effect, 0.90), fit.ci90);
   }
-  if (options.with_posterior) fit.posterior = grid_posterior(s.counts, s.form, s.scan.nodes, s.lapse);
+  if (options.with_posterior && !options.graded)
+    fit.posterior = grid_posterior(s.counts, s.form, s.scan.nodes, s.lapse);
   if (in_groups) refine(counts, s, fit);
   return fit;
+}
+
+Result<void> check_lapse(const FitOptions& options) {
+  if (options.fixed_lapse && !(*options.fixed_lapse >= 0 && *options.fixed_lapse <= max_free_lapse))
+    return fail(ErrorCode::invalid_input, "lapse must be from 0 to 0.1");
+  return {};
+}
+
+}  // namespace
+
+Result<PsychometricFit> fit_psychometric(std::span<const Level> levels, const FitOptions& options) {
+  if (auto checked = validate(levels, options.graded ? Counts::fractional : Counts::whole); !checked)
+    return tl::unexpected(checked.error());
+  if (auto checked = check_lapse(options); !checked) return tl::unexpected(checked.error());
+  return fitted(levels, options, [&](const Surface& s, PsychometricFit& fit) {
+    const ClusterEffect effect = cluster_effect(levels, s.counts, s.form, s.maximum, fit.se_ln_threshold);
+    fit.interval = effect.clusters > 0 ? IntervalKind::clusters : IntervalKind::independent;
+    return effect;
+  });
+}
+
+Result<PsychometricFit> fit_graded(std::span<const GradedAnswer> answers, const FitOptions& options) {
+  std::vector<Level> levels;
+  for (const GradedAnswer& answer : answers)
+    levels.push_back({.size = answer.size, .correct = answer.probability_correct, .total = 1, .cluster = -1});
+  if (auto checked = validate(levels, Counts::fractional); !checked) return tl::unexpected(checked.error());
+  if (auto checked = check_lapse(options); !checked) return tl::unexpected(checked.error());
+  FitOptions graded = options;
+  graded.graded = true;
+  return fitted(levels, graded, [&](const Surface& s, PsychometricFit& fit) {
+    const GradedEffect effect = graded_effect(answers, s.counts, s.form, s.maximum, fit.se_ln_threshold);
+    fit.interval = effect.kind;
+    fit.dispersion = effect.dispersion;
+    return effect.clusters;
+  });
 }
 
 }  // namespace todbench

@@ -15,9 +15,18 @@ namespace todbench {
 /// Answers at one size (or contrast). Counts are doubles so that 2e9 trials and whole-number checks both work.
 struct Level {
   double size = 0;     ///< >= 0; 0 is a catch trial (nothing to see)
-  double correct = 0;  ///< whole number, 0 <= correct <= total
+  double correct = 0;  ///< whole number, 0 <= correct <= total; of graded answers the sum of their probabilities
   double total = 0;    ///< whole number; 0: the row is ignored
   int cluster = -1;    ///< trials that share phase, frame or fixed pattern; < 0: independent
+};
+
+/// One graded answer: how probable the right one was for what was seen.
+struct GradedAnswer {
+  double size = 0;                 ///< > 0
+  double probability_correct = 0;  ///< 0 to 1
+  int presentation = 0;            ///< shares frame and phase with the others of this number; 0 or more
+  int place = 0;                   ///< shares detectors and their fixed pattern; 0 or more
+  int set_up = 0;                  ///< plate and mounting of presentation and place; 0 or more
 };
 
 /// Both forms are Weibull functions with chance level 0.25 that pass through 0.75 at the threshold.
@@ -45,6 +54,7 @@ struct FitOptions {
   PsychometricForm form = PsychometricForm::size;
   std::optional<double> fixed_lapse = 0.0;  ///< nothing: free in [0, 0.1]
   bool with_posterior = true;
+  bool graded = false;  ///< levels are of graded answers: their counts need not be whole
 };
 
 /// A side without a value is unbounded.
@@ -57,6 +67,51 @@ struct Posterior {
   double low = 0, high = 0;  ///< equal-tailed 95 %
   bool prior_bound =
       false;  ///< marginal density at a prior edge above 1 % of its maximum: the prior speaks, not the data
+};
+
+/// What the intervals rest on.
+enum class IntervalKind {
+  independent,  ///< profile likelihood of independent answers
+  clusters,     ///< the same, widened for what the trials of a cluster have in common
+  two_way,      ///< quasi-likelihood, with the variance of the answers over presentations and places
+  set_ups,      ///< quasi-likelihood, with the variance of the answers over plates and mountings
+};
+inline constexpr std::array all_interval_kinds{IntervalKind::independent, IntervalKind::clusters, IntervalKind::two_way,
+                                               IntervalKind::set_ups};
+[[nodiscard]] std::string_view to_string(IntervalKind kind);
+/// Whether the scatter of the answers was estimated and not taken from chance.
+[[nodiscard]] constexpr bool is_quasi(IntervalKind kind) {
+  return kind == IntervalKind::two_way || kind == IntervalKind::set_ups;
+}
+
+/// With what function answers are fitted.
+enum class FitEstimator {
+  weibull,     ///< a Weibull function, in size or in acuity
+  twin_shape,  ///< the function of the simulated twin, stretched (twin_shape.h)
+};
+inline constexpr std::array all_fit_estimators{FitEstimator::weibull, FitEstimator::twin_shape};
+[[nodiscard]] std::string_view to_string(FitEstimator estimator);
+
+/// Proportion correct over size without a form: of a simulated sensor, averaged over phases and noise.
+struct ProportionTable {
+  std::vector<double> size_mrad;           ///< rising
+  std::vector<double> proportion_correct;  ///< at each size
+  std::vector<double> standard_error;      ///< of each proportion
+  bool operator==(const ProportionTable&) const = default;
+};
+
+/// What a fit with the function of a twin found (twin_shape.h).
+struct TwinShapeUse {
+  double size_ratio = 1;      ///< size at 75 %, of these answers over that of the twin
+  double slope_ratio = 1;     ///< slope at 75 %, likewise
+  bool slope_fitted = false;  ///< the answers asked for a slope of their own
+  /// What the answers leave of the function: t of a further parameter, the slope, or a bend where the slope was fitted.
+  double departure = 0;
+  double departure_limit = 0;        ///< of its size, 1 % by chance
+  double departure_shift = 0;        ///< of ln threshold, with that parameter
+  double shape_se_ln_threshold = 0;  ///< of what the standard errors of the table add
+  ProportionTable table;
+  bool operator==(const TwinShapeUse&) const = default;
 };
 
 /// What the data say. A poor fit is a verdict, not an error and not a made-up interval.
@@ -78,9 +133,16 @@ struct PsychometricFit {
   std::optional<double> se_ln_threshold;  ///< from the observed information, not widened
   std::optional<Posterior> posterior;
   double trials = 0;
-  double clusters = 0;  ///< number of clusters; 0 where trials are independent
-  double variance_inflation =
-      1;  ///< by which the clustered variance of ln threshold exceeds the independent one; already in ci95, ci90
+  IntervalKind interval = IntervalKind::independent;
+  /// Number of clusters; 0 where trials are independent. Of a quasi-likelihood the effective one: degrees of freedom of
+  /// the variance, and one.
+  double clusters = 0;
+  /// By which the clustered variance of ln threshold exceeds the independent one; already in ci95, ci90. Of graded
+  /// answers it is mostly below 1.
+  double variance_inflation = 1;
+  /// Mean squared residual of graded answers over that of right and wrong ones; nothing: those are right or wrong.
+  std::optional<double> dispersion;
+  std::optional<TwinShapeUse> twin_shape;  ///< nothing: a Weibull function
 
   /// ok or extrapolated with both sides of ci95.
   [[nodiscard]] bool usable() const;
@@ -96,5 +158,11 @@ struct PsychometricFit {
 /// 1e12 trials. Beyond 400 different sizes neighbours are searched together (at 100 000 sizes over a factor of ten
 /// they move by less than 1e-4 of the interval) and the maximum is climbed with each size as it is.
 [[nodiscard]] Result<PsychometricFit> fit_psychometric(std::span<const Level> levels, const FitOptions& options);
+
+/// The same function through graded answers, by quasi-likelihood: the mean is that of right and wrong answers, the
+/// variance in proportion to theirs (Wedderburn 1974; McCullagh and Nelder 1989, 9). The profile is scaled by the
+/// variance of ln threshold over set-ups, or over presentations and places (clustered_variance.h), with Student's t;
+/// there is no posterior. `invalid_input`: as fit_psychometric(), and a probability outside 0 to 1.
+[[nodiscard]] Result<PsychometricFit> fit_graded(std::span<const GradedAnswer> answers, const FitOptions& options);
 
 }  // namespace todbench

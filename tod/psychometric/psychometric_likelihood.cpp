@@ -65,7 +65,7 @@ std::optional<double> PooledCounts::size_at(double ln_size) const {
   return size;
 }
 
-Result<void> validate(std::span<const Level> levels) {
+Result<void> validate(std::span<const Level> levels, Counts counts) {
   double trials = 0;
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const Level& row = levels[i];
@@ -76,7 +76,7 @@ Result<void> validate(std::span<const Level> levels) {
     if (!std::isfinite(row.correct) || !std::isfinite(row.total))
       return fail(ErrorCode::invalid_input, row_error(i, "count is not finite"));
     if (row.correct < 0 || row.total < 0) return fail(ErrorCode::invalid_input, row_error(i, "count is negative"));
-    if (row.correct != std::floor(row.correct) || row.total != std::floor(row.total))
+    if ((counts == Counts::whole && row.correct != std::floor(row.correct)) || row.total != std::floor(row.total))
       return fail(ErrorCode::invalid_input, row_error(i, "count is not a whole number"));
     if (row.correct > row.total)
       return fail(ErrorCode::invalid_input, row_error(i, "more correct answers than trials"));

@@ -39,9 +39,12 @@ struct PooledCounts {
 /// that makes an interval is wrong by less than 2e-4 of itself, at 1e15 by a fifth.
 inline constexpr double most_trials = 1e12;
 
-/// Rows of size 0 or above with whole counts, correct <= total, at most most_trials together; sizes are 0 or normal
+/// Whether counts of right answers are whole, or sums of probabilities.
+enum class Counts { whole, fractional };
+
+/// Rows of size 0 or above with such counts, correct <= total, at most most_trials together; sizes are 0 or normal
 /// numbers (a denormal one has lost digits). `invalid_input` names the first row that is not.
-[[nodiscard]] Result<void> validate(std::span<const Level> levels);
+[[nodiscard]] Result<void> validate(std::span<const Level> levels, Counts counts = Counts::whole);
 
 /// Pools validated rows. Sizes closer than 1e-12 (relative) are one level.
 [[nodiscard]] PooledCounts pool(std::span<const Level> levels);

@@ -27,9 +27,15 @@ Place place_of(const Trial& trial) {
   return {trial.plate, trial.mounting, trial.triangle};
 }
 
+// Where an answer of a group is only right or wrong, all of them count as that.
+bool graded(const TrialGroup& trials) {
+  return std::ranges::all_of(trials, [](const Trial* t) { return t->probability_correct.has_value(); });
+}
+
 // One row per size and cluster.
 template <typename Key>
 std::vector<Level> count(const TrialGroup& trials, Key (*key_of)(const Trial&)) {
+  const bool by_probability = graded(trials);
   std::map<Key, int> numbers;
   std::map<std::pair<double, int>, Level> rows;
   for (const Trial* trial : trials) {
@@ -38,7 +44,7 @@ std::vector<Level> count(const TrialGroup& trials, Key (*key_of)(const Trial&)) 
     row.size = trial->size_mrad;
     row.cluster = number;
     row.total += 1;
-    row.correct += trial->correct() ? 1 : 0;
+    row.correct += by_probability ? *trial->probability_correct : (trial->correct() ? 1 : 0);
   }
   std::vector<Level> levels;
   for (const auto& [key, row] : rows) levels.push_back(row);
@@ -90,33 +96,84 @@ void add_contrast(TodPoint& point, const TrialGroup& trials) {
   point.delta_t_se_k = std::sqrt(square / (n - 1) / n);
 }
 
+// The answers of a group, fitted in one way or the other.
+class Fitter {
+ public:
+  explicit Fitter(const TrialGroup& trials) : trials_(trials), graded_(graded(trials)) {
+    if (!graded_) return;
+    std::vector<Trial> copies;
+    for (const Trial* trial : trials) copies.push_back(*trial);
+    answers_ = graded_answers(copies);
+  }
+
+  // Sets the levels that the fits are of.
+  Result<void> choose_levels(TodPoint& point, const FitOptions& options) const {
+    if (graded_) {
+      point.levels = count<std::int64_t>(trials_, presentation_of);
+      return {};
+    }
+    auto chosen = widest(trials_, options);
+    if (!chosen) return tl::unexpected(chosen.error());
+    point.levels = std::move(chosen->levels);
+    return {};
+  }
+
+  [[nodiscard]] Result<PsychometricFit> fit(const TodPoint& point, const FitOptions& options) const {
+    return graded_ ? fit_graded(answers_, options) : fit_psychometric(point.levels, options);
+  }
+
+ private:
+  const TrialGroup& trials_;
+  bool graded_;
+  std::vector<GradedAnswer> answers_;
+};
+
 Result<TodPoint> tod_point(double set_delta_t_k, const TrialGroup& trials, const FitOptions& options) {
   TodPoint point;
   point.set_delta_t_k = set_delta_t_k;
   add_contrast(point, trials);
   const auto saturated = std::ranges::count_if(trials, [](const Trial* t) { return t->saturated_pixels > 0; });
   point.saturated_share = static_cast<double>(saturated) / static_cast<double>(trials.size());
-  auto chosen = widest(trials, options);
-  if (!chosen) return tl::unexpected(chosen.error());
-  point.levels = std::move(chosen->levels);
-  auto fit = fit_psychometric(point.levels, options);
+  const Fitter fitter(trials);
+  if (auto chosen = fitter.choose_levels(point, options); !chosen) return tl::unexpected(chosen.error());
+  auto fit = fitter.fit(point, options);
   if (!fit) return tl::unexpected(fit.error());
   point.fit = *fit;
   if (!options.fixed_lapse) return point;
   FitOptions free = options;
   free.fixed_lapse.reset();
   free.with_posterior = false;
-  auto free_fit = fit_psychometric(point.levels, free);
+  auto free_fit = fitter.fit(point, free);
   if (!free_fit) return tl::unexpected(free_fit.error());
   point.free_lapse_fit = *free_fit;
   constexpr double boundary_drop =
       2.705543454095404;  // 5 % where the parameter is at its bound under the null hypothesis
-  if (point.fit.log_likelihood && free_fit->log_likelihood)
-    point.lapse_warning = 2 * (*free_fit->log_likelihood - *point.fit.log_likelihood) > boundary_drop;
+  if (point.fit.log_likelihood && free_fit->log_likelihood) {
+    const double scale = is_quasi(point.fit.interval) ? point.fit.variance_inflation : 1;
+    point.lapse_warning = 2 * (*free_fit->log_likelihood - *point.fit.log_likelihood) > scale * boundary_drop;
+  }
   return point;
 }
 
 }  // namespace
+
+std::vector<GradedAnswer> graded_answers(std::span<const Trial> trials) {
+  std::map<std::int64_t, int> presentations;
+  std::map<Place, int> places;
+  std::map<std::pair<std::string, Mounting>, int> set_ups;
+  std::vector<GradedAnswer> answers;
+  const auto number = [](auto& numbers, const auto& key) {
+    return numbers.emplace(key, static_cast<int>(numbers.size())).first->second;
+  };
+  for (const Trial& trial : trials) {
+    answers.push_back({.size = trial.size_mrad,
+                       .probability_correct = trial.probability_correct.value_or(trial.correct() ? 1 : 0),
+                       .presentation = number(presentations, trial.presentation),
+                       .place = number(places, place_of(trial)),
+                       .set_up = number(set_ups, std::pair(trial.plate, trial.mounting))});
+  }
+  return answers;
+}
 
 Result<TodCurve> tod_curve(std::span<const Trial> trials, const FitOptions& options) {
   if (trials.empty()) return fail(ErrorCode::invalid_input, "TOD curve: no trials");

@@ -38,8 +38,12 @@ struct TodCurve {
 };
 
 /// Groups trials by set contrast, counts them per size and presentation, and fits each group. Intervals are clustered
-/// by presentation and by place on the plate (which shares fixed pattern); the wider one is reported.
+/// by presentation and by place on the plate (which shares fixed pattern); the wider one is reported. A group all of
+/// whose answers are graded is fitted by fit_graded(), with both clusterings in one variance.
 [[nodiscard]] Result<TodCurve> tod_curve(std::span<const Trial> trials, const FitOptions& options);
+
+/// Answers with their presentations and places; right and wrong ones as probabilities of 1 and 0.
+[[nodiscard]] std::vector<GradedAnswer> graded_answers(std::span<const Trial> trials);
 
 /// Whether two set contrasts are the same one: equal to 0.5 % of the larger.
 [[nodiscard]] bool same_contrast(double a_k, double b_k);

@@ -111,6 +111,9 @@ void HumanPresenter::answer(Apex apex) {
   Trial trial = patch.trial;
   trial.answer = apex;
   trial.scores = {};
+  // What the model thought of the patch is not what this person did.
+  trial.probability_correct.reset();
+  trial.frames = 1;
   answers_.push_back(std::move(trial));
   show_next();
 }

@@ -49,8 +49,12 @@ Plan unusual_plan() {
   plan.simulation.phases = 64;
   plan.simulation.skip = {Effect::quantisation, Effect::aberration};
   plan.simulation.force = {Effect::detector};
-  plan.schedule = {.kind = ScheduleKind::adaptive, .half_width_percent = 7.5, .max_presentations = 321};
-  plan.fit = {PsychometricForm::acuity, std::nullopt};
+  plan.schedule = {.kind = ScheduleKind::adaptive,
+                   .half_width_percent = 7.5,
+                   .max_presentations = 321,
+                   .answers = AnswerKind::graded,
+                   .frames_per_presentation = 4};
+  plan.fit = {.form = PsychometricForm::acuity, .lapse = std::nullopt};
   plan.limits.acuity = {{-5, 0.4}, {1e-3, 0.1}};
   plan.limits.equivalence_margin_percent = 12.5;
   plan.measurement = {8, 4, 3.5, 0, 0.25, 0.125, 500, 0.05, 5, 0.5, 0.001};
@@ -66,6 +70,15 @@ TEST(Plan, WhatIsWrittenReadsBackEqual) {
     EXPECT_EQ(*back, plan) << to_toml(plan);
     EXPECT_EQ(to_toml(*back), to_toml(plan));
   }
+}
+
+TEST(Plan, SeveralFramesAreForGradedAnswers) {
+  const Result<Plan> refused = parse("[schedule]\nframes_per_presentation = 2\n");
+
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::invalid_input);
+  EXPECT_THAT(refused.error().message, HasSubstr("more than one frame needs answers = \"graded\""));
+  EXPECT_TRUE(parse("[schedule]\nframes_per_presentation = 2\nanswers = \"graded\"\n"));
 }
 
 TEST(Plan, AnEmptyFileIsThePlanOfDefaults) {

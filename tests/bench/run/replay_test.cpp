@@ -3,7 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <functional>
+#include <sstream>
 
 #include "acquisition/recording/frame_stream.h"
 #include "bench/plan/descriptions.h"
@@ -199,6 +201,59 @@ TEST_F(MeasuredSession, ReplaysWithTheSameTrialsAndTheSameReadings) {
   EXPECT_EQ(replay->same_fits, true);
   for (const char* file : {"targets.csv", "targets_simulated.csv", "trials.csv", "trials_simulated.csv"})
     EXPECT_EQ(content_of(at("r") / file), content_of(at("m") / file)) << file;
+}
+
+TEST_F(MeasuredSession, OfGradedAnswersReplaysWithTheSameProbabilitiesAndTheFunctionOfTheTwin) {
+  plan_.schedule.answers = AnswerKind::graded;
+  plan_.schedule.frames_per_presentation = 3;
+  plan_.fit.estimator = FitEstimator::twin_shape;
+  ASSERT_TRUE(measure("m"));
+
+  const auto replay = replay_session(at("m"), options("r"), {}, {});
+
+  ASSERT_TRUE(replay) << replay.error().message;
+  EXPECT_TRUE(replay->same_trials);
+  EXPECT_EQ(replay->same_fits, true);
+  const auto session = read_session(at("r"));
+  ASSERT_TRUE(session) << session.error().message;
+  for (const Trial& trial : session->trials) {
+    EXPECT_TRUE(trial.probability_correct);
+    EXPECT_EQ(trial.frames, 3);
+  }
+  for (const TodPoint& point : session->curve->points) {
+    ASSERT_TRUE(point.fit.twin_shape) << point.set_delta_t_k;
+    EXPECT_NEAR(point.fit.twin_shape->size_ratio, 1, 0.1);
+    EXPECT_EQ(point.fit.interval, IntervalKind::two_way) << "one set-up";
+    EXPECT_TRUE(point.fit.usable());
+  }
+  EXPECT_THAT(content_of(at("r") / "report.html"), HasSubstr("The function is that of the simulated twin"));
+}
+
+TEST_F(MeasuredSession, OfAVersionThatKeptLessOfATrialReplaysAsFarAsItIsKnown) {
+  ASSERT_TRUE(measure("m"));
+  const std::filesystem::path file = at("m") / "trials.csv";
+  // Two columns less are a file before graded answers, one more less is one before saturated pixels.
+  for (const int left_out : {2, 1}) {
+    std::istringstream lines(content_of(file));
+    std::string earlier;
+    for (std::string line; std::getline(lines, line);) {
+      for (int k = 0; k < left_out; ++k) line.resize(line.rfind(','));
+      earlier += line + "\n";
+    }
+    std::ofstream(file) << earlier;
+    ASSERT_TRUE(refresh_manifest(at("m"), {"trials.csv"}));
+
+    const auto replay = replay_session(at("m"), options("r" + std::to_string(left_out)), {}, {});
+
+    ASSERT_TRUE(replay) << replay.error().message;
+    EXPECT_TRUE(replay->same_trials);
+  }
+  auto trials = read_trials(file).value();
+  trials[7].answer = trials[7].answer == Apex::up ? Apex::down : Apex::up;
+  auto writer = TrialsWriter::create(file);
+  for (const Trial& trial : trials) ASSERT_TRUE(writer->append(trial));
+  ASSERT_TRUE(refresh_manifest(at("m"), {"trials.csv"}));
+  EXPECT_FALSE(replay_session(at("m"), options("changed"), {}, {})->same_trials);
 }
 
 TEST_F(MeasuredSession, OfAnotherFormatIsRefused) {

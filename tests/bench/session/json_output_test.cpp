@@ -70,7 +70,8 @@ TEST(CurveJson, HasExactlyThePublishedKeys) {
   EXPECT_EQ(
       to_line(curve_json(curve, plan, {2.5, 100, {{"incomplete", 3}}})),
       R"({"observer":"hvs-1","sensor":"sc2000","points":[{"delta_t_k":16.9,"s75_mrad":2.0,"s75_ci95_mrad":[1.5,2.5],)"
-      R"("s75_direct_mrad":2.125,"s75_direct_se_mrad":0.25,"acuity_per_mrad":0.5,"trials":640,"verdict":"ok","adequacy":null}],)"
+      R"("s75_direct_mrad":2.125,"s75_direct_se_mrad":0.25,"acuity_per_mrad":0.5,"trials":640,"verdict":"ok",)"
+      R"("estimator":"twin-shape","interval":"set_ups","dispersion":0.375,"clusters":32.0,"adequacy":null}],)"
       R"("plan":[{"name":"diffraction","decision":"skip","reason":"said so","predicted_change_percent":-1.5},)"
       R"({"name":"detector","decision":"simulate","reason":"never","predicted_change_percent":null}],)"
       R"("wall_s":2.5,"frames":{"used":100,"rejected":{"incomplete":3}}})");

@@ -16,7 +16,8 @@ namespace todbench::testing {
 inline auto values_of(const Trial& t) {
   return std::make_tuple(t.presentation, t.plate, t.mounting, t.triangle, t.set_delta_t_k, t.delta_t_k, t.size_mm,
                          t.size_mrad, t.size_px, t.truth, t.answer, t.scores, t.phase_x_px, t.phase_y_px, t.frame,
-                         t.device_time_ns, t.host_time_ns, t.since_nuc_s, t.saturated_pixels);
+                         t.device_time_ns, t.host_time_ns, t.since_nuc_s, t.saturated_pixels, t.probability_correct,
+                         t.frames);
 }
 
 /// A presentation in which nothing is missing and no two numbers are the same.
@@ -62,6 +63,8 @@ inline std::vector<Trial> random_trials(int count) {
     t.host_time_ns = 9223372036854775807 - i;
     t.since_nuc_s = i % 3 == 0 ? -1 : stream.uniform(draw++);
     t.saturated_pixels = i % 4 == 0 ? 0 : 100 * i;
+    if (i % 5 != 0) t.probability_correct = i % 5 == 1 ? 1 : stream.uniform(draw++);
+    t.frames = 1 + i % 3;
     trials.push_back(std::move(t));
   }
   return trials;
@@ -84,6 +87,16 @@ inline PsychometricFit full_fit(double threshold_mrad) {
   fit.trials = 640;
   fit.clusters = 32;
   fit.variance_inflation = 1.25;
+  fit.interval = IntervalKind::set_ups;
+  fit.dispersion = 0.375;
+  fit.twin_shape = TwinShapeUse{.size_ratio = 1.0 / 0.97,
+                                .slope_ratio = 0.9,
+                                .slope_fitted = true,
+                                .departure = -1.25,
+                                .departure_limit = 2.75,
+                                .departure_shift = -0.001,
+                                .shape_se_ln_threshold = 1e-3,
+                                .table = {{1, 2, 4}, {0.3, 0.7, 1}, {0.01, 0.02, 0}}};
   return fit;
 }
 

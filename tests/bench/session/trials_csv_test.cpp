@@ -52,27 +52,55 @@ TEST(TrialsCsv, TheHeaderStatesTheUnits) {
       testing::content_of(folder.path() / "t.csv"),
       "presentation,plate,mounting,triangle,set_delta_t_k,delta_t_k,size_mm,size_mrad,size_px,truth,answer,score_up,"
       "score_right,score_down,score_left,phase_x_px,phase_y_px,frame,device_time_ns,host_time_ns,since_nuc_s,saturated_"
-      "pixels\n");
+      "pixels,probability_correct,frames\n");
 }
 
-TEST(TrialsCsv, AFileOfAnEarlierVersionHasNoSaturatedPixels) {
+TEST(TrialsCsv, AFileOfAnEarlierVersionEndsBeforeItsLastColumns) {
   const testing::TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "t.csv";
   Result<TrialsWriter> writer = TrialsWriter::create(file);
   ASSERT_TRUE(writer) << writer.error().message;
   for (const Trial& trial : testing::random_trials(5)) ASSERT_TRUE(writer->append(trial));
-  std::istringstream lines(testing::content_of(file));
-  std::string earlier;
-  for (std::string line; std::getline(lines, line);) earlier += line.substr(0, line.rfind(',')) + "\n";
+  for (const int left_out : {1, 2, 3, 4}) {
+    std::istringstream lines(testing::content_of(file));
+    std::string earlier;
+    for (std::string line; std::getline(lines, line);) {
+      for (int k = 0; k < left_out; ++k) line.resize(line.rfind(','));
+      earlier += line + "\n";
+    }
 
-  const auto trials = read_trials(folder.write("earlier.csv", earlier));
+    const auto trials = read_trials(folder.write("earlier.csv", earlier));
 
-  ASSERT_TRUE(trials) << trials.error().message;
-  ASSERT_EQ(trials->size(), 5u);
-  for (std::size_t i = 0; i < trials->size(); ++i) {
-    Trial expected = testing::random_trials(5)[i];
-    expected.saturated_pixels = 0;
-    EXPECT_EQ(testing::values_of((*trials)[i]), testing::values_of(expected)) << "trial " << i;
+    if (left_out == 1 || left_out == 4) {
+      EXPECT_FALSE(trials) << "no version ended there";
+      continue;
+    }
+    ASSERT_TRUE(trials) << trials.error().message;
+    ASSERT_EQ(trials->size(), 5u);
+    for (std::size_t i = 0; i < trials->size(); ++i) {
+      Trial expected = testing::random_trials(5)[i];
+      expected.probability_correct.reset();
+      expected.frames = 1;
+      if (left_out == 3) expected.saturated_pixels = 0;
+      EXPECT_EQ(testing::values_of((*trials)[i]), testing::values_of(expected)) << "trial " << i;
+    }
+  }
+}
+
+TEST(TrialsCsv, AProbabilityBeyondOneIsRefused) {
+  const testing::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "t.csv";
+  Trial trial = testing::random_trials(2)[1];
+  for (const double value : {-0.01, 1.01}) {
+    trial.probability_correct = value;
+    Result<TrialsWriter> writer = TrialsWriter::create(file);
+    ASSERT_TRUE(writer && writer->append(trial));
+
+    const auto trials = read_trials(file);
+
+    ASSERT_FALSE(trials);
+    EXPECT_THAT(trials.error().message,
+                HasSubstr("t.csv:2: column probability_correct: expected a number from 0 to 1"));
   }
 }
 
@@ -174,14 +202,14 @@ TEST(TrialsCsv, TheReaderNamesLineAndColumn) {
   };
 
   EXPECT_EQ(complaint(good), "");
-  EXPECT_THAT(complaint(good.substr(0, good.size() - 40)), HasSubstr("bad.csv:4: expected 22 fields as in the header"));
+  EXPECT_THAT(complaint(good.substr(0, good.size() - 40)), HasSubstr("bad.csv:4: expected 24 fields as in the header"));
   EXPECT_THAT(complaint(with("plate 0", "plate 0,x")),
-              HasSubstr("bad.csv:2: expected 22 fields as in the header, found 23"));
+              HasSubstr("bad.csv:2: expected 24 fields as in the header, found 25"));
   EXPECT_THAT(complaint(with("identity", "upside_down")), HasSubstr("bad.csv:2: column mounting: expected a mounting"));
   EXPECT_THAT(complaint(with("size_px", "size_pix")),
               HasSubstr("bad.csv:1: column 9: expected size_px, found 'size_pix'"));
   EXPECT_THAT(complaint(good.substr(0, good.rfind(',')) + ",-1\n"),
-              HasSubstr("bad.csv:4: column saturated_pixels: expected a whole number of 0 or more, found '-1'"));
+              HasSubstr("bad.csv:4: column frames: expected a whole number of 0 or more, found '-1'"));
   EXPECT_THAT(complaint(""), HasSubstr("bad.csv:1: the file is empty"));
 }
 

@@ -32,7 +32,14 @@ class FaultMatrix : public testing::Test {
     options.frames_after_change = 12;
     options.nuc_wait_s = 0;
     options.max_rejected_share = 0.2;
+    options.answers = answers_;
+    options.frames_per_presentation = frames_;
     return options;
+  }
+
+  void grade_answers(int frames) {
+    answers_ = AnswerKind::graded;
+    frames_ = frames;
   }
 
   [[nodiscard]] FaultRun disturbed(const FaultPlan& plan) const {
@@ -79,6 +86,8 @@ class FaultMatrix : public testing::Test {
       ASSERT_EQ(a.triangle, b.triangle) << "trial " << i;
       ASSERT_EQ(a.answer, b.answer) << "trial " << i;
       ASSERT_EQ(a.scores, b.scores) << "trial " << i;
+      ASSERT_EQ(a.probability_correct, b.probability_correct) << "trial " << i;
+      ASSERT_EQ(a.frames, b.frames) << "trial " << i;
       ASSERT_EQ(a.delta_t_k, b.delta_t_k) << "trial " << i;
       ASSERT_FALSE(with.book->spoiled.contains(with.book->exposure_of.at(a.frame))) << "trial " << i;
     }
@@ -101,6 +110,8 @@ class FaultMatrix : public testing::Test {
 
   SimulatedBench bench_;
   std::shared_ptr<const SensorModel> model_;
+  AnswerKind answers_ = AnswerKind::binary;
+  int frames_ = 1;
 };
 
 }  // namespace todbench::test

@@ -22,5 +22,11 @@ TEST_F(FaultMatrix, EveryReasonTogetherAtFivePercentLeavesTheAnswersAsTheyWere) 
   expect_same_answers({.faults = every_reason(), .share = 0.05, .first = 5, .seed = 3});
 }
 
+TEST_F(FaultMatrix, EveryReasonTogetherAtFivePercentLeavesGradedAnswersAsTheyWere) {
+  grade_answers(3);
+
+  expect_same_answers({.faults = every_reason(), .share = 0.05, .first = 5, .seed = 4});
+}
+
 }  // namespace
 }  // namespace todbench

@@ -110,5 +110,41 @@ TEST(Measurement, RepeatsBitForBit) {
   }
 }
 
+TEST(Measurement, GradedAnswersStandBesideTheSameAnswers) {
+  SimulatedBench bench;
+  bench.contrasts = {1.93};
+  bench.phases = 3;
+  TemplateObserver observer({}, triangle_alternatives());
+  MeasurementOptions graded = options_of(bench);
+  graded.answers = AnswerKind::graded;
+
+  const auto binary = run(bench, observer, options_of(bench));
+  const auto one = run(bench, observer, graded);
+  graded.frames_per_presentation = 4;
+  const auto four = run(bench, observer, graded);
+
+  ASSERT_TRUE(binary && one && four);
+  EXPECT_EQ(one->frames_used, binary->frames_used);
+  EXPECT_EQ(four->frames_used, binary->frames_used + 3 * four->presentations.size());
+  ASSERT_EQ(one->trials.size(), binary->trials.size());
+  double difference = 0, variance = 0, squares_one = 0, squares_four = 0;
+  for (std::size_t i = 0; i < one->trials.size(); ++i) {
+    EXPECT_FALSE(binary->trials[i].probability_correct);
+    ASSERT_TRUE(one->trials[i].probability_correct && four->trials[i].probability_correct);
+    Trial same = one->trials[i];
+    same.probability_correct.reset();
+    EXPECT_EQ(same, binary->trials[i]);
+    EXPECT_EQ(four->trials[i].frames, 4);
+    const double p = *one->trials[i].probability_correct;
+    difference += (one->trials[i].correct() ? 1 : 0) - p;
+    variance += p * (1 - p);
+    squares_one += p * p;
+    squares_four += std::pow(*four->trials[i].probability_correct, 2);
+  }
+  // An answer is one draw with that probability. The draws behind the probability add a 32nd to its variance.
+  EXPECT_LT(std::abs(difference), 4 * std::sqrt(1.04 * variance));
+  EXPECT_LT(squares_four, squares_one) << "averages spread less";
+}
+
 }  // namespace
 }  // namespace todbench

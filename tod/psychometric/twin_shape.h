@@ -1,0 +1,51 @@
+// Answers fitted with the function of a simulated twin in place of a Weibull function: known from its direct estimate,
+// stretched in ln size.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "tod/psychometric/psychometric_fit.h"
+
+namespace todbench {
+
+/// A table as a smooth, rising function of ln size. Immutable, cheap to copy.
+class TwinShape {
+ public:
+  /// ln((P - 1/4) / (1 - P)) is nearly straight in ln size: it is smoothed by local parabolas through seven nodes,
+  /// weighted by their standard errors, made rising, and joined by monotone cubics (Fritsch and Carlson 1980); straight
+  /// beyond the nodes that tell P from chance and from 1. `invalid_input`: sizes that do not rise, proportions outside
+  /// 0 to 1, fewer than five such nodes, or none on one side of 75 %.
+  [[nodiscard]] static Result<TwinShape> of(const ProportionTable& table);
+
+  struct Value {
+    double proportion = 0;
+    double derivative = 0;  ///< per unit of ln size
+  };
+  /// At ln(size / mrad).
+  [[nodiscard]] Value at(double ln_size) const;
+  /// ln of the size at 75 %.
+  [[nodiscard]] double ln_threshold() const { return ln_threshold_; }
+
+ private:
+  struct Curve;
+  std::shared_ptr<const Curve> curve_;
+  double ln_threshold_ = 0;
+};
+
+/// Where the twin's function is read for a camera whose function is `use`: at ln(size / mrad).
+[[nodiscard]] double twin_ln_size(const TwinShape& shape, const TwinShapeUse& use, double ln_size);
+
+/// The fit of the same answers with the function of the twin: one parameter, the ratio of sizes, and a second one, the
+/// ratio of slopes at 75 %, where the answers ask for it (t test, 1 %). `weibull` is fit_graded() of the same answers;
+/// where it has no regular maximum (verdict other than ok and extrapolated) it is returned as it is.
+///
+/// Quasi-likelihood as fit_graded(); answers that are right or wrong have probabilities of 1 and 0. Intervals are
+/// symmetric in ln threshold: Student's t times the root of the variance over presentations and places, and of what the
+/// standard errors of the table add. `slope` is that of the Weibull function of `options.form` with the same rise at
+/// 75 %. `invalid_input`: a lapse other than 0, and as TwinShape::of().
+[[nodiscard]] Result<PsychometricFit> fit_twin_shape(std::span<const GradedAnswer> answers,
+                                                     const PsychometricFit& weibull, const ProportionTable& table,
+                                                     const FitOptions& options);
+
+}  // namespace todbench
