@@ -1,5 +1,6 @@
 #include "bench/plan/plan_checks.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -66,6 +67,14 @@ ValueMistakes check_force(const Plan& plan, std::size_t /*row*/) {
     }
   }
   return mistakes;
+}
+
+ValueMistakes check_transfer_steps(const Plan& plan, std::size_t /*row*/) {
+  std::vector<double> steps = plan.measures.transfer_steps_k;
+  std::sort(steps.begin(), steps.end());
+  steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
+  if (steps.size() >= 3) return {};
+  return {{std::nullopt, "expected three steps or more that differ, found " + std::to_string(steps.size())}};
 }
 
 ValueMistakes check_limit_contrast(const Plan& plan, std::size_t row) {

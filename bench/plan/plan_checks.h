@@ -23,6 +23,8 @@ using ValueMistakes = std::vector<ValueMistake>;
 [[nodiscard]] ValueMistakes check_contrasts(const Plan& plan, std::size_t row);
 /// None that is also skipped.
 [[nodiscard]] ValueMistakes check_force(const Plan& plan, std::size_t row);
+/// Three or more that differ.
+[[nodiscard]] ValueMistakes check_transfer_steps(const Plan& plan, std::size_t row);
 /// Among the contrasts of the target, and not in an earlier row.
 [[nodiscard]] ValueMistakes check_limit_contrast(const Plan& plan, std::size_t row);
 [[nodiscard]] ValueMistakes check_due_date(const Plan& plan, std::size_t row);
