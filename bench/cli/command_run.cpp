@@ -13,6 +13,7 @@
 #include "bench/run/emulation.h"
 #include "bench/run/experiment.h"
 #include "bench/run/replay.h"
+#include "bench/session/measures_record.h"
 #include "bench/session/provenance.h"
 #include "tod/psychometric/acuity.h"
 
@@ -101,6 +102,28 @@ void print_verdict(const Console& console, const ExperimentOutcome& outcome) {
                (lines.empty() ? " (" + verdict.reason + ")" : ""));
 }
 
+/// Physical measures, where the plan asks for them.
+void add_measures(Json& json, const ExperimentOutcome& outcome) {
+  if (outcome.measures || outcome.twin_measures)
+    json["measures"] = measures_json(outcome.measures, outcome.twin_measures);
+}
+
+void print_measures(const Console& console, const ExperimentOutcome& outcome) {
+  if (!outcome.measures) return;
+  const MeasureLines main = measure_lines(*outcome.measures);
+  const MeasureLines twin = outcome.twin_measures ? measure_lines(*outcome.twin_measures) : MeasureLines{};
+  std::vector<TableRow> rows;
+  for (const MeasureLine& line : main.lines) {
+    const auto other = std::find_if(twin.lines.begin(), twin.lines.end(),
+                                    [&](const MeasureLine& l) { return l.measure == line.measure; });
+    rows.push_back({line.measure, line.unit, fixed(line.value, 4), range(line.ci95, 4),
+                    other == twin.lines.end() ? "–" : fixed(other->value, 4)});
+  }
+  if (rows.empty()) return;
+  console.text("");
+  console.table({"measure", "unit", "value", "95 %", "twin"}, rows);
+}
+
 /// What every run says in JSON beside its numbers.
 void add_verdict(Json& json, const Verdict& verdict) {
   json["verdict"] = to_string(verdict.decision);
@@ -142,6 +165,7 @@ int run_measure(Console& console, const RunArguments& arguments, const Program& 
   if (console.json()) {
     Json json = curve_json(outcome->curve, outcome->effects, outcome->figures);
     add_verdict(json, outcome->verdict);
+    add_measures(json, *outcome);
     console.object(json);
   } else {
     print_curve(console, outcome->curve);
@@ -149,6 +173,7 @@ int run_measure(Console& console, const RunArguments& arguments, const Program& 
       console.text("");
       print_comparison(console, *outcome);
     }
+    print_measures(console, *outcome);
     print_verdict(console, *outcome);
   }
   return finish(console, *outcome);
@@ -165,11 +190,13 @@ int run_simulate(Console& console, SimulateArguments arguments, const Program& p
   if (console.json()) {
     Json json = curve_json(outcome->curve, outcome->effects, outcome->figures);
     add_verdict(json, outcome->verdict);
+    add_measures(json, *outcome);
     console.object(json);
   } else {
     print_curve(console, outcome->curve);
     console.text("");
     print_effects(console, outcome->effects);
+    print_measures(console, *outcome);
     print_verdict(console, *outcome);
   }
   return finish(console, *outcome);
@@ -201,6 +228,7 @@ int run_demo(Console& console, const RunArguments& arguments, const std::string&
     console.object(json);
   } else {
     if (outcome->comparison) print_comparison(console, *outcome);
+    print_measures(console, *outcome);
     print_verdict(console, *outcome);
     console.text("report: " + (outcome->folder / "report.html").string());
   }

@@ -134,6 +134,15 @@ struct MeasurementPlan {
   bool operator==(const MeasurementPlan&) const = default;
 };
 
+/// [measures]: physical measures after the trials, with the same camera and target, and of the twin.
+struct MeasuresPlan {
+  bool noise = false;     ///< temporal noise, NETD and 3-D noise, of the first plate at a contrast of 0
+  int noise_frames = 64;  ///< of the cube
+  bool transfer = false;  ///< contrast seen over contrast shown
+  std::vector<double> transfer_steps_k{-4, -2, -1, 1, 2, 4};
+  bool operator==(const MeasuresPlan&) const = default;
+};
+
 /// [[instrument]]: what the calibration of the result hangs on. For the report; a date that has passed refuses the
 /// measurement.
 struct InstrumentPlan {
@@ -158,6 +167,7 @@ struct Plan {
   FitPlan fit;
   LimitsPlan limits;
   MeasurementPlan measurement;
+  MeasuresPlan measures;
   std::vector<InstrumentPlan> instruments;
   bool operator==(const Plan&) const = default;
 };

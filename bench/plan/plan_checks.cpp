@@ -1,5 +1,6 @@
 #include "bench/plan/plan_checks.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -76,6 +77,14 @@ ValueMistakes check_frames_per_presentation(const Plan& plan, std::size_t /*row*
 ValueMistakes check_estimator(const Plan& plan, std::size_t /*row*/) {
   if (plan.fit.estimator == FitEstimator::weibull || plan.fit.lapse == 0.0) return {};
   return {{std::nullopt, "the function of the twin has no lapse: \"twin-shape\" needs lapse = 0"}};
+}
+
+ValueMistakes check_transfer_steps(const Plan& plan, std::size_t /*row*/) {
+  std::vector<double> steps = plan.measures.transfer_steps_k;
+  std::sort(steps.begin(), steps.end());
+  steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
+  if (steps.size() >= 3) return {};
+  return {{std::nullopt, "expected three steps or more that differ, found " + std::to_string(steps.size())}};
 }
 
 ValueMistakes check_limit_contrast(const Plan& plan, std::size_t row) {

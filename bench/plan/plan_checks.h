@@ -27,6 +27,8 @@ using ValueMistakes = std::vector<ValueMistake>;
 [[nodiscard]] ValueMistakes check_frames_per_presentation(const Plan& plan, std::size_t row);
 /// The function of the twin has no lapse.
 [[nodiscard]] ValueMistakes check_estimator(const Plan& plan, std::size_t row);
+/// Three or more that differ.
+[[nodiscard]] ValueMistakes check_transfer_steps(const Plan& plan, std::size_t row);
 /// Among the contrasts of the target, and not in an earlier row.
 [[nodiscard]] ValueMistakes check_limit_contrast(const Plan& plan, std::size_t row);
 [[nodiscard]] ValueMistakes check_due_date(const Plan& plan, std::size_t row);

@@ -349,6 +349,30 @@ PlanSection measurement_section() {
           }};
 }
 
+PlanSection measures_section() {
+  const auto of = [](auto member) { return in(&Plan::measures, member); };
+  return {.name = "measures",
+          .sentence = "Physical measures after the trials, with the same camera and target, and of the twin.",
+          .keys = {{.name = "noise",
+                    .type = FlagKey{},
+                    .sentence = "temporal noise, NETD and 3-D noise of the first plate at a contrast of 0",
+                    .place = of(&MeasuresPlan::noise)},
+                   {.name = "noise_frames",
+                    .type = WholeKey{5, 10000},
+                    .sentence = "of the cube that the noise is measured in",
+                    .place = of(&MeasuresPlan::noise_frames)},
+                   {.name = "transfer",
+                    .type = FlagKey{},
+                    .sentence = "signal transfer: the contrast seen over the contrast shown",
+                    .place = of(&MeasuresPlan::transfer)},
+                   {.name = "transfer_steps_k",
+                    .type = NumbersKey{NumberRange::between(-50, 50), "step"},
+                    .unit = "K",
+                    .sentence = "contrasts of the signal transfer; the largest also shows where the plate is",
+                    .place = of(&MeasuresPlan::transfer_steps_k),
+                    .check = check_transfer_steps}}};
+}
+
 PlanSection limits_section() {
   return {.name = "limits",
           .sentence = "What is demanded of the result.",
@@ -413,10 +437,10 @@ PlanSection instrument_section() {
 }  // namespace
 
 const std::vector<PlanSection>& plan_sections() {
-  static const std::vector<PlanSection> sections{about_section(),         camera_section(),      target_section(),
-                                                 observer_section(),      simulation_section(),  schedule_section(),
-                                                 fit_section(),           measurement_section(), limits_section(),
-                                                 acuity_limits_section(), instrument_section()};
+  static const std::vector<PlanSection> sections{about_section(),    camera_section(),        target_section(),
+                                                 observer_section(), simulation_section(),    schedule_section(),
+                                                 fit_section(),      measurement_section(),   measures_section(),
+                                                 limits_section(),   acuity_limits_section(), instrument_section()};
   return sections;
 }
 

@@ -4,6 +4,7 @@
 
 #include "bench/report/cost_figure.h"
 #include "bench/report/html.h"
+#include "bench/report/measures_section.h"
 #include "bench/report/report_pieces.h"
 
 namespace todbench {
@@ -50,6 +51,7 @@ Document report_document(const ReportData& data) {
   add(psychometric_section(data));
   add(human_section(data));
   add(comparison_section(data));
+  add(measures_section(data));
   add(set_up_section(data));
   add(effects_section(data));
   if (data.cost) add(cost_section(*data.cost));

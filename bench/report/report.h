@@ -12,6 +12,7 @@
 #include "bench/judgement/verdict.h"
 #include "bench/report/document.h"
 #include "bench/report/plot.h"
+#include "bench/session/measures_record.h"
 #include "sim_devices/prediction/cost_frontier.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"
@@ -58,6 +59,8 @@ struct ReportData {
   std::optional<TodCurve> simulated;
   std::optional<TodCurve> human;         ///< a person's answers to patches of the camera's frames
   std::optional<Comparison> comparison;  ///< A is measured, B is simulated
+
+  std::optional<SessionMeasures> measures;  ///< physical; nothing: none was asked for
 
   std::optional<Verdict> verdict;  ///< of the session
 

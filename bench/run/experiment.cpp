@@ -7,15 +7,16 @@
 #include "acquisition/recording/frame_stream.h"
 #include "bench/run/bench_host.h"
 #include "bench/run/comparison_forecast.h"
+#include "bench/run/direct_results.h"
 #include "bench/run/experiment_inputs.h"
 #include "bench/run/observed_source.h"
+#include "bench/run/physical_measures.h"
 #include "bench/run/recorded_bench.h"
 #include "bench/run/session_frame.h"
 #include "bench/run/simulated_responses.h"
 #include "bench/run/simulated_set_up.h"
 #include "bench/run/twin_shapes.h"
 #include "bench/text/text.h"
-#include "sim_devices/prediction/direct_estimate.h"
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "tod/adequacy/adequacy.h"
 #include "tod/measurement/measurement.h"
@@ -111,39 +112,6 @@ struct TwinRun {
   TodCurve curve;
   double wall_s = 0;
 };
-
-/// The contrasts of a curve that have one, as their size at 75 % without trials; what has none is a note.
-struct DirectResults {
-  std::map<double, DirectPoint> points;  ///< by contrast
-  std::vector<std::string> notes;
-  std::optional<Error> ended_by;
-};
-
-/// `shown_delta_t_k`: what the scene shows of a set contrast, where it is not the same.
-DirectResults direct_results(const TodCurve& curve, const ExperimentInputs& inputs,
-                             const std::map<double, double>& shown_delta_t_k, std::uint64_t seed,
-                             std::stop_token stop) {
-  TemplateObserver observer(inputs.observer, triangle_alternatives());
-  const DirectEstimateOptions options = direct_options(curve, inputs, shown_delta_t_k, seed, std::move(stop));
-  std::vector<double> contrasts;
-  for (const auto& point : curve.points) contrasts.push_back(point.delta_t_k);
-  DirectResults results;
-  // Together they share their images. Where one has no threshold the others are estimated alone.
-  std::vector<std::vector<double>> attempts{contrasts};
-  for (std::size_t i = 0; i < attempts.size() && !results.ended_by; ++i) {
-    auto found = direct_estimate(inputs.sensor, inputs.effects, observer, attempts[i], options);
-    if (found) {
-      for (std::size_t k = 0; k < found->size(); ++k) results.points[attempts[i][k]] = (*found)[k];
-    } else if (found.error().code == ErrorCode::interrupted) {
-      results.ended_by = found.error();
-    } else if (attempts[i].size() > 1) {
-      for (const double contrast : contrasts) attempts.push_back({contrast});
-    } else {
-      results.notes.push_back("no direct estimate: " + found.error().message);
-    }
-  }
-  return results;
-}
 
 /// Fits a curve with the functions of its simulated sensor, where the plan asks for it.
 void give_shape(TodCurve& curve, MeasurementResult& result, const Plan& plan, const ExperimentInputs& inputs,
@@ -247,10 +215,15 @@ Result<void> check_tolerance(const Plan& plan, const ExperimentInputs& inputs) {
   return {};
 }
 
+/// Trials and physical measures of the camera.
+struct MeasuredRun {
+  MeasurementResult result;
+  std::optional<CameraMeasures> measures;
+};
+
 /// The measurement with the camera of the plan, into the session.
-Result<MeasurementResult> run_measured(const Plan& plan, const ExperimentInputs& inputs, OpenedBench& bench,
-                                       SessionFolder& folder, const ExperimentListener& listener,
-                                       std::stop_token stop) {
+Result<MeasuredRun> run_measured(const Plan& plan, const ExperimentInputs& inputs, OpenedBench& bench,
+                                 SessionFolder& folder, const ExperimentListener& listener, std::stop_token stop) {
   TemplateObserver observer(inputs.observer, triangle_alternatives());
   MeasurementOptions options = measurement_options(plan, inputs.plates, plan.camera.ifov_mrad);
   const SensorModel model(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
@@ -260,7 +233,16 @@ Result<MeasurementResult> run_measured(const Plan& plan, const ExperimentInputs&
   options.free_running = !bench.simulated;
   const auto schedule =
       make_schedule(plan, inputs.plates, plan.camera.ifov_mrad, Side::measured, RandomStream(plan.seed, "schedule"));
-  return Recorder(folder, listener, std::move(stop)).run(bench, observer, *schedule, options, SessionCurve::main);
+  auto result = Recorder(folder, listener, stop).run(bench, observer, *schedule, options, SessionCurve::main);
+  if (!result) return tl::unexpected(result.error());
+  MeasuredRun run{*std::move(result), std::nullopt};
+  if (run.result.ended_by) return run;
+  auto measures = physical_measures(plan, options, bench, {folder, listener}, std::move(stop));
+  if (measures)
+    run.measures = *std::move(measures);
+  else
+    run.result.ended_by = measures.error();
+  return run;
 }
 
 }  // namespace
@@ -298,6 +280,14 @@ Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const Experime
                      {ErrorCode::not_identifiable, inputs->warnings.front() + "; " + run.error().message});
     return abandon(frame, plan, provenance, run.error());
   }
+  std::optional<CameraMeasures> measures;
+  if (!run->result.ended_by) {
+    auto found = simulated_measures(loaded, *inputs, frame, stop);
+    if (found)
+      measures = *std::move(found);
+    else
+      run->result.ended_by = found.error();
+  }
   run->result.notes.insert(run->result.notes.end(), inputs->warnings.begin(), inputs->warnings.end());
   provenance.run = run_record(run->result, run->wall_s);
   return concluded({.folder = folder->path(),
@@ -305,6 +295,7 @@ Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const Experime
                     .twin = std::nullopt,
                     .comparison = std::nullopt,
                     .verdict = {},
+                    .measures = std::move(measures),
                     .effects = inputs->effects,
                     .figures = figures_of(*provenance.run),
                     .ended_by = run->result.ended_by},
@@ -370,8 +361,9 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
 
   const auto begin = Clock::now();
   phase(*folder, listener, "measuring " + info.model + " " + info.serial);
-  auto result = run_measured(plan, inputs, bench, *folder, listener, stop);
-  if (!result) return abandon(frame, plan, provenance, with_context("measuring", result.error()));
+  auto measured = run_measured(plan, inputs, bench, *folder, listener, stop);
+  if (!measured) return abandon(frame, plan, provenance, with_context("measuring", measured.error()));
+  MeasurementResult* const result = &measured->result;
   if (recording && !result->ended_by) {
     if (auto kept = recording->verified_frames(); !kept) result->ended_by = with_context("recording", kept.error());
   }
@@ -403,12 +395,20 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
                             .effects = inputs.effects,
                             .figures = figures_of(*provenance.run),
                             .ended_by = result->ended_by};
+  outcome.measures = std::move(measured->measures);
   if (!outcome.ended_by) {
     TwinResults twin = run_twin(plan, inputs, outcome.curve, *folder, options.host, listener, stop);
     provenance.twin_run = std::move(twin.run);
     outcome.twin = std::move(twin.curve);
     outcome.comparison = std::move(twin.comparison);
     outcome.ended_by = std::move(twin.ended_by);
+  }
+  if (!outcome.ended_by) {
+    auto measures = simulated_measures(loaded, inputs, frame, stop);
+    if (measures)
+      outcome.twin_measures = *std::move(measures);
+    else
+      outcome.ended_by = with_context("the simulated twin", measures.error());
   }
   return concluded(std::move(outcome), plan, frame, provenance);
 }

@@ -18,6 +18,7 @@
 #include "bench/run/experiment_inputs.h"
 #include "bench/session/json_output.h"
 #include "bench/session/session_folder.h"
+#include "tod/camera_measures/camera_measures.h"
 
 namespace todbench {
 
@@ -50,10 +51,12 @@ struct ExperimentOutcome {
   TodCurve curve;                ///< measured, or simulated for simulate_plan()
   std::optional<TodCurve> twin;  ///< simulated, beside a measured curve
   std::optional<Comparison> comparison;
-  Verdict verdict;                ///< as verdict.json
-  SensorPlan effects;             ///< of the simulated sensor
-  RunFigures figures;             ///< of `curve`
-  std::optional<Error> ended_by;  ///< why it stopped early; the folder is valid and marked interrupted
+  Verdict verdict;                                ///< as verdict.json
+  std::optional<CameraMeasures> measures{};       ///< physical, of the camera or of the simulated sensor alone
+  std::optional<CameraMeasures> twin_measures{};  ///< of the twin
+  SensorPlan effects;                             ///< of the simulated sensor
+  RunFigures figures;                             ///< of `curve`
+  std::optional<Error> ended_by;                  ///< why it stopped early; the folder is valid and marked interrupted
 };
 
 /// Measures with the devices of the plan, runs its simulated twin and compares. Fails when nothing could be measured:

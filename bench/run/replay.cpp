@@ -65,6 +65,7 @@ Result<ReplayOutcome> replay_session(const std::filesystem::path& session, const
   if (!recording) return tl::unexpected(recording.error());
   Plan plan = recorded->plan;
   plan.measurement.record_frames = false;
+  plan.measures = {};  // a replay repeats the trials
   const auto loaded = LoadedPlan::of(std::move(plan), recorded->parts);
   if (!loaded) return tl::unexpected(loaded.error());
   EffectPlanner planner;

@@ -85,6 +85,7 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
   if (data.ifov_mrad == 0) data.ifov_mrad = session.parts.sensor.ifov_mrad();
   data.plan = provenance.effects;
   data.cost = session.cost;
+  data.measures = session.measures;
   data.verdict = verdict_of(session);
   if (provenance.run) {
     data.set_ups = provenance.run->set_ups;

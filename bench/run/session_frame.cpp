@@ -117,6 +117,8 @@ ExperimentOutcome concluded(ExperimentOutcome outcome, const Plan& plan, const S
   free_ending_room(frame.folder.path(), EndingRoom::results);
   refused.keep(frame.folder.write_curves(outcome.curve, outcome.twin, provenance.side));
   if (outcome.comparison) refused.keep(frame.folder.write_comparison(*outcome.comparison));
+  if (outcome.measures || outcome.twin_measures)
+    refused.keep(frame.folder.write_measures(outcome.measures, outcome.twin_measures));
   if (!outcome.ended_by) outcome.ended_by = refused.first();
   outcome.verdict = judge({.limits = plan.limits,
                            .curve = outcome.curve,

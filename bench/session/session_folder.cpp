@@ -222,6 +222,11 @@ Result<void> SessionFolder::write_comparison(const Comparison& comparison) {
   return write_file_atomically(folder_ / "comparison.json", to_page(comparison_record(comparison)));
 }
 
+Result<void> SessionFolder::write_measures(const std::optional<CameraMeasures>& main,
+                                           const std::optional<CameraMeasures>& twin) {
+  return write_file_atomically(folder_ / "measures.json", to_page(measures_json(main, twin)));
+}
+
 Result<void> SessionFolder::write_verdict(const Verdict& verdict) {
   return write_file_atomically(folder_ / "verdict.json", to_page(verdict_json(verdict)));
 }
@@ -279,6 +284,9 @@ Result<Session> read_session(const std::filesystem::path& folder) {
   auto comparison = read_record(folder / "comparison.json", comparison_from);
   if (!comparison) return tl::unexpected(comparison.error());
   session.comparison = *std::move(comparison);
+  auto measures = read_record(folder / "measures.json", measures_from);
+  if (!measures) return tl::unexpected(measures.error());
+  session.measures = *std::move(measures);
   auto verdict = read_record(folder / "verdict.json", verdict_from);
   if (!verdict) return tl::unexpected(verdict.error());
   session.verdict = *std::move(verdict);

@@ -11,6 +11,7 @@
 #include "bench/judgement/verdict.h"
 #include "bench/plan/loaded_plan.h"
 #include "bench/session/manifest.h"
+#include "bench/session/measures_record.h"
 #include "bench/session/provenance.h"
 #include "bench/session/session_clock.h"
 #include "bench/session/targets_csv.h"
@@ -58,6 +59,9 @@ class SessionFolder {
   [[nodiscard]] Result<void> write_curves(const TodCurve& main, const std::optional<TodCurve>& twin, Side side);
   /// comparison.json.
   [[nodiscard]] Result<void> write_comparison(const Comparison& comparison);
+  /// measures.json.
+  [[nodiscard]] Result<void> write_measures(const std::optional<CameraMeasures>& main,
+                                            const std::optional<CameraMeasures>& twin);
   /// verdict.json.
   [[nodiscard]] Result<void> write_verdict(const Verdict& verdict);
   /// report.html.
@@ -88,6 +92,7 @@ struct Session {
   std::optional<TodCurve> curve;  ///< as it was fitted; nothing where the run ended before
   std::optional<TodCurve> twin;
   std::optional<Comparison> comparison;
+  std::optional<SessionMeasures> measures;  ///< physical; nothing where none was asked for
   std::optional<Verdict> verdict;    ///< as it was stored; nothing in an old session, or where the run was cut off
   std::optional<CostFrontier> cost;  ///< what accuracy costs, where it was measured for this session
   /// Of the manifest that vouches for these values (ManifestCheck); empty where none does.

@@ -24,13 +24,14 @@ BEGIN {
   may["tod/psychometric"] = core " tod/presentation"
   may["tod/schedule"] = core " tod/plate tod/presentation tod/psychometric"
   may["tod/measurement"] = hvs " tod/plate tod/presentation tod/registration tod/schedule tod/measures"
+  may["tod/camera_measures"] = hvs " tod/plate tod/presentation tod/registration tod/schedule tod/measurement tod/measures"
   may["tod/comparison"] = core " tod/psychometric"
   may["tod/adequacy"] = core " tod/psychometric"
   may["tod/observer_fit"] = hvs " tod/plate tod/psychometric"
   may["tod/range"] = core " hvs/shape tod/psychometric"
   may["tod/measures"] = core
   may["tod/instruments"] = core " tod/plate tod/presentation"
-  tod = hvs " tod/plate tod/pattern tod/presentation tod/registration tod/psychometric tod/schedule tod/measurement tod/comparison tod/adequacy tod/observer_fit tod/range tod/measures"
+  tod = hvs " tod/plate tod/pattern tod/presentation tod/registration tod/psychometric tod/schedule tod/measurement tod/comparison tod/adequacy tod/observer_fit tod/range tod/measures tod/camera_measures"
   may["sim_devices/scene"] = hvs " tod/plate"
   may["sim_devices/atmosphere"] = core " tod/range"
   may["sim_devices/module"] = core

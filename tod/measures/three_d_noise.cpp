@@ -155,6 +155,21 @@ ComponentEstimate estimate_of(const NoiseTable& table, NoiseComponent component)
   return estimate;
 }
 
+ComponentEstimate temporal_variance(const NoiseTable& table) {
+  ComponentEstimate estimate;
+  double below = 0, above = 0;
+  for (const NoiseComponent of : {t, tv, th, tvh}) {
+    const double freedom = table.degrees_of_freedom[of];
+    const double part = table.mean_squares[of] * freedom / (table.rows * table.columns * (table.frames - 1.0));
+    const Reach reach = reach_of(freedom);
+    estimate.variance += part;
+    below += std::pow(reach.down * part, 2), above += std::pow(reach.up * part, 2);
+  }
+  estimate.low = estimate.variance - std::sqrt(below);
+  estimate.high = estimate.variance + std::sqrt(above);
+  return estimate;
+}
+
 template <typename Pixel>
 Result<void> NoiseCube::add_frame(const cv::Mat_<Pixel>& frame) {
   if (frame.empty()) return fail(ErrorCode::invalid_input, "an empty frame");
@@ -222,6 +237,10 @@ Result<void> NoiseCube::add(const cv::Mat1d& frame) {
 }
 
 Result<NoiseTable> NoiseCube::table() const {
+  return table_without(cv::Mat1d::zeros(first_.size()));
+}
+
+Result<NoiseTable> NoiseCube::table_without(const cv::Mat1d& fixed_picture) const {
   if (frames_ < 2 || first_.rows < 2 || first_.cols < 2)
     return fail(ErrorCode::invalid_input, "3D noise needs at least two frames of two rows and two columns");
   const double n = frames_, m = first_.rows, l = first_.cols;
@@ -232,7 +251,7 @@ Result<NoiseTable> NoiseCube::table() const {
   const double mean = std::accumulate(frame_means_.begin(), frame_means_.end(), 0.0) / n;
   std::vector<double> about_mean = frame_means_;
   for (double& value : about_mean) value -= mean;
-  const FixedSquares fixed = fixed_squares(first_ + change_ / n);
+  const FixedSquares fixed = fixed_squares(mean_frame() - fixed_picture);
   NoiseTable table;
   table.frames = frames_, table.rows = first_.rows, table.columns = first_.cols;
   ByComponent& freedom = table.degrees_of_freedom;
@@ -261,6 +280,13 @@ std::optional<int> NoiseCube::abrupt_change() const {
     if (ratio > least_ratio && cdf(complement(ratios, ratio)) < by_chance / frames_) return static_cast<int>(k) + 1;
   }
   return std::nullopt;
+}
+
+std::optional<double> NoiseCube::lag1_correlation() const {
+  const auto found = table();
+  if (frames_ < 5 || !found || !(found->mean_squares[tvh] > 0)) return std::nullopt;
+  const double step = std::accumulate(steps_.begin(), steps_.end(), 0.0) / static_cast<double>(steps_.size());
+  return 1 - step / (2 * found->mean_squares[tvh]);
 }
 
 double ThreeDNoise::temporal() const {

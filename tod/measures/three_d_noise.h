@@ -69,6 +69,9 @@ struct ComponentEstimate {
 };
 
 [[nodiscard]] ComponentEstimate estimate_of(const NoiseTable& table, NoiseComponent component);
+/// Everything that changes in time: the mean variance of the pixels over frames (t, tv, th and tvh together), with the
+/// interval of a sum of mean squares (Graybill and Wang 1980).
+[[nodiscard]] ComponentEstimate temporal_variance(const NoiseTable& table);
 
 /// Takes the frames of a table one after the other and keeps none of them: memory is that of three pictures in double
 /// precision. A fixed scene or pattern and changes of whole frames cost no precision of the other components. One
@@ -82,6 +85,14 @@ class NoiseCube {
   [[nodiscard]] int frames() const { return frames_; }
   /// `invalid_input`: fewer than two frames, rows or columns.
   [[nodiscard]] Result<NoiseTable> table() const;
+  /// The same without a fixed picture, such as the shading of the field: it leaves v, h and vh. Precondition: of the
+  /// frames' size.
+  [[nodiscard]] Result<NoiseTable> table_without(const cv::Mat1d& fixed) const;
+  /// Over all frames. Precondition: there is one.
+  [[nodiscard]] cv::Mat1d mean_frame() const { return first_ + change_ / frames_; }
+  /// Of a pixel in successive frames, rows, columns and whole frames left out; too low by about 1 / frames. Nothing: no
+  /// noise, or fewer than five frames.
+  [[nodiscard]] std::optional<double> lag1_correlation() const;
   /// The first frame that differs from the one before it by more than the others do, pixel by pixel: a correction lies
   /// between them, or the scene moved. Told by the mean square of the difference without its rows, columns and mean,
   /// which is the same for every pair however the noise remembers: more than 1.69 of the median pair's, and in less

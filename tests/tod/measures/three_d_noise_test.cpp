@@ -8,6 +8,7 @@
 
 #include "tests/tod/measures/measures_reference.h"
 #include "tests/tod/measures/simulated_cube.h"
+#include "tod/measures/shading.h"
 
 namespace todbench {
 namespace {
@@ -132,6 +133,44 @@ TEST(NoiseCube, SeesThatThePatternChangedAndTakesNoNoiseForIt) {
     EXPECT_EQ(still.abrupt_change(), std::nullopt) << seed;
     EXPECT_EQ(corrected.abrupt_change(), 9) << seed;
   }
+}
+
+TEST(NoiseCube, HasTheMeanVarianceOfThePixelsAsWhatChangesInTime) {
+  for (const auto& reference : test::reference_cases("sitf_netd", "netd")) {
+    const NoiseTable table = table_of(test::frames_of<double>(reference));
+
+    const ComponentEstimate found = temporal_variance(table);
+
+    const double sd = reference["temporal_sd_rms"];
+    EXPECT_NEAR(found.variance, sd * sd, 1e-9 * sd * sd);
+    EXPECT_LT(found.low, found.variance);
+    EXPECT_GT(found.high, found.variance);
+  }
+}
+
+TEST(NoiseCube, LeavesAShadingOutOfTheFixedComponentsOnly) {
+  ByComponent sd;
+  sd[vh] = 3, sd[tvh] = 5;
+  const std::vector<cv::Mat1d> flat = test::simulated_cube(8, 30, 40, sd, 1);
+  NoiseCube plain, shaded;
+  cv::Mat1d bowl(30, 40);
+  for (int y = 0; y < bowl.rows; ++y) {
+    for (int x = 0; x < bowl.cols; ++x) bowl(y, x) = 0.1 * (x - 12) * (x - 12) + 2 * y - 0.05 * x * y;
+  }
+
+  for (const auto& frame : flat) {
+    ASSERT_TRUE(plain.add(frame));
+    ASSERT_TRUE(shaded.add(cv::Mat1d(frame + bowl)));
+  }
+  const auto with = shaded.table_without(shading_of(shaded.mean_frame()).surface).value();
+  const auto without = plain.table_without(shading_of(plain.mean_frame()).surface).value();
+
+  // A surface of second order is taken out to the last digits, whatever stands on it.
+  for (const NoiseComponent component : noise_components)
+    EXPECT_NEAR(with.mean_squares[component], without.mean_squares[component], 1e-8 * without.mean_squares[component]);
+  // The surface found is the one put in, not the pattern.
+  EXPECT_GT(shading_of(shaded.mean_frame()).range, 60);
+  EXPECT_LT(shading_of(plain.mean_frame()).range, 4);
 }
 
 TEST(NoiseCube, RefusesWhatIsNoTable) {

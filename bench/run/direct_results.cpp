@@ -1,0 +1,35 @@
+#include "bench/run/direct_results.h"
+
+#include <utility>
+
+#include "bench/run/twin_shapes.h"
+#include "hvs/observer/template_observer.h"
+
+namespace todbench {
+
+DirectResults direct_results(const TodCurve& curve, const ExperimentInputs& inputs,
+                             const std::map<double, double>& shown_delta_t_k, std::uint64_t seed,
+                             std::stop_token stop) {
+  TemplateObserver observer(inputs.observer, triangle_alternatives());
+  const DirectEstimateOptions options = direct_options(curve, inputs, shown_delta_t_k, seed, std::move(stop));
+  std::vector<double> contrasts;
+  for (const auto& point : curve.points) contrasts.push_back(point.delta_t_k);
+  DirectResults results;
+  // Together they share their images. Where one has no threshold the others are estimated alone.
+  std::vector<std::vector<double>> attempts{contrasts};
+  for (std::size_t i = 0; i < attempts.size() && !results.ended_by; ++i) {
+    auto found = direct_estimate(inputs.sensor, inputs.effects, observer, attempts[i], options);
+    if (found) {
+      for (std::size_t k = 0; k < found->size(); ++k) results.points[attempts[i][k]] = (*found)[k];
+    } else if (found.error().code == ErrorCode::interrupted) {
+      results.ended_by = found.error();
+    } else if (attempts[i].size() > 1) {
+      for (const double contrast : contrasts) attempts.push_back({contrast});
+    } else {
+      results.notes.push_back("no direct estimate: " + found.error().message);
+    }
+  }
+  return results;
+}
+
+}  // namespace todbench

@@ -1,0 +1,30 @@
+// The physical measures that a plan asks for, of the camera and of its simulated twin.
+#pragma once
+
+#include <optional>
+#include <stop_token>
+
+#include "bench/run/devices.h"
+#include "bench/run/experiment_inputs.h"
+#include "bench/run/session_frame.h"
+#include "tod/camera_measures/camera_measures.h"
+
+namespace todbench {
+
+/// The plan asks for a measure.
+[[nodiscard]] bool measures_asked(const Plan& plan);
+
+/// With the bench of the trials, after them; `options` are those of the trials. What cannot be measured is a reason in
+/// the result and a note. Nothing: none is asked for. Fails with `interrupted` only.
+[[nodiscard]] Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan,
+                                                                      const MeasurementOptions& options,
+                                                                      OpenedBench& bench, const SessionFrame& frame,
+                                                                      std::stop_token stop);
+
+/// The same of the plan's sensor as it is described, with every effect: also with those that the planner leaves out of
+/// the trials.
+[[nodiscard]] Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loaded,
+                                                                       const ExperimentInputs& inputs,
+                                                                       const SessionFrame& frame, std::stop_token stop);
+
+}  // namespace todbench

@@ -1,0 +1,41 @@
+// Physical measures of a session: measures.json, and the key "measures" on standard output.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "acquisition/core/result.h"
+#include "bench/text/json.h"
+#include "tod/camera_measures/camera_measures.h"
+
+namespace todbench {
+
+/// One number with what has to stand beside it.
+struct MeasureLine {
+  std::string measure;  ///< "netd", "noise_tvh", "transfer_slope", ...
+  std::string unit;
+  std::optional<double> value{};
+  Interval ci95{};
+  std::string conditions{};
+};
+
+/// Everything that was measured of one camera, and why something was not.
+struct MeasureLines {
+  std::vector<MeasureLine> lines;
+  std::vector<std::string> reasons;
+};
+[[nodiscard]] MeasureLines measure_lines(const CameraMeasures& measures);
+
+/// Those of a session: of the camera (or of the simulated sensor alone) and of the twin.
+struct SessionMeasures {
+  std::optional<MeasureLines> main;
+  std::optional<MeasureLines> twin;
+};
+
+/// {"main": {"quantities": [...], "noise": {...}, "transfer": {...}, "reasons": [...]}, "twin": the same or null}
+[[nodiscard]] Json measures_json(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin);
+/// `invalid_input`, naming the key, for a record that is not complete or of other types.
+[[nodiscard]] Result<SessionMeasures> measures_from(const Json& record);
+
+}  // namespace todbench

@@ -1,0 +1,263 @@
+#include "tod/camera_measures/camera_measures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tod/measurement/target_change.h"
+#include "tod/measures/pixel_noise.h"
+#include "tod/measures/shading.h"
+#include "tod/registration/registration.h"
+
+namespace todbench {
+namespace {
+
+constexpr int least_side_px = 8;
+constexpr int attempts = 3;  // to take a cube with no correction in it
+
+class Run {
+ public:
+  Run(FrameSource& source, Target& target, const CameraMeasuresOptions& options, MeasurementHost& host,
+      std::stop_token stop)
+      : source_(source),
+        target_(target),
+        options_(options),
+        host_(host),
+        stop_(std::move(stop)),
+        taker_(source, taker_options(options.measurement, source.info())) {}
+
+  Result<CameraMeasures> operator()() {
+    CameraMeasures measures;
+    const auto keep = [&](const char* what, const Error& error) -> Result<void> {
+      if (error.code == ErrorCode::interrupted) return tl::unexpected(error);
+      measures.reasons.push_back(std::string(what) + ": " + error.message);
+      return {};
+    };
+    auto found = locate();
+    if (!found) {
+      if (auto kept = keep("physical measures", found.error()); !kept) return tl::unexpected(kept.error());
+      return measures;
+    }
+    if (options_.transfer) {
+      auto transfer = measure_transfer();
+      if (transfer)
+        measures.transfer = *std::move(transfer);
+      else if (auto kept = keep("signal transfer", transfer.error()); !kept)
+        return tl::unexpected(kept.error());
+    }
+    if (options_.noise) {
+      auto noise = measure_noise();
+      if (noise)
+        measures.noise = *std::move(noise);
+      else if (auto kept = keep("noise", noise.error()); !kept)
+        return tl::unexpected(kept.error());
+    }
+    return measures;
+  }
+
+ private:
+  static FrameTakerOptions taker_options(const MeasurementOptions& options, const SourceInfo& info) {
+    FrameTakerOptions out{.integrity = options.integrity,
+                          .frames_after_change = options.frames_after_change,
+                          .nuc_wait_s = options.nuc_wait_s,
+                          .max_rejected_share = options.max_rejected_share,
+                          .frame_timeout = options.frame_timeout};
+    out.integrity.width = info.width;
+    out.integrity.height = info.height;
+    return out;
+  }
+
+  [[nodiscard]] const TargetPlate& plate() const { return options_.measurement.plates.front(); }
+
+  /// Shows the first plate at a contrast; what the target said.
+  Result<PresentedTarget> show(double delta_t_k) {
+    if (stop_.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+    auto change = change_target(target_, taker_, host_, {plate().name, Mounting::identity, delta_t_k, {0, 0}}, stop_);
+    if (!change) return tl::unexpected(change.error());
+    if (!change->frames) return tl::unexpected(change->frames.error());
+    if (!change->presented) return fail("presenting the target", change->presented.error());
+    const auto there_ns = host_.now_ns(Moment::scene_changed);
+    if (!there_ns) return tl::unexpected(there_ns.error());
+    taker_.scene_changed(*there_ns);
+    return *change->presented;
+  }
+
+  /// Where the plate is, at the contrast that shows it best.
+  Result<void> locate() {
+    double largest = 0;
+    for (const double step : options_.transfer_steps_k) largest = std::abs(step) > std::abs(largest) ? step : largest;
+    if (largest == 0) return fail(ErrorCode::invalid_input, "no contrast shows where the plate is");
+    if (auto shown = show(largest); !shown) return tl::unexpected(shown.error());
+    auto picture = taker_.average(options_.measurement.registration_frames, stop_);
+    if (!picture) return tl::unexpected(picture.error());
+    RegistrationOptions registration = options_.measurement.registration;
+    registration.expected_scale_px_per_mm = 1 / (options_.measurement.distance_m * options_.measurement.ifov_mrad);
+    auto found = register_plate(picture->kelvin, plate(), registration);
+    if (!found) return fail("finding the plate", found.error());
+    where_ = *found;
+    return {};
+  }
+
+  Result<TransferMeasure> measure_transfer() {
+    TransferMeasure transfer;
+    transfer.frames_each = options_.measurement.contrast_frames;
+    const auto response = options_.measurement.contrast_response.find(plate().name);
+    const double divisor = response == options_.measurement.contrast_response.end() ? 1 : response->second;
+    for (const double set_k : options_.transfer_steps_k) {
+      const auto shown = show(set_k);
+      if (!shown) return tl::unexpected(shown.error());
+      auto picture = taker_.average(options_.measurement.contrast_frames, stop_);
+      if (!picture) return tl::unexpected(picture.error());
+      const auto seen = effective_contrast(picture->kelvin, plate(), where_, options_.measurement.min_reference_px);
+      if (!seen) return tl::unexpected(seen.error());
+      transfer.steps.push_back({set_k, shown->state.delta_t_k, seen->value / divisor, seen->standard_error / divisor});
+    }
+    std::vector<TemperatureStep> steps;
+    const bool known = std::all_of(transfer.steps.begin(), transfer.steps.end(),
+                                   [](const TransferStep& step) { return step.seen_u_k > 0; });
+    for (const TransferStep& step : transfer.steps)
+      steps.push_back({step.said_delta_t_k, step.seen_delta_t_k, known ? std::optional(step.seen_u_k) : std::nullopt});
+    auto line = signal_transfer(steps);
+    if (!line) return tl::unexpected(line.error());
+    transfer.line = *std::move(line);
+    return transfer;
+  }
+
+  /// The upright rectangle of the picture that the plate covers, without its rim.
+  Result<cv::Rect> field() const {
+    const double w = plate().width_mm / 2, h = plate().height_mm / 2;
+    const cv::Point2d corners[] = {where_.pixel({-w, -h}), where_.pixel({w, -h}), where_.pixel({-w, h}),
+                                   where_.pixel({w, h})};
+    constexpr double rim_px = 2;
+    const double left = std::max(corners[0].x, corners[2].x) + rim_px;
+    const double right = std::min(corners[1].x, corners[3].x) - rim_px;
+    const double top = std::max(corners[0].y, corners[1].y) + rim_px;
+    const double bottom = std::min(corners[2].y, corners[3].y) - rim_px;
+    const int x0 = std::max(0, static_cast<int>(std::ceil(left))), y0 = std::max(0, static_cast<int>(std::ceil(top)));
+    const int x1 = std::min(source_.info().width, static_cast<int>(std::floor(right)));
+    const int y1 = std::min(source_.info().height, static_cast<int>(std::floor(bottom)));
+    if (x1 - x0 < least_side_px || y1 - y0 < least_side_px)
+      return fail(ErrorCode::invalid_input, "the plate covers too little of the picture");
+    return cv::Rect(x0, y0, x1 - x0, y1 - y0);
+  }
+
+  /// Lets a camera that is told when to correct itself do so before the cube.
+  Result<void> correct() {
+    if (options_.measurement.nuc_interval_s <= 0) return {};
+    if (auto corrected = taker_.correct_nonuniformity(); !corrected) {
+      // A camera that takes no command corrects itself; what it tells of that is seen below.
+      if (corrected.error().code == ErrorCode::invalid_input) return {};
+      return corrected;
+    }
+    const auto corrected_ns = host_.now_ns(Moment::corrected);
+    if (!corrected_ns) return tl::unexpected(corrected_ns.error());
+    taker_.corrected(*corrected_ns);
+    return {};
+  }
+
+  struct Cube {
+    NoiseCube frames;
+    NoiseMeasure measure;
+  };
+
+  /// Frames with no correction between them; nothing where one came.
+  Result<std::optional<Cube>> take_cube(const cv::Rect& field) {
+    Cube cube;
+    double last_s = -1;
+    for (int k = 0; k < options_.noise_frames; ++k) {
+      const auto frame = taker_.next(stop_);
+      if (!frame) return tl::unexpected(frame.error());
+      const double since_s = taker_.since_nuc_s(*frame);
+      if (k > 0 && since_s >= 0 && (last_s < 0 || since_s < last_s)) return std::nullopt;
+      last_s = since_s;
+      const auto kelvin = window_kelvin(*frame, field);
+      if (!kelvin) return tl::unexpected(kelvin.error());
+      if (auto added = cube.frames.add(*kelvin); !added) return tl::unexpected(added.error());
+      if (k == 0) cube.measure.first_frame = frame->sequence;
+      cube.measure.last_frame = frame->sequence;
+      if (since_s >= 0) cube.measure.since_correction_s = since_s;
+    }
+    return cube;
+  }
+
+  Result<NoiseMeasure> measure_noise() {
+    const auto where = field();
+    if (!where) return tl::unexpected(where.error());
+    if (auto shown = show(0); !shown) return tl::unexpected(shown.error());
+    if (auto corrected = correct(); !corrected) return tl::unexpected(corrected.error());
+    std::optional<Cube> cube;
+    for (int attempt = 0; attempt < attempts && !cube; ++attempt) {
+      auto taken = take_cube(*where);
+      if (!taken) return tl::unexpected(taken.error());
+      cube = *std::move(taken);
+    }
+    if (!cube) return fail(ErrorCode::integrity, "the camera corrects itself too often for a cube of frames");
+    if (const auto change = cube->frames.abrupt_change())
+      return fail(ErrorCode::integrity, fmt::format("the picture changed before frame {} of the cube", *change + 1));
+    return summed_up(*cube);
+  }
+
+  Result<NoiseMeasure> summed_up(const Cube& cube) const {
+    NoiseMeasure noise = cube.measure;
+    const cv::Mat1d mean = cube.frames.mean_frame();
+    const Shading shading = shading_of(mean);
+    const auto table = cube.frames.table_without(shading.surface);
+    if (!table) return tl::unexpected(table.error());
+    noise.table = *table;
+    noise.frames = table->frames, noise.rows = table->rows, noise.columns = table->columns;
+    noise.mean_k = cv::mean(mean)[0];
+    noise.shading_range_k = shading.range, noise.shading_sd_k = shading.sd;
+    noise.lag1_correlation = cube.frames.lag1_correlation();
+    const auto& scale = source_.info().scale;
+    const auto counts = scale.counts(noise.mean_k);
+    const auto per_count = counts ? scale.kelvin_per_count(*counts) : std::nullopt;
+    if (per_count && *per_count > 0)
+      noise.noise_counts = std::sqrt(std::max(0.0, temporal_variance(*table).variance)) / *per_count;
+    return noise;
+  }
+
+  FrameSource& source_;
+  Target& target_;
+  const CameraMeasuresOptions& options_;
+  MeasurementHost& host_;
+  std::stop_token stop_;
+  FrameTaker taker_;
+  Registration where_;
+};
+
+}  // namespace
+
+std::optional<ComponentEstimate> CameraMeasures::temporal_variance_k2() const {
+  if (!noise) return std::nullopt;
+  return temporal_variance(noise->table);
+}
+
+std::optional<double> CameraMeasures::netd_k() const {
+  if (!noise || !transfer || !(transfer->line.slope > 0)) return std::nullopt;
+  if (noise->noise_counts && *noise->noise_counts < least_measurable_noise_counts) return std::nullopt;
+  return std::sqrt(std::max(0.0, temporal_variance_k2()->variance)) / transfer->line.slope;
+}
+
+std::optional<double> CameraMeasures::netd_relative_u() const {
+  const auto netd = netd_k();
+  if (!netd || !(*netd > 0)) return std::nullopt;
+  const ComponentEstimate variance = *temporal_variance_k2();
+  const double of_noise = 0.25 * (variance.high - variance.low) / 1.96 / variance.variance;
+  return std::hypot(of_noise, transfer->line.slope_u / transfer->line.slope);
+}
+
+Result<CameraMeasures> measure_camera(FrameSource& source, Target& target, const CameraMeasuresOptions& options,
+                                      MeasurementHost& host, std::stop_token stop) {
+  if (options.measurement.plates.empty()) return fail(ErrorCode::invalid_input, "there is no plate to show");
+  if (auto started = source.start(); !started) {
+    CameraMeasures none;
+    none.reasons.push_back("physical measures: " + started.error().message);
+    return none;
+  }
+  auto measures = Run(source, target, options, host, std::move(stop))();
+  source.stop();
+  return measures;
+}
+
+}  // namespace todbench

@@ -1,0 +1,72 @@
+// Physical measures of a camera in front of the target of its TOD measurement: the same source, the same target.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "acquisition/core/frame_source.h"
+#include "tod/measurement/measurement.h"
+#include "tod/measures/signal_transfer.h"
+#include "tod/measures/three_d_noise.h"
+
+namespace todbench {
+
+struct CameraMeasuresOptions {
+  bool noise = false;                    ///< temporal noise, NETD and 3-D noise, at a contrast of 0
+  int noise_frames = 64;                 ///< of the cube, at least 5
+  bool transfer = false;                 ///< signal transfer from the steps below
+  std::vector<double> transfer_steps_k;  ///< contrasts that are shown, three or more
+  /// Plates, frames to average, corrections, timeouts and integrity are those of the TOD measurement; the first plate
+  /// in identity mounting is shown.
+  MeasurementOptions measurement;
+};
+
+/// Of a cube of frames of the plate at a contrast of 0, in kelvin of the camera's own scale.
+struct NoiseMeasure {
+  int frames = 0, rows = 0, columns = 0;  ///< of the part of the picture that the plate covers
+  std::uint64_t first_frame = 0, last_frame = 0;
+  std::optional<double> since_correction_s{};  ///< at the last frame; nothing: no correction is known
+  double mean_k = 0;                           ///< temperature that the camera shows
+  NoiseTable table;                            ///< without shading
+  double shading_range_k = 0, shading_sd_k = 0;
+  std::optional<double> lag1_correlation{};
+  std::optional<double> noise_counts{};  ///< temporal, in steps of the camera's counts; nothing: not known
+};
+
+/// One step of the signal transfer.
+struct TransferStep {
+  double set_delta_t_k = 0, said_delta_t_k = 0;  ///< what the target was told, and what it answered
+  double seen_delta_t_k = 0, seen_u_k = 0;       ///< by the camera's scale; u from the scatter over triangles
+};
+
+struct TransferMeasure {
+  int frames_each = 0;
+  std::vector<TransferStep> steps;
+  SignalTransfer line;  ///< seen over said: 1 where the camera's temperature scale is right
+};
+
+/// What was measured. A measure that was asked for and is not there has its reason in `reasons`.
+struct CameraMeasures {
+  std::optional<NoiseMeasure> noise{};
+  std::optional<TransferMeasure> transfer{};
+  std::vector<std::string> reasons{};  ///< sentences
+
+  /// Temporal noise of a pixel in kelvin of the camera's scale, with its 95 % interval.
+  [[nodiscard]] std::optional<ComponentEstimate> temporal_variance_k2() const;
+  /// Temporal noise over the slope of the signal transfer; nothing without both, or where the noise is below half a
+  /// count and cannot be measured.
+  [[nodiscard]] std::optional<double> netd_k() const;
+  /// Relative standard uncertainty of it: of the noise (half the interval over 1.96) and of the slope.
+  [[nodiscard]] std::optional<double> netd_relative_u() const;
+};
+
+/// Starts the source, measures and stops it. What cannot be measured is a reason and no failure; a run that is stopped
+/// is `interrupted`. `host` is lent for the call.
+[[nodiscard]] Result<CameraMeasures> measure_camera(FrameSource& source, Target& target,
+                                                    const CameraMeasuresOptions& options, MeasurementHost& host,
+                                                    std::stop_token stop);
+
+}  // namespace todbench

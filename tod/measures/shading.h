@@ -1,0 +1,18 @@
+// What changes slowly over a flat field: optics, shutter and housing, not the pixels.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+namespace todbench {
+
+/// A surface of second order through a picture, by least squares.
+struct Shading {
+  cv::Mat1d surface;  ///< without its mean
+  double range = 0;   ///< largest minus smallest value
+  double sd = 0;      ///< over the pixels
+};
+
+/// Precondition: at least three rows and columns, finite.
+[[nodiscard]] Shading shading_of(const cv::Mat1d& picture);
+
+}  // namespace todbench
