@@ -27,6 +27,7 @@ struct GradedDesign {
   int phases = 12;  ///< as in the demonstration; 96 presentations of 20 triangles at each contrast
   int frames = 4;
   int microscan = 1;
+  std::vector<double> delta_t_k{16.9, 1.93, 0.23};
 };
 
 /// One contrast of one run by one estimator. Percentages are 100 ln of a ratio.
@@ -43,6 +44,7 @@ inline Plan plan_of(const GradedDesign& design, std::uint64_t seed) {
   plan.name = "graded";
   plan.seed = seed;
   plan.simulation.accuracy = "draft";  // of the pictures: 16 wavelengths less change nothing that is compared
+  plan.target.delta_t_k = design.delta_t_k;
   plan.simulation.phases = design.phases;
   plan.simulation.microscan = design.microscan;
   plan.schedule.answers = AnswerKind::graded;
