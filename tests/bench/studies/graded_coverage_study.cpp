@@ -1,0 +1,71 @@
+// Coverage of the true S75 over whole simulated runs, graded answers beside right and wrong ones of the same runs.
+// TODBENCH_STUDY_FOLDER: where runs are kept; what is there is not made again. TODBENCH_STUDY_RUNS: how many of each
+// design (600 and 200 without it). Prints the tables of docs/uncertainty.md.
+#include <cstdio>
+#include <cstdlib>
+
+#include "tests/bench/studies/graded_runs.h"
+#include "tests/support/temporary_folder.h"
+
+namespace todbench::testing {
+namespace {
+
+struct Studied {
+  GradedDesign design;
+  std::uint64_t runs = 200;
+};
+
+SensorSpec with(void (*change)(SensorSpec&)) {
+  SensorSpec sensor;
+  change(sensor);
+  return sensor;
+}
+
+/// A camera that is not as its twin.
+Studied other_camera(const std::string& name, void (*change)(SensorSpec&)) {
+  return {{.name = name, .camera = with(change), .twin = {}}};
+}
+
+std::vector<Studied> designs() {
+  const SensorSpec pattern = with([](SensorSpec& s) { s.fixed_pattern_k = 0.1; });
+  const SensorSpec rounded = with([](SensorSpec& s) { s.kelvin_per_count = s.netd_k; });
+  return {{{.name = "demonstration"}, 600},
+          {{.name = "quarter", .phases = 3}},
+          {{.name = "fixed pattern 0.1 K", .camera = pattern, .twin = pattern}},
+          {{.name = "rounding to one sigma", .camera = rounded, .twin = rounded}},
+          {{.name = "microscan", .microscan = 2}},
+          other_camera("noise 5 % above the twin", [](SensorSpec& s) { s.netd_k *= 1.05; }),
+          other_camera("noise 20 % above the twin", [](SensorSpec& s) { s.netd_k *= 1.2; }),
+          other_camera("f-number 20 % above the twin", [](SensorSpec& s) { s.f_number *= 1.2; }),
+          other_camera("detector 5 % below the twin", [](SensorSpec& s) { s.detector_um *= 0.95; })};
+}
+
+TEST(GradedCoverage, OfTheTruthOverWholeRuns) {
+  const TemporaryFolder temporary;
+  const char* kept = std::getenv("TODBENCH_STUDY_FOLDER");
+  const char* asked = std::getenv("TODBENCH_STUDY_RUNS");
+  const std::string folder = kept != nullptr ? kept : temporary.path().string();
+  GradedRecord record(folder + "/graded_runs.csv");
+  std::printf("| design | contrast | estimator | runs | bias | scatter | stated | half-width | coverage | second |\n");
+  for (const auto& [design, all] : designs()) {
+    const std::uint64_t runs = asked != nullptr ? std::strtoull(asked, nullptr, 10) : all;
+    for (std::uint64_t seed = 1; seed <= runs; ++seed)
+      if (!record.has(design.name, seed)) record.append(results_of(design, seed));
+    const auto truth = true_s75_mrad(design, {16.9, 1.93, 0.23}, 3);
+    for (const double contrast : {16.9, 1.93, 0.23}) {
+      for (const char* estimator : {"binary weibull", "binary twin-shape", "graded weibull", "graded twin-shape"}) {
+        const GradedSummary s = summary_of(record.rows(), design.name, contrast, estimator, truth.at(contrast));
+        std::printf("| %s | %g K | %s | %d | %+.2f %% | %.2f %% | %.2f %% | %.2f %% | %.3f | %.2f |\n",
+                    design.name.c_str(), contrast, estimator, s.runs, s.bias_percent, s.scatter_percent,
+                    s.stated_percent, s.half_width_percent, s.coverage, s.slope_fitted);
+        std::fflush(stdout);
+        if (std::string(estimator) != "graded twin-shape") continue;
+        // 93 %, with three standard errors of so many runs.
+        EXPECT_GT(s.coverage, 0.93 - 3 * std::sqrt(0.95 * 0.05 / s.runs)) << design.name << " " << contrast;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace todbench::testing
