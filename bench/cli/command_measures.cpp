@@ -118,8 +118,9 @@ std::optional<std::size_t> column_of(const CsvTable& table, std::initializer_lis
 
 struct StepColumns {
   std::size_t delta_t_k = 0, signal = 0;
-  std::optional<std::size_t> signal_u;
-  std::string unit;
+  std::optional<std::size_t> signal_u{};
+  std::string unit{};
+  std::vector<std::string> unused{};  ///< names of columns that nothing is taken from
 };
 
 Result<StepColumns> step_columns(const CsvTable& table) {
@@ -131,14 +132,20 @@ Result<StepColumns> step_columns(const CsvTable& table) {
     if (std::count(table.header.begin(), table.header.end(), name) > 1)
       return table.wrong(1, "the column '" + one_line(name) + "' is there twice");
   }
-  StepColumns columns{*temperature, *signal, column_of(table, {"counts_se", "counts_u", "signal_u", "signal_se"}), ""};
+  StepColumns columns{*temperature, *signal,
+                      column_of(table, {"counts_se", "counts_u", "u_counts", "signal_u", "signal_se"})};
   columns.unit = table.header[*signal] == "signal_k" ? "K" : table.header[*signal];
+  for (std::size_t i = 0; i < table.header.size(); ++i) {
+    if (i != columns.delta_t_k && i != columns.signal && i != columns.signal_u)
+      columns.unused.push_back(one_line(table.header[i]));
+  }
   return columns;
 }
 
 struct Steps {
   std::vector<TemperatureStep> steps;
   std::string unit;
+  std::vector<std::string> unused;
 };
 
 Result<Steps> read_steps(const std::string& file) {
@@ -150,6 +157,7 @@ Result<Steps> read_steps(const std::string& file) {
   if (!columns) return tl::unexpected(columns.error());
   Steps steps;
   steps.unit = columns->unit;
+  steps.unused = columns->unused;
   for (const CsvRow& row : table->rows) {
     TemperatureStep step;
     const auto number = [&](std::size_t column) -> Result<double> {
@@ -194,6 +202,7 @@ Json sitf_json(const SignalTransfer& line, const Steps& steps, const std::string
 int run_sitf(Console& console, const std::string& file) {
   const auto steps = read_steps(file);
   if (!steps) return report_error(console, steps.error());
+  for (const auto& name : steps->unused) console.note("the column '" + name + "' is not used");
   const auto line = signal_transfer(steps->steps);
   if (!line) return report_error(console, with_context(file, line.error()));
   if (line->p && *line->p < 0.01)

@@ -41,6 +41,26 @@ class Walk {
     take_frames(plate || mounting, contrast);
   }
 
+  /// What [measures] asks for behind the trials, as measure_camera() goes through it.
+  void measure(const TargetState& last, const std::string& first_plate) {
+    const MeasuresPlan& measures = plan_.measures;
+    if (!measures.noise && !measures.transfer) return;
+    const TargetPlan& target = plan_.target;
+    const auto change = [&](double seconds, int frames) {
+      time_.changes_s += seconds;
+      time_.frames += static_cast<std::uint64_t>(plan_.measurement.frames_after_change + frames);
+    };
+    change(std::max({last.plate != first_plate ? target.plate_change_s : 0,
+                     last.mounting != Mounting::identity ? target.mounting_change_s : 0, target.contrast_change_s,
+                     last.shift_mm != cv::Point2d(0, 0) ? target.shift_change_s : 0}),
+           plan_.measurement.registration_frames);
+    if (measures.transfer) {
+      for (std::size_t i = 0; i < measures.transfer_steps_k.size(); ++i)
+        change(target.contrast_change_s, plan_.measurement.contrast_frames);
+    }
+    if (measures.noise) change(target.contrast_change_s, measures.noise_frames);
+  }
+
   [[nodiscard]] BenchTime finished(double frame_rate_hz) {
     // A simulated camera is as fast as the processor, and so is what it looks at.
     if (plan_.target.kind == TargetKind::scene) {
@@ -87,6 +107,7 @@ BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates, d
     walk.present(before, state);
     before = &state;
   }
+  if (before != nullptr && !plates.empty()) walk.measure(*before, plates.front().name);
   return walk.finished(frame_rate_hz);
 }
 

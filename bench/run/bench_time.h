@@ -9,15 +9,17 @@
 
 namespace todbench {
 
-/// Changes of the target and frames of the camera, in the order in which measure() asks for them.
+/// Changes of the target and frames of the camera, in the order in which measure() and then measure_camera() ask for
+/// them.
 struct BenchTime {
   std::uint64_t presentations = 0;
   /// Presentations for which it changes; the first one brings everything.
   std::uint64_t plate_changes = 0, mounting_changes = 0, contrast_changes = 0, shift_changes = 0;
   /// What one presentation changes, changes together: black body and stage settle at the same time, and a hand that
   /// brings another plate holds it as it has to be held. So each presentation takes as long as the slowest of them.
-  double changes_s = 0;
-  std::uint64_t frames = 0;  ///< for registration, contrast and answers, and those discarded after a change
+  double changes_s = 0;  ///< with those of the physical measures
+  /// For registration, contrast, answers and physical measures, and those discarded after a change.
+  std::uint64_t frames = 0;
   double frames_s = 0;
   double corrections_s = 0;  ///< waiting after commanded corrections of the camera
   [[nodiscard]] double total_s() const { return changes_s + frames_s + corrections_s; }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "bench/plan/descriptions.h"
 #include "bench/run/simulated_set_up.h"
 #include "tod/plate/test_pattern.h"
 
@@ -133,6 +134,27 @@ TEST(BenchTime, OfAnAdaptivePlanGrowsWithWhatIsExpectedUpToItsCap) {
   EXPECT_EQ(expecting(48).mounting_changes, 1u);
   EXPECT_LT(expecting(48).total_s(), expecting(96).total_s());
   EXPECT_EQ(expecting(5000).presentations, 500u);
+}
+
+TEST(BenchTimeOfMeasures, AddsTheirStepsAndFrames) {
+  Plan plan = small_plan();
+  plan.target.kind = TargetKind::scpi;
+  plan.camera.ifov_mrad = 1.3;
+  plan.measurement.frames_after_change = 1;
+  const std::vector<TargetPlate> plates{load_plate("tcat-a").value()};
+  const BenchTime trials = bench_time(plan, plates, 50, std::nullopt);
+
+  plan.measures.noise = true;
+  const BenchTime noise = bench_time(plan, plates, 50, std::nullopt);
+  plan.measures.transfer = true;
+  const BenchTime both = bench_time(plan, plates, 50, std::nullopt);
+
+  // To find the plate 3 frames, the cube 64, each of the 6 steps 2; and one that is discarded after each change.
+  EXPECT_EQ(noise.frames - trials.frames, 3 + 64 + 2u);
+  EXPECT_EQ(both.frames - noise.frames, 6 * (2 + 1u));
+  EXPECT_NEAR(both.changes_s - noise.changes_s, 6 * plan.target.contrast_change_s, 1e-9);
+  EXPECT_GE(noise.changes_s - trials.changes_s, 2 * plan.target.contrast_change_s);
+  EXPECT_EQ(both.presentations, trials.presentations);
 }
 
 }  // namespace
