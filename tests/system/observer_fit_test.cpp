@@ -72,10 +72,11 @@ TEST_F(ObserverFitCommand, WritesAnObserverThatPlansTakeWithTheHashesOfItsSessio
   const Json json = one_object(ended);
   EXPECT_EQ(json["parameter_file"], "anna.toml");
   for (const auto& [key, truth] : {std::pair("blur_sigma_samples", 0.5), std::pair("internal_noise", 0.1)}) {
-    // So few answers may leave the lower side open.
-    const Json& side = json["estimates"][key]["ci95"];
-    EXPECT_LT(side[0].is_null() ? 0 : side[0].get<double>(), truth) << key;
-    EXPECT_GT(side[1].get<double>(), truth) << key;
+    // 64 answers; how often intervals hold the truth is what observer_fit_study asks.
+    const Json& estimate = json["estimates"][key];
+    EXPECT_GT(estimate["value"].get<double>(), truth / 3) << key;
+    EXPECT_LT(estimate["value"].get<double>(), 3 * truth) << key;
+    EXPECT_GT(estimate["ci95"][1].get<double>(), estimate["value"].get<double>()) << key;
   }
   EXPECT_EQ(json["correlations"].size(), 1u);
   EXPECT_GT(json["goodness"]["p"], 0.01);
