@@ -75,7 +75,13 @@ ValueMistakes check_frames_per_presentation(const Plan& plan, std::size_t /*row*
 }
 
 ValueMistakes check_estimator(const Plan& plan, std::size_t /*row*/) {
-  if (plan.fit.estimator == FitEstimator::weibull || plan.fit.lapse == 0.0) return {};
+  const bool twin = plan.fit.estimator == FitEstimator::twin_shape;
+  if (!twin && plan.schedule.answers == AnswerKind::graded) {
+    return {{std::nullopt,
+             "answers = \"graded\" needs \"twin-shape\": a Weibull function is off by more than the "
+             "interval of graded answers"}};
+  }
+  if (!twin || plan.fit.lapse == 0.0) return {};
   return {{std::nullopt, "the function of the twin has no lapse: \"twin-shape\" needs lapse = 0"}};
 }
 

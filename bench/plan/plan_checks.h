@@ -25,7 +25,7 @@ using ValueMistakes = std::vector<ValueMistake>;
 [[nodiscard]] ValueMistakes check_force(const Plan& plan, std::size_t row);
 /// More than one only for graded answers: the others are to one frame.
 [[nodiscard]] ValueMistakes check_frames_per_presentation(const Plan& plan, std::size_t row);
-/// The function of the twin has no lapse.
+/// The function of the twin has no lapse; graded answers are not fitted with another.
 [[nodiscard]] ValueMistakes check_estimator(const Plan& plan, std::size_t row);
 /// Three or more that differ.
 [[nodiscard]] ValueMistakes check_transfer_steps(const Plan& plan, std::size_t row);

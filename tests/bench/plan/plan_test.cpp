@@ -49,11 +49,7 @@ Plan unusual_plan() {
   plan.simulation.phases = 64;
   plan.simulation.skip = {Effect::quantisation, Effect::aberration};
   plan.simulation.force = {Effect::detector};
-  plan.schedule = {.kind = ScheduleKind::adaptive,
-                   .half_width_percent = 7.5,
-                   .max_presentations = 321,
-                   .answers = AnswerKind::graded,
-                   .frames_per_presentation = 4};
+  plan.schedule = {.kind = ScheduleKind::adaptive, .half_width_percent = 7.5, .max_presentations = 321};
   plan.fit = {.form = PsychometricForm::acuity, .lapse = std::nullopt};
   plan.limits.acuity = {{-5, 0.4}, {1e-3, 0.1}};
   plan.limits.equivalence_margin_percent = 12.5;
@@ -62,8 +58,16 @@ Plan unusual_plan() {
   return plan;
 }
 
+Plan graded_plan() {
+  Plan plan;
+  plan.schedule.answers = AnswerKind::graded;
+  plan.schedule.frames_per_presentation = 4;
+  plan.fit.estimator = FitEstimator::twin_shape;
+  return plan;
+}
+
 TEST(Plan, WhatIsWrittenReadsBackEqual) {
-  for (const Plan& plan : {Plan{}, unusual_plan()}) {
+  for (const Plan& plan : {Plan{}, unusual_plan(), graded_plan()}) {
     const Result<Plan> back = parse(to_toml(plan));
 
     ASSERT_TRUE(back) << back.error().message << "\n" << to_toml(plan);
@@ -78,7 +82,17 @@ TEST(Plan, SeveralFramesAreForGradedAnswers) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::invalid_input);
   EXPECT_THAT(refused.error().message, HasSubstr("more than one frame needs answers = \"graded\""));
-  EXPECT_TRUE(parse("[schedule]\nframes_per_presentation = 2\nanswers = \"graded\"\n"));
+  EXPECT_TRUE(
+      parse("[schedule]\nframes_per_presentation = 2\nanswers = \"graded\"\n"
+            "[fit]\nestimator = \"twin-shape\"\n"));
+}
+
+TEST(Plan, GradedAnswersAreNotFittedWithAWeibullFunction) {
+  const Result<Plan> refused = parse("[schedule]\nanswers = \"graded\"\n");
+
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::invalid_input);
+  EXPECT_THAT(refused.error().message, HasSubstr("answers = \"graded\" needs \"twin-shape\""));
 }
 
 TEST(Plan, AnEmptyFileIsThePlanOfDefaults) {
