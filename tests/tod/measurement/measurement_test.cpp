@@ -133,6 +133,7 @@ TEST(Measurement, GradedAnswersStandBesideTheSameAnswers) {
     ASSERT_TRUE(one->trials[i].probability_correct && four->trials[i].probability_correct);
     Trial same = one->trials[i];
     same.probability_correct.reset();
+    same.host_time_ns = binary->trials[i].host_time_ns;  // of this host's clock
     EXPECT_EQ(same, binary->trials[i]);
     EXPECT_EQ(four->trials[i].frames, 4);
     const double p = *one->trials[i].probability_correct;
