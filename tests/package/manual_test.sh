@@ -12,7 +12,7 @@ commands=$("$program" complete "")
 for command in $commands; do
   page="$folder/todbench-$command.1"
   [ -s "$page" ] || fail "no page of $command"
-  grep -q "^\.TH TODBENCH\\\\-$(echo "$command" | tr '[:lower:]' '[:upper:]') 1 2026-11-22 " "$page" || fail "$command: $(head -n 1 "$page")"
+  sed 's/\\-/-/g' "$page" | grep -q "^\.TH TODBENCH-$(echo "$command" | tr '[:lower:]' '[:upper:]') 1 2026-11-22 " || fail "$command: $(head -n 1 "$page")"
   "$program" "$command" --help | sed -n 's/^  \(-[^ ]*,\)\{0,1\}\(--[a-z0-9-]*\).*/\2/p' >"$folder/options"
   [ -s "$folder/options" ] || fail "$command: no options in its help"
   while read -r option; do

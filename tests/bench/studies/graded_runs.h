@@ -49,6 +49,7 @@ inline Plan plan_of(const GradedDesign& design, std::uint64_t seed) {
   plan.simulation.microscan = design.microscan;
   plan.schedule.answers = AnswerKind::graded;
   plan.schedule.frames_per_presentation = design.frames;
+  plan.fit.estimator = FitEstimator::twin_shape;
   return plan;
 }
 
