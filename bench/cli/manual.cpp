@@ -51,6 +51,24 @@ std::string page_name(const CLI::App& app, const CLI::App& command) {
   return app.get_name() + "-" + command.get_name();
 }
 
+/// How a command is called: "todbench sweep run [OPTIONS] SWEEP.toml".
+std::string usage_of(const std::string& called, const CLI::App& command) {
+  std::string usage = called + " " + command.get_name();
+  usage += visible_commands(command).empty() ? " [OPTIONS]" : " COMMAND [OPTIONS]";
+  for (const CLI::Option* option : command.get_options()) {
+    if (!option->get_positional()) continue;
+    const std::string name = option->get_name(true);
+    usage += option->get_required() ? " " + name : " [" + name + "]";
+  }
+  return usage;
+}
+
+void add_arguments(ManualPage& page, const CLI::App& command, const std::string& of) {
+  if (auto terms = terms_of(command, true); !terms.empty())
+    page.sections.push_back({.title = "Arguments" + of, .text = "", .terms = std::move(terms)});
+  page.sections.push_back({.title = "Options" + of, .text = "", .terms = terms_of(command, false)});
+}
+
 ManualPage command_page(const CLI::App& app, const CLI::App& command) {
   ManualPage page{.name = page_name(app, command),
                   .sentence = command.get_description(),
@@ -59,16 +77,15 @@ ManualPage command_page(const CLI::App& app, const CLI::App& command) {
                   .synopsis = {},
                   .sections = {},
                   .see_also = {app.get_name()}};
-  std::string usage = app.get_name() + " " + command.get_name() + " [OPTIONS]";
-  for (const CLI::Option* option : command.get_options()) {
-    if (!option->get_positional()) continue;
-    const std::string name = option->get_name(true);
-    usage += option->get_required() ? " " + name : " [" + name + "]";
+  page.synopsis = {usage_of(app.get_name(), command)};
+  add_arguments(page, command, "");
+  for (const CLI::App* below : visible_commands(command)) {
+    const std::string called = app.get_name() + " " + command.get_name();
+    page.synopsis.push_back(usage_of(called, *below));
+    const std::string name = command.get_name() + " " + below->get_name();
+    page.sections.push_back({.title = name, .text = below->get_description() + ".", .terms = {}});
+    add_arguments(page, *below, " of " + name);
   }
-  page.synopsis = {usage};
-  if (auto terms = terms_of(command, true); !terms.empty())
-    page.sections.push_back({.title = "Arguments", .text = "", .terms = std::move(terms)});
-  page.sections.push_back({.title = "Options", .text = "", .terms = terms_of(command, false)});
   page.sections.push_back(exit_status());
   return page;
 }
