@@ -91,15 +91,16 @@ endfunction()
 set(todbench_hang_s 1800)
 
 # todbench_test(NAME SOURCES ... DEPENDS ... [LABELS ...] [SANITIZERS address thread] [SHARDS n | EACH_CASE] [COST s]
-# [PRECOMPILED KIND]): one GoogleTest program.
+# [TIMED] [PRECOMPILED KIND]): one GoogleTest program.
 #   LABELS      of its tests for ctest; the target todbench_tests_LABEL builds the programs with that label
 #   SANITIZERS  a build with a sanitizer has only the programs that name it
 #   SHARDS      ctest runs the program as so many processes with a part of the cases each; one when nothing is said: starting a process
 #               costs more than most cases do
 #   EACH_CASE   ctest runs every case in a process of its own: for programs whose cases take seconds
 #   COST        seconds of the whole program; ctest begins with the longest, so that none runs alone at the end
+#   TIMED       its cases run against real time: ctest runs at most one other program beside it
 function(todbench_test name)
-  cmake_parse_arguments(ARG "EACH_CASE" "COST;SHARDS;PRECOMPILED" "SOURCES;DEPENDS;LABELS;SANITIZERS" ${ARGN})
+  cmake_parse_arguments(ARG "EACH_CASE;TIMED" "COST;SHARDS;PRECOMPILED" "SOURCES;DEPENDS;LABELS;SANITIZERS" ${ARGN})
   foreach(sanitizer address thread)
     if(TODBENCH_SANITIZE MATCHES "${sanitizer}" AND NOT "${sanitizer}" IN_LIST ARG_SANITIZERS)
       return()
@@ -151,5 +152,9 @@ function(todbench_test name)
     add_test(NAME ${test} COMMAND ${name})
     set_tests_properties(${test} PROPERTIES TIMEOUT ${todbench_hang_s} COST ${cost} LABELS "${ARG_LABELS}"
       ENVIRONMENT "${environment};GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${shard}")
+    if(ARG_TIMED)
+      # Three of the four programs that the presets run at a time.
+      set_tests_properties(${test} PROPERTIES PROCESSORS 3)
+    endif()
   endforeach()
 endfunction()

@@ -20,7 +20,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto tick = 5ms, tolerated_delay = 20ms;
+constexpr auto tick = 5ms, tolerated_delay = 10ms;
 constexpr int most_attempts = 4;
 constexpr const char* attempt_variable = "TODBENCH_TEST_ATTEMPT";
 
