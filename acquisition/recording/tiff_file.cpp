@@ -35,4 +35,14 @@ TiffFile::TiffFile(const std::filesystem::path& path, const char* mode) {
   TIFFOpenOptionsFree(options);
 }
 
+TiffPage page_of(const TiffFile& file) {
+  TiffPage page;
+  TIFFGetField(file.get(), TIFFTAG_IMAGEWIDTH, &page.width);
+  TIFFGetField(file.get(), TIFFTAG_IMAGELENGTH, &page.height);
+  TIFFGetFieldDefaulted(file.get(), TIFFTAG_BITSPERSAMPLE, &page.bits);
+  TIFFGetFieldDefaulted(file.get(), TIFFTAG_SAMPLESPERPIXEL, &page.samples);
+  TIFFGetFieldDefaulted(file.get(), TIFFTAG_SAMPLEFORMAT, &page.kind);
+  return page;
+}
+
 }  // namespace todbench

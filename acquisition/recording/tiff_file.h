@@ -3,6 +3,7 @@
 
 #include <tiffio.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -30,5 +31,15 @@ class TiffFile {
   std::string message_;  ///< outlives tiff_
   std::unique_ptr<TIFF, Close> tiff_;
 };
+
+/// What the tags of the current page say; 0 and libtiff's defaults where they say nothing.
+struct TiffPage {
+  std::uint32_t width = 0, height = 0;
+  std::uint16_t bits = 1, samples = 1, kind = SAMPLEFORMAT_UINT;
+
+  /// As large as any picture is.
+  [[nodiscard]] bool has_size() const { return width >= 1 && height >= 1 && width <= 65535 && height <= 65535; }
+};
+[[nodiscard]] TiffPage page_of(const TiffFile& file);
 
 }  // namespace todbench

@@ -51,15 +51,9 @@ std::optional<Samples> samples_of(std::uint16_t kind, std::uint16_t bits) {
 Result<PictureFile> read_tiff_picture(const std::filesystem::path& path) {
   const TiffFile file(path, "r");
   if (file.get() == nullptr) return fail(ErrorCode::invalid_input, file.why("not a TIFF file"));
-  std::uint32_t width = 0, height = 0;
-  std::uint16_t bits = 1, samples = 1, kind = SAMPLEFORMAT_UINT;
-  TIFFGetField(file.get(), TIFFTAG_IMAGEWIDTH, &width);
-  TIFFGetField(file.get(), TIFFTAG_IMAGELENGTH, &height);
-  TIFFGetFieldDefaulted(file.get(), TIFFTAG_BITSPERSAMPLE, &bits);
-  TIFFGetFieldDefaulted(file.get(), TIFFTAG_SAMPLESPERPIXEL, &samples);
-  TIFFGetFieldDefaulted(file.get(), TIFFTAG_SAMPLEFORMAT, &kind);
-  if (width < 1 || height < 1 || width > 65535 || height > 65535)
-    return fail(ErrorCode::invalid_input, "the picture is empty or too large");
+  const TiffPage page = page_of(file);
+  const auto [width, height, bits, samples, kind] = page;
+  if (!page.has_size()) return fail(ErrorCode::invalid_input, "the picture is empty or too large");
   const auto stored = samples_of(kind, bits);
   if (samples != 1 || !stored) {
     return fail(ErrorCode::invalid_input, "the picture has " + std::to_string(samples) + " samples of " +

@@ -15,15 +15,9 @@ namespace {
 
 /// Size of the current page, when it is one that can be read.
 Result<cv::Size> page_size(const TiffFile& file) {
-  std::uint32_t width = 0, height = 0;
-  std::uint16_t bits = 1, samples = 1, kind = SAMPLEFORMAT_UINT;
-  TIFFGetField(file.get(), TIFFTAG_IMAGEWIDTH, &width);
-  TIFFGetField(file.get(), TIFFTAG_IMAGELENGTH, &height);
-  TIFFGetFieldDefaulted(file.get(), TIFFTAG_BITSPERSAMPLE, &bits);
-  TIFFGetFieldDefaulted(file.get(), TIFFTAG_SAMPLESPERPIXEL, &samples);
-  TIFFGetFieldDefaulted(file.get(), TIFFTAG_SAMPLEFORMAT, &kind);
-  if (width < 1 || height < 1 || width > 65535 || height > 65535)
-    return fail(ErrorCode::invalid_input, "a page has no size or is too large");
+  const TiffPage page = page_of(file);
+  const auto [width, height, bits, samples, kind] = page;
+  if (!page.has_size()) return fail(ErrorCode::invalid_input, "a page has no size or is too large");
   if (bits != 16 || samples != 1 || (kind != SAMPLEFORMAT_UINT && kind != SAMPLEFORMAT_VOID)) {
     return fail(ErrorCode::invalid_input, "a page has " + std::to_string(samples) + " samples of " +
                                               std::to_string(bits) +

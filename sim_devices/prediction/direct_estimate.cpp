@@ -317,49 +317,50 @@ Result<ProportionCurve> curve_of(SizeLadder& ladder, const AskedContrast& asked,
   return curve;
 }
 
+/// What `find` (of a ladder, the contrast as asked and the sensor of the conditions) says of every contrast. The
+/// ladders are shared, so that contrasts share their images.
+template <typename Found, typename Find>
+Result<std::vector<Found>> for_every_contrast(const SensorSpec& spec, const SensorPlan& plan,
+                                              TemplateObserver& observer, const std::vector<double>& delta_t_k,
+                                              const DirectEstimateOptions& options, Find find) {
+  const ImageChain chain(spec, plan, options.accuracy, options.motion);
+  TrialConditions conditions = trial_conditions(spec, plan, observer, options);
+  const SensorSpec sensor = conditions.sensor;
+  SizeLadder ladder(chain, observer, conditions, options);
+  conditions.by_pixels = true;
+  SizeLadder pixel_ladder(chain, observer, std::move(conditions), options);
+  std::vector<Found> all;
+  for (const double contrast : delta_t_k) {
+    const auto asked = asked_contrast(sensor, plan, observer.spec(), contrast, options);
+    if (!asked) return tl::unexpected(asked.error());
+    Result<Found> found = find(asked->pixels ? pixel_ladder : ladder, *asked, sensor);
+    if (!found) return tl::unexpected(found.error());
+    all.push_back(*std::move(found));
+  }
+  return all;
+}
+
 }  // namespace
 
 Result<std::vector<DirectPoint>> direct_estimate(const SensorSpec& spec, const SensorPlan& plan,
                                                  TemplateObserver& observer, const std::vector<double>& delta_t_k,
                                                  const DirectEstimateOptions& options) {
-  const ImageChain chain(spec, plan, options.accuracy, options.motion);
-  TrialConditions conditions = trial_conditions(spec, plan, observer, options);
-  const SensorSpec sensor = conditions.sensor;
-  SizeLadder ladder(chain, observer, conditions, options);
-  conditions.by_pixels = true;
-  SizeLadder pixel_ladder(chain, observer, std::move(conditions), options);
-  std::vector<DirectPoint> points;
-  for (const double contrast : delta_t_k) {
-    const auto asked = asked_contrast(sensor, plan, observer.spec(), contrast, options);
-    if (!asked) return tl::unexpected(asked.error());
-    auto point = estimate_contrast(asked->pixels ? pixel_ladder : ladder, *asked, options.accuracy, [&](double s75) {
+  const auto point_of = [&](SizeLadder& ladder, const AskedContrast& asked, const SensorSpec& sensor) {
+    return estimate_contrast(ladder, asked, options.accuracy, [&](double s75) {
       return predicted_direct_seconds(observer.spec(), sensor, s75, Accuracy::max_noise_draws,
                                       options.accuracy.phases_per_axis);
     });
-    if (!point) return tl::unexpected(point.error());
-    points.push_back(std::move(*point));
-  }
-  return points;
+  };
+  return for_every_contrast<DirectPoint>(spec, plan, observer, delta_t_k, options, point_of);
 }
 
 Result<std::vector<ProportionCurve>> proportion_curves(const SensorSpec& spec, const SensorPlan& plan,
                                                        TemplateObserver& observer, const std::vector<double>& delta_t_k,
                                                        const DirectEstimateOptions& options) {
-  const ImageChain chain(spec, plan, options.accuracy, options.motion);
-  TrialConditions conditions = trial_conditions(spec, plan, observer, options);
-  const SensorSpec sensor = conditions.sensor;
-  SizeLadder ladder(chain, observer, conditions, options);
-  conditions.by_pixels = true;
-  SizeLadder pixel_ladder(chain, observer, std::move(conditions), options);
-  std::vector<ProportionCurve> curves;
-  for (const double contrast : delta_t_k) {
-    const auto asked = asked_contrast(sensor, plan, observer.spec(), contrast, options);
-    if (!asked) return tl::unexpected(asked.error());
-    auto curve = curve_of(asked->pixels ? pixel_ladder : ladder, *asked, options.accuracy.noise_draws);
-    if (!curve) return tl::unexpected(curve.error());
-    curves.push_back(std::move(*curve));
-  }
-  return curves;
+  const auto curve = [&](SizeLadder& ladder, const AskedContrast& asked, const SensorSpec&) {
+    return curve_of(ladder, asked, options.accuracy.noise_draws);
+  };
+  return for_every_contrast<ProportionCurve>(spec, plan, observer, delta_t_k, options, curve);
 }
 
 double predicted_direct_seconds(const TemplateObserverSpec& observer, const SensorSpec& sensor, double s75_pitch,
