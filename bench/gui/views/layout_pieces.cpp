@@ -45,6 +45,11 @@ QTableWidget* plain_table(const QStringList& header, const QString& object_name)
   return table;
 }
 
+void wrap_words(QTableWidget& table) {
+  table.setWordWrap(true);
+  table.verticalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
+}
+
 void fill_table(QTableWidget& table, const QList<QStringList>& rows) {
   table.setUpdatesEnabled(false);
   table.setRowCount(static_cast<int>(rows.size()));

@@ -17,6 +17,8 @@ namespace todbench {
 [[nodiscard]] QPushButton* plain_button(const QString& text, const QString& object_name);
 /// A read-only table with a header row.
 [[nodiscard]] QTableWidget* plain_table(const QStringList& header, const QString& object_name);
+/// Cells too narrow for their text show it in several lines; for tables of few rows.
+void wrap_words(QTableWidget& table);
 /// Replaces the rows of a table.
 void fill_table(QTableWidget& table, const QList<QStringList>& rows);
 

@@ -76,9 +76,10 @@ QWidget* ReportView::browser() {
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(title_label("Sessions"));
   sessions_ = plain_table({"Started (UTC)", "Session", "State", "Unit under test"}, "sessionTable");
-  sessions_->setColumnWidth(0, 146);
-  sessions_->setColumnWidth(1, 92);
-  sessions_->setColumnWidth(2, 74);
+  sessions_->setColumnWidth(0, 136);
+  sessions_->setColumnWidth(1, 70);
+  sessions_->setColumnWidth(2, 70);
+  wrap_words(*sessions_);
   layout->addWidget(sessions_, 1);
   auto* buttons = new QHBoxLayout;
   auto* open = primary_button("Open", "openSession");
@@ -130,10 +131,11 @@ QWidget* ReportView::session_panel() {
   ratios_->setColumnWidth(2, 160);
   limits_->setColumnWidth(0, 230);
   limits_->setColumnWidth(1, 200);
-  for (QTableWidget* table : {ratios_, limits_}) {
-    table->setMaximumHeight(132);
-    layout->addWidget(table);
-  }
+  wrap_words(*limits_);
+  ratios_->setMaximumHeight(132);
+  limits_->setMinimumHeight(176);
+  limits_->setMaximumHeight(220);
+  for (QTableWidget* table : {ratios_, limits_}) layout->addWidget(table);
   auto* buttons = new QHBoxLayout;
   export_ = primary_button("Write HTML and PDF", "exportReports");
   page_ = plain_button("Show the PDF", "showPdf");
