@@ -23,7 +23,7 @@ constexpr unsigned transfer_ms = 500;
 /// Answers that are none of ours, or ask for patience, before a camera is given up.
 constexpr int most_other_answers = 20;
 /// Registers of the technology-agnostic bootstrap map, and in the tables it points to.
-constexpr std::uint64_t manifest_register = 0x1D0, own_map_register = 0x1D8, longest_acknowledge = 0x18;
+constexpr std::uint64_t manifest_register = 0x1D0, longest_acknowledge = 0x18;
 constexpr std::uint64_t manifest_entry_bytes = 64;
 /// Of the interface that control messages go to.
 constexpr std::uint8_t vision_class = 0xEF, vision_subclass = 0x05, control_protocol = 0x00;

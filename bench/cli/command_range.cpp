@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
+#include "bench/cli/findings.h"
 #include "bench/cli/range_options.h"
 #include "bench/cli/session_argument.h"
 #include "bench/judgement/verdict.h"
@@ -48,6 +49,7 @@ Json range_json(const TodAnswer& tod, const RangeTask& task) {
   return {{"r75_m", json_number(prediction.r75_m)},
           {"r75_ci95_m", json_interval(prediction.r75_ci95_m)},
           {"reason", prediction.reason.empty() ? Json() : Json(prediction.reason)},
+          {"adequacy", adequacy_json(prediction.adequacy)},
           {"notes", prediction.notes},
           {"observer", tod.observer},
           {"sensor", tod.sensor},
@@ -79,6 +81,7 @@ void print_range(Console& console, const TodAnswer& tod, const RangeTask& task, 
     console.text("75 % correct at " + fixed(prediction.r75_m, 1) + " m, 95 %: " + range(prediction.r75_ci95_m, 1) +
                  " m");
   if (!prediction.reason.empty()) console.text(prediction.reason);
+  print_findings(console, prediction.adequacy, "the TOD curve ");
 }
 
 /// Of the thresholds; the reason why there is none where there are no thresholds.
@@ -168,7 +171,8 @@ int run_range(Console& console, const RangeArguments& arguments) {
     }
   }
   const bool all = std::all_of(models->begin(), models->end(), [](const auto& model) { return model.r75_m; });
-  return exit_code(all ? VerdictKind::pass : VerdictKind::inconclusive);
+  const bool fit = !tod.prediction.adequacy || tod.prediction.adequacy->adequate();
+  return exit_code(all && fit ? VerdictKind::pass : VerdictKind::inconclusive);
 }
 
 }  // namespace

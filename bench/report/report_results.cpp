@@ -271,10 +271,13 @@ Section limits_section(const ReportData& data) {
     section.blocks.emplace_back(Paragraph{missing("the plan asks for no limits")});
   if (!data.verdict || data.verdict->demands.empty()) return section;
   Table rows;
-  rows.header = {"Quantity", "Unit", "Limit", "Result [95 %]", "Verdict", "Reason"};
+  // What changed files say of a limit is no verdict.
+  const bool believed = report_verdict(data) != ReportVerdict::changed;
+  rows.header = {"Quantity", "Unit", "Limit", "Result [95 %]", believed ? "Verdict" : "In the files", "Reason"};
   for (const Demand& demand : data.verdict->demands) {
+    const std::string decision(to_string(demand.decision));
     rows.rows.push_back({plain(title(demand)), plain(row_of(demand.kind).unit), limit_cell(demand), result_cell(demand),
-                         badge(to_string(demand.decision), mood_of(demand.decision)),
+                         believed ? badge(decision, mood_of(demand.decision)) : plain(decision),
                          text_or_missing(demand.reason, "none given")});
   }
   section.blocks.emplace_back(std::move(rows));

@@ -252,6 +252,11 @@ TEST(SimulatedSensor, ThatEndsBelowTheTargetIsNotFitForADecision) {
   const Json& adequacy = json["points"][0]["adequacy"];
   EXPECT_EQ(adequacy["adequate"], false);
   EXPECT_THAT(adequacy["findings"].dump(), ::testing::HasSubstr("\"clipping\"")) << adequacy;
+
+  const Ended ranged = todbench({"range", "--tod", "s", "--size-m", "3", "--delta-t-k", "300", "--json"}, options);
+  EXPECT_EQ(ranged.code, 3) << ranged.err;
+  EXPECT_GT(one_object(ranged)["r75_m"].get<double>(), 0);
+  EXPECT_EQ(one_object(ranged)["adequacy"]["adequate"], false);
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "tod/measures/medians.h"
+
 namespace todbench {
 namespace {
 
@@ -25,13 +27,6 @@ double range_of_moving(const AveragedPicture& picture) {
   if (ranges.empty()) return 0;
   const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
   std::nth_element(ranges.begin(), middle, ranges.end());
-  return *middle;
-}
-
-double median_of(const cv::Mat1d& picture) {
-  std::vector<double> values(picture.begin(), picture.end());
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
 

@@ -5,6 +5,8 @@
 #include <map>
 #include <utility>
 
+#include "tod/measures/medians.h"
+
 namespace todbench {
 namespace {
 
@@ -40,13 +42,6 @@ cv::Mat1d half_squares(std::span<const TimedPicture> pictures, const std::vector
     sum += difference.mul(difference);
   }
   return sum / (2.0 * static_cast<double>(pairs.size()));
-}
-
-double median_of(const cv::Mat1d& picture) {
-  std::vector<double> values(picture.begin(), picture.end());
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Half mean squares at one lag, over usable pixels.

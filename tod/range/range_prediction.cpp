@@ -221,6 +221,34 @@ std::string why_not(const TargetLine& line, const RangeTask& task, double lowest
       lowest_k, line.end_m(), task.m75);
 }
 
+/// Of the points that the curve's value anywhere between two contrasts depends on: the neighbours of what lies between
+/// two points, the highest above it.
+std::optional<Adequacy> findings_between(std::span<const TodThreshold> sorted, double low_k, double high_k) {
+  std::optional<Adequacy> found;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const bool too_low = i + 1 < sorted.size() && low_k >= sorted[i + 1].delta_t_k;
+    const bool too_high = i > 0 && high_k <= sorted[i - 1].delta_t_k;
+    const auto& adequacy = sorted[i].adequacy;
+    if (!adequacy || too_low || too_high) continue;
+    if (!found) found.emplace();
+    for (AdequacyFinding finding : adequacy->findings) {
+      finding.sentence = fmt::format("at {:g} K: {}", sorted[i].delta_t_k, finding.sentence);
+      found->findings.push_back(std::move(finding));
+    }
+  }
+  return found;
+}
+
+/// From the apparent contrast at the far end of the interval to that at its near end; an open end reaches as far as the
+/// target and the curve do.
+std::optional<Adequacy> findings_of(const RangePrediction& prediction, const TargetLine& line,
+                                    std::span<const TodThreshold> sorted) {
+  const auto& [low, high] = prediction.r75_ci95_m;
+  const double near_k = std::exp(line.ln_contrast(low.value_or(0)));
+  const double far_k = high ? std::exp(line.ln_contrast(*high)) : 0;
+  return findings_between(sorted, far_k, near_k);
+}
+
 }  // namespace
 
 double m75_from_v50(double v50) {
@@ -246,8 +274,8 @@ ThresholdSelection thresholds_of(const TodCurve& curve, double target_delta_t_k)
       selection.notes.push_back(fmt::format("the point at {:g} K was left out: it has no threshold", point.delta_t_k));
       continue;
     }
-    selection.thresholds.push_back(
-        {std::abs(point.delta_t_k), *point.fit.threshold, point.fit.ci95, std::abs(point.set_delta_t_k)});
+    selection.thresholds.push_back({std::abs(point.delta_t_k), *point.fit.threshold, point.fit.ci95,
+                                    std::abs(point.set_delta_t_k), point.adequacy});
   }
   return selection;
 }
@@ -308,6 +336,7 @@ Result<RangePrediction> predict_range(std::span<const TodThreshold> thresholds, 
                     "taken to be constant there",
                     sorted.back().delta_t_k));
   }
+  prediction.adequacy = findings_of(prediction, line, sorted);
   double farthest = 0;
   for (const auto& node : nodes) farthest = std::max(farthest, line.range_of(node.acuity.value));
   prediction.curve = probabilities(line, 2 * prediction.r75_m.value_or(farthest));

@@ -9,6 +9,7 @@
 
 #include "acquisition/core/result.h"
 #include "tod/psychometric/acuity.h"
+#include "tod/psychometric/finding.h"
 #include "tod/psychometric/tod_curve.h"
 #include "tod/range/transmittance.h"
 
@@ -21,6 +22,7 @@ struct TodThreshold {
   Interval s75_ci95_mrad;  ///< a side without a value is open
   /// What the target was told when `delta_t_k` was seen, as a magnitude: the name of this point; 0: not known.
   double set_delta_t_k = 0;
+  std::optional<Adequacy> adequacy{};  ///< what speaks against the threshold; nothing: not examined
 };
 
 /// What is to be identified, through what air. Signal and criterion as in Bijl, Hogervorst and Vos (EO-VISTA), 4.2.3.
@@ -52,7 +54,10 @@ struct RangePrediction {
   Interval r75_ci95_m;             ///< from the intervals of the thresholds
   std::string reason;              ///< why there is no r75_m, in a sentence; else empty
   std::vector<std::string> notes;  ///< assumptions that this prediction needed
-  std::vector<RangePoint> curve;   ///< range increasing
+  /// Findings of the thresholds that the range and its interval rest on, each with its contrast in the sentence;
+  /// nothing where none of these thresholds was examined.
+  std::optional<Adequacy> adequacy;
+  std::vector<RangePoint> curve;  ///< range increasing
 };
 
 /// The thresholds of a curve that have a value, of the target's polarity where the curve has both. `notes` says what

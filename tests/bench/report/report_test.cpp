@@ -459,6 +459,15 @@ TEST(ReportVerdict, IsTheDecisionThatWasMadeAndNotAnotherOne) {
   EXPECT_EQ(report_verdict(data), ReportVerdict::pass);
 }
 
+TEST(ReportVerdict, OfChangedFilesIsNoneAndNoLimitLooksMet) {
+  ReportData data = sample_report();
+  ASSERT_TRUE(contains(render_report(data), " pass</strong>"));
+  data.accepted_changes = {"fits.json"};
+
+  EXPECT_EQ(report_verdict(data), ReportVerdict::changed);
+  EXPECT_FALSE(contains(render_report(data), " pass</strong>"));
+}
+
 TEST(ReportVerdict, WithoutLimitsIsNone) {
   ReportData data = sample_report();
   data.verdict->decision = VerdictKind::pass;

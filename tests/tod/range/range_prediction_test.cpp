@@ -211,5 +211,31 @@ TEST(RangePrediction, TakesThresholdsOfTheTargetsPolarityAndLeavesOutThoseWithou
   EXPECT_EQ(cold.notes.size(), 1u);
 }
 
+TEST(RangePrediction, CarriesTheFindingsOfTheThresholdsThatItRestsOn) {
+  std::vector<TodThreshold> tod{threshold(0.1, 4), threshold(1, 2), threshold(10, 1)};
+  for (std::size_t i = 0; i < tod.size(); ++i) {
+    const double ln_s75 = std::log(tod[i].s75_mrad);
+    tod[i].s75_ci95_mrad = {std::exp(ln_s75 - 0.02), std::exp(ln_s75 + 0.02)};
+    tod[i].adequacy.emplace();
+    tod[i].adequacy->findings.push_back({.kind = FindingKind::lapse, .value = double(i), .unfit = i == 0});
+  }
+  const auto found = [&](double delta_t_k, double extinction_per_km) {
+    const auto prediction =
+        predict_range(tod, {.size_m = 2, .delta_t_k = delta_t_k, .extinction_per_km = extinction_per_km});
+    std::vector<double> points;
+    for (const auto& finding : prediction.value().adequacy.value().findings) points.push_back(finding.value.value());
+    return std::pair(points, prediction->adequacy->adequate());
+  };
+
+  // Without extinction the contrast of the target is the only one; a point itself has no neighbours.
+  EXPECT_EQ(found(20, 0), std::pair(std::vector{2.0}, true));
+  EXPECT_EQ(found(3, 0), std::pair(std::vector({1.0, 2.0}), true));
+  EXPECT_EQ(found(0.5, 0), std::pair(std::vector({0.0, 1.0}), false));
+  // At about 236 m, where 1.9 of 20 K are left.
+  EXPECT_EQ(found(20, 10), std::pair(std::vector({1.0, 2.0}), true));
+  for (auto& point : tod) point.adequacy.reset();
+  EXPECT_FALSE(predict_range(tod, {.size_m = 2, .delta_t_k = 20}).value().adequacy.has_value());
+}
+
 }  // namespace
 }  // namespace todbench
