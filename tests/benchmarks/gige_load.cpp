@@ -1,9 +1,13 @@
 // Load and soak of the GigE Vision path: a camera on plain sockets, the Aravis back end, and a recording of every
 // frame.
-//   gige_load SECONDS [RATE_HZ WIDTH HEIGHT [RECORDING]]
+//   gige_load SECONDS [RATE_HZ WIDTH HEIGHT [RECORDING or - [FAULT_SHARE]]]
 // The camera is a process of its own, so that processor time is the client's alone. Prints one line per ten seconds and
-// a sum; exit 1 when a frame was lost, incomplete or false.
+// a sum. Without faults exit 1 when a frame was lost, incomplete or false. With a share, that part of the packets is
+// lost, doubled and reordered, and of the frames lost, frozen, of wrong size and late in their leader: exit 1 when a
+// frame is false that the client took for whole, or when the client counts other losses and repetitions than the
+// camera.
 #include <signal.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,6 +17,7 @@
 #include <cstring>
 #include <ctime>
 #include <fstream>
+#include <new>
 #include <optional>
 #include <string>
 
@@ -29,7 +34,18 @@ struct Load {
   double rate_hz = 190;
   int width = 640, height = 480;
   std::string recording;
+  double fault_share = 0;
 };
+
+GvspFaults faults_of(double share) {
+  return {.packet_loss = share,
+          .duplicate = share,
+          .reorder = share,
+          .late_leader = share,
+          .lost_frame = share,
+          .frozen = share,
+          .wrong_size = share};
+}
 
 /// Different in every frame, cheap to make and to check: a picture of one count, with the index in its first pixels.
 cv::Mat1w load_picture(std::uint64_t index, int width, int height) {
@@ -38,7 +54,8 @@ cv::Mat1w load_picture(std::uint64_t index, int width, int height) {
   return picture;
 }
 
-[[noreturn]] void serve(const Load& load, int ready) {
+/// `said` is memory that both processes see: the camera's counts, ten times a second.
+[[noreturn]] void serve(const Load& load, int ready, GvspCameraCounts& said) {
   GvspCameraConfig config;
   config.width = load.width;
   config.height = load.height;
@@ -47,9 +64,13 @@ cv::Mat1w load_picture(std::uint64_t index, int width, int height) {
   const auto camera =
       GvspCamera::start(config, [&](std::uint64_t index) { return load_picture(index, load.width, load.height); });
   if (!camera) std::fprintf(stderr, "%s\n", camera.error().message.c_str());
+  if (camera && load.fault_share > 0) (*camera)->set_faults(faults_of(load.fault_share));
   const char answer = camera ? '+' : '-';
   if (::write(ready, &answer, 1) != 1 || !camera) std::_Exit(EXIT_FAILURE);
-  for (;;) ::pause();
+  for (;;) {
+    said = (*camera)->counts();
+    ::usleep(100000);
+  }
 }
 
 double cpu_s(clockid_t clock) {
@@ -68,10 +89,32 @@ double resident_mib() {
 }
 
 struct Sum {
-  std::uint64_t frames = 0, lost = 0, incomplete = 0, false_pixels = 0;
+  std::uint64_t frames = 0, lost = 0, incomplete = 0, repeated = 0, false_pixels = 0;
+  std::uint64_t first_exposure = 0, last_exposure = 0;
 };
 
-int measure(const Load& load) {
+/// Whether the client counted what the camera did, but for exposures behind the last frame that it waited for.
+bool counts_agree(const Sum& sum, const GvspCameraCounts& camera) {
+  const std::uint64_t behind = camera.exposures - sum.last_exposure - 1;
+  const GvspFaultCounts& done = camera.faults;
+  std::printf(
+      "camera: %llu exposures (%llu late), %llu frames lost, %llu frozen, %llu of wrong size, %llu late leaders; "
+      "packets: %llu lost, %llu doubled, %llu reordered, %llu sent again\n",
+      static_cast<unsigned long long>(camera.exposures), static_cast<unsigned long long>(camera.late_exposures),
+      static_cast<unsigned long long>(done.frames_lost), static_cast<unsigned long long>(done.frames_frozen),
+      static_cast<unsigned long long>(done.frames_wrong_size), static_cast<unsigned long long>(done.late_leaders),
+      static_cast<unsigned long long>(done.packets_lost), static_cast<unsigned long long>(done.packets_duplicated),
+      static_cast<unsigned long long>(done.packets_reordered), static_cast<unsigned long long>(camera.packets_resent));
+  std::printf("client: %llu frames and %llu lost from exposure %llu to %llu, %llu repeated pictures\n",
+              static_cast<unsigned long long>(sum.frames), static_cast<unsigned long long>(sum.lost),
+              static_cast<unsigned long long>(sum.first_exposure), static_cast<unsigned long long>(sum.last_exposure),
+              static_cast<unsigned long long>(sum.repeated));
+  const bool every_exposure = sum.frames + sum.lost == sum.last_exposure - sum.first_exposure + 1;
+  const bool lost = sum.lost <= done.frames_lost && sum.lost + behind >= done.frames_lost;
+  return every_exposure && lost;
+}
+
+int measure(const Load& load, const GvspCameraCounts& camera) {
   auto source = aravis_backend()->open("gige:127.0.0.1");
   if (!source) return std::fprintf(stderr, "%s\n", source.error().message.c_str()), EXIT_FAILURE;
   for (const auto& warning : (*source)->info().warnings) std::printf("%s\n", warning.c_str());
@@ -94,17 +137,25 @@ int measure(const Load& load) {
     if (!frame) return std::fprintf(stderr, "%s\n", frame.error().message.c_str()), EXIT_FAILURE;
     ++sum.frames;
     if (last) sum.lost += frame->sequence - *last - 1;
+    const std::uint64_t exposure = exposure_index(*frame, load.rate_hz);
+    if (!last) sum.first_exposure = exposure;
+    sum.last_exposure = exposure;
     last = frame->sequence;
     if (frame->status != FrameStatus::complete) {
       ++sum.incomplete;
     } else {
-      const auto truth = load_picture(exposure_index(*frame, load.rate_hz), load.width, load.height);
-      const std::size_t bytes = truth.total() * truth.elemSize();
-      if (std::memcmp(truth.data, frame->counts.data, bytes) != 0 && ++sum.false_pixels <= 5) {
-        std::printf("frame %llu, exposure %llu: %d pixels are false, the first of them counts %d instead of %d\n",
-                    static_cast<unsigned long long>(frame->sequence),
-                    static_cast<unsigned long long>(exposure_index(*frame, load.rate_hz)),
-                    cv::countNonZero(truth != frame->counts), frame->counts(0, 0), truth(0, 0));
+      const auto shows = [&](std::uint64_t index) {
+        const auto truth = load_picture(index, load.width, load.height);
+        return std::memcmp(truth.data, frame->counts.data, truth.total() * truth.elemSize()) == 0;
+      };
+      if (!shows(exposure)) {
+        // A frozen picture is that of an exposure before it.
+        const bool earlier = load.fault_share > 0 && exposure > 0 && shows(exposure - 1);
+        ++(earlier ? sum.repeated : sum.false_pixels);
+        if (!earlier && sum.false_pixels <= 5)
+          std::printf("frame %llu, exposure %llu is false: its first pixel counts %d\n",
+                      static_cast<unsigned long long>(frame->sequence), static_cast<unsigned long long>(exposure),
+                      frame->counts(0, 0));
       }
     }
     if (cpu_s(CLOCK_MONOTONIC) < next_line) continue;
@@ -124,6 +175,10 @@ int measure(const Load& load) {
       static_cast<double>(sum.frames) / wall, bits * 1e-6, static_cast<unsigned long long>(sum.frames),
       static_cast<unsigned long long>(sum.lost), static_cast<unsigned long long>(sum.incomplete),
       static_cast<unsigned long long>(sum.false_pixels), 100 * cpu / wall);
+  if (load.fault_share > 0) {
+    ::usleep(500000);
+    return counts_agree(sum, camera) && sum.false_pixels == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  }
   return sum.lost + sum.incomplete + sum.false_pixels == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
@@ -138,14 +193,19 @@ int main(int argc, char** argv) {
     load.width = std::atoi(argv[3]);
     load.height = std::atoi(argv[4]);
   }
-  if (argc > 5) load.recording = argv[5];
+  if (argc > 5 && std::string(argv[5]) != "-") load.recording = argv[5];
+  if (argc > 6) load.fault_share = std::atof(argv[6]);
+  auto* said = static_cast<todbench::GvspCameraCounts*>(
+      ::mmap(nullptr, sizeof(todbench::GvspCameraCounts), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
+  if (said == MAP_FAILED) return EXIT_FAILURE;
+  new (said) todbench::GvspCameraCounts();
   int ends[2];
   if (::pipe(ends) != 0) return EXIT_FAILURE;
   const pid_t camera = ::fork();
-  if (camera == 0) todbench::serve(load, ends[1]);
+  if (camera == 0) todbench::serve(load, ends[1], *said);
   char answer = 0;
   if (::read(ends[0], &answer, 1) != 1 || answer != '+') return EXIT_FAILURE;
-  const int result = todbench::measure(load);
+  const int result = todbench::measure(load, *said);
   ::kill(camera, SIGKILL);
   ::waitpid(camera, nullptr, 0);
   return result;
