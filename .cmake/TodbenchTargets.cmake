@@ -37,12 +37,14 @@ set(todbench_standard_headers
   <map> <memory> <mutex> <numeric> <optional> <random> <set> <span> <sstream> <stop_token> <string> <string_view> <thread> <variant>
   <vector> <opencv2/core.hpp> <tl/expected.hpp>)
 
-# todbench_precompiled_headers(KIND [HEADERS ...] [DEPENDS ...] [OPTIONS ...]): a set of headers that targets of one kind share.
+# todbench_precompiled_headers(KIND [HEADERS ...] [DEPENDS ...] [OPTIONS ...]): a set of headers that targets of one kind share, with the
+# options that all of them are compiled with.
 function(todbench_precompiled_headers kind)
+  cmake_parse_arguments(ARG "" "" "HEADERS;DEPENDS;OPTIONS" ${ARGN})
+  set_property(GLOBAL PROPERTY todbench_options_of_${kind} "${ARG_OPTIONS}")
   if(NOT TODBENCH_PRECOMPILE)
     return()
   endif()
-  cmake_parse_arguments(ARG "" "" "HEADERS;DEPENDS;OPTIONS" ${ARGN})
   set(source "${CMAKE_BINARY_DIR}/precompiled_${kind}.cpp")
   file(CONFIGURE OUTPUT "${source}" CONTENT "" @ONLY)
   add_library(todbench_precompiled_${kind} OBJECT "${source}")
@@ -52,6 +54,8 @@ function(todbench_precompiled_headers kind)
 endfunction()
 
 function(todbench_precompile target kind)
+  get_property(options GLOBAL PROPERTY todbench_options_of_${kind})
+  target_compile_options(${target} PRIVATE ${options})
   if(TARGET todbench_precompiled_${kind})
     target_precompile_headers(${target} REUSE_FROM todbench_precompiled_${kind})
   endif()
@@ -113,8 +117,6 @@ function(todbench_test name)
     set(main GTest::gmock)
   endif()
   target_link_libraries(${name} PRIVATE ${ARG_DEPENDS} todbench_patience todbench_source_file ${main})
-  # Compiling assertions costs more than running them.
-  target_compile_options(${name} PRIVATE -O1)
   if(NOT ARG_PRECOMPILED)
     set(ARG_PRECOMPILED tests)
   endif()
