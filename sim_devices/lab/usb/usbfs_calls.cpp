@@ -28,7 +28,7 @@ int PluggedUsbDevice::State::submit(UMockdevIoctlClient* client) {
   transfer->client = client;
   transfer->urb = client_memory(umockdev_ioctl_client_get_arg(client), 0, sizeof(usbdevfs_urb));
   if (transfer->urb == nullptr) return EFAULT;
-  usbdevfs_urb wanted{};
+  usbdevfs_urb wanted;  // its array of packets has no length to initialise
   std::memcpy(&wanted, transfer->urb->data, sizeof wanted);
   transfer->type = wanted.type;
   transfer->endpoint = wanted.endpoint;
