@@ -61,16 +61,25 @@ function(todbench_precompile target kind)
   endif()
 endfunction()
 
-# Sanitizers and static analysis make each source expensive: their presets compile the sources of a library together. Two functions of one
-# name in such a library do not compile there; a source that must keep its names is named APART.
-option(TODBENCH_UNITY "Compile the sources of a library together" OFF)
-if(TODBENCH_UNITY)
-  # A local name is not to be compared with those of another source, and a source is not a header because another includes it.
-  target_compile_options(todbench_options INTERFACE -Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
-endif()
+# Sources of a library compiled together share what their headers cost: always in bench/, whose sources are many, small and include much,
+# and everywhere in the presets of sanitizers and static analysis. Two functions of one name in such a library do not compile; a source that
+# must keep its names is named APART.
+option(TODBENCH_UNITY "Compile the sources of every library together" OFF)
+option(TODBENCH_UNITY_BENCH "Compile the sources of every library in bench/ together" ON)
+# A local name is not to be compared with those of another source, a source is not a header because another includes it, and GCC 12 takes
+# the inside of an empty std::optional for a value.
+set(together "$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>")
+target_compile_options(todbench_options INTERFACE "$<${together}:-Wno-shadow>"
+  "$<$<AND:${together},$<CXX_COMPILER_ID:GNU>>:-Wshadow=local;-Wno-subobject-linkage;-Wno-maybe-uninitialized>")
 
 function(todbench_together target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${TODBENCH_UNITY} UNITY_BUILD_BATCH_SIZE 16)
+  set(together ${TODBENCH_UNITY})
+  set(batch 16)
+  if(TODBENCH_UNITY_BENCH AND CMAKE_CURRENT_SOURCE_DIR MATCHES "^${CMAKE_SOURCE_DIR}/bench/")
+    set(together ON)
+    set(batch 8)
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${together} UNITY_BUILD_BATCH_SIZE ${batch})
 endfunction()
 
 # todbench_library(NAME SOURCES ... DEPENDS ... [APART ...] [PRECOMPILED KIND]): a static library whose headers are included from the
