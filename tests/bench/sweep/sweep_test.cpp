@@ -3,13 +3,17 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
 #include <fstream>
 #include <map>
 #include <set>
+#include <stop_token>
+#include <thread>
 
+#include "bench/sweep/processes.h"
 #include "bench/sweep/result_store.h"
 #include "bench/sweep/schedulers.h"
 #include "bench/sweep/sweep_effects.h"
@@ -289,6 +293,50 @@ TEST(SweepEffects, OfADrawnSampleComeFromClasses) {
   // Shares 4/5 and 1/5; sixteen classes leave 1/256 of a's own variance within them.
   EXPECT_NEAR(effects[0].parameters[0].first_order.value(), 0.8, 0.02);
   EXPECT_NEAR(effects[0].parameters[1].first_order.value(), 0.2, 0.02);
+}
+
+/// Chunks of two tasks of five, each a shell that says how it ended.
+ProcessPool pool_of(const std::string& script, std::size_t jobs) {
+  return {.tasks = 5, .jobs = jobs, .chunk = 2, .command = [script](std::size_t first, std::size_t last) {
+            return std::vector<std::string>{"/bin/sh", "-c", script, "sh", std::to_string(first), std::to_string(last)};
+          }};
+}
+
+TEST(ProcessPool, RunsEveryChunkAndSaysTheWorstExitCode) {
+  const TemporaryFolder folder;
+  for (const std::size_t jobs : {1u, 2u, 9u}) {
+    const auto name = folder.path() / std::to_string(jobs);
+    ProcessPool pool = pool_of("echo $1-$2 >> " + name.string() + "; exit $1", jobs);
+    std::vector<std::size_t> progress;
+    pool.on_progress = [&](std::size_t done) { progress.push_back(done); };
+
+    EXPECT_EQ(run_pool(pool, {}).value(), 4);
+
+    const std::string text = *read_text_file(name);
+    for (const char* chunk : {"0-1\n", "2-3\n", "4-4\n"}) EXPECT_THAT(text, HasSubstr(chunk));
+    EXPECT_EQ(text.size(), 12u);
+    EXPECT_EQ(progress.size(), 3u);
+    EXPECT_EQ(progress.back(), 5u);
+  }
+  ProcessPool pool = pool_of("", 2);
+  pool.command = [](std::size_t, std::size_t) { return std::vector<std::string>{"/no/such/program"}; };
+  EXPECT_EQ(run_pool(pool, {}).error().code, ErrorCode::not_found);
+}
+
+TEST(ProcessPool, EndsItsChildrenWhenAskedToStop) {
+  // Every child would run for an hour; the first that is there asks for the end of all.
+  const TemporaryFolder folder;
+  const auto pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::stop_source stop;
+  const std::jthread asks([&] {
+    std::ifstream reads(pipe);
+    reads.get();
+    stop.request_stop();
+  });
+
+  EXPECT_EQ(run_pool(pool_of("echo > " + pipe.string() + "; exec sleep 3600", 1), stop.get_token()).value(), 130);
+  EXPECT_EQ(run_pool(pool_of("exec sleep 3600", 2), stop.get_token()).value(), 130) << "nothing is started any more";
 }
 
 TEST(LoadSweep, RefusesUnknownKeysAndValuesBeforeAnythingRuns) {
