@@ -240,6 +240,32 @@ TEST(SweepStatus, TellsWhatIsDoneMissingStaleAndForeign) {
   EXPECT_FALSE(collected(other.sweep, MissingTasks::left_out));
 }
 
+TEST(SweepRun, OfAnElementThatSlurmStartedAgainTakesOverTheLockOfItsLostNode) {
+  const TemporaryFolder folder;
+  const RunnableSweep runnable = quick_sweep(folder);
+  ASSERT_EQ(run_and_store(runnable, 0, {}).kind, TaskOutcome::Kind::done);
+  const auto leave_lock = [&](std::size_t i) {
+    std::ofstream(result_file(runnable.sweep, runnable.sweep.task(i)).replace_extension(".lock"))
+        << "a-node-that-was-lost\n1\n12_3\n1\n";
+  };
+  leave_lock(1);
+  leave_lock(2);
+  ::setenv("SLURM_ARRAY_JOB_ID", "12", 1);
+  ::setenv("SLURM_ARRAY_TASK_ID", "3", 1);
+  ::setenv("SLURM_RESTART_COUNT", "1", 1);
+
+  const auto same_start = run_and_store(runnable, 1, {}).kind;
+  ::setenv("SLURM_RESTART_COUNT", "2", 1);
+  const auto later_start = run_and_store(runnable, 1, {}).kind;
+  ::setenv("SLURM_ARRAY_TASK_ID", "4", 1);
+  const auto another_element = run_and_store(runnable, 2, {}).kind;
+  for (const char* name : {"SLURM_ARRAY_JOB_ID", "SLURM_ARRAY_TASK_ID", "SLURM_RESTART_COUNT"}) ::unsetenv(name);
+
+  EXPECT_EQ(same_start, TaskOutcome::Kind::locked);
+  EXPECT_EQ(later_start, TaskOutcome::Kind::done);
+  EXPECT_EQ(another_element, TaskOutcome::Kind::locked);
+}
+
 TEST(SweepCollect, RefusesResultsOfSeveralVersions) {
   const TemporaryFolder folder;
   const RunnableSweep runnable = quick_sweep(folder);
