@@ -7,20 +7,26 @@
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <set>
 #include <stop_token>
 #include <thread>
 
+#include "bench/report/html.h"
 #include "bench/sweep/processes.h"
 #include "bench/sweep/result_store.h"
 #include "bench/sweep/schedulers.h"
 #include "bench/sweep/sweep_effects.h"
+#include "bench/sweep/sweep_figures.h"
+#include "bench/sweep/sweep_page.h"
 #include "bench/sweep/sweep_table.h"
 #include "bench/sweep/task_plan.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
+#include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace todbench {
@@ -319,6 +325,94 @@ TEST(SweepEffects, OfADrawnSampleComeFromClasses) {
   // Shares 4/5 and 1/5; sixteen classes leave 1/256 of a's own variance within them.
   EXPECT_NEAR(effects[0].parameters[0].first_order.value(), 0.8, 0.02);
   EXPECT_NEAR(effects[0].parameters[1].first_order.value(), 0.2, 0.02);
+  // The response is a plane: its ends are exact, b at its middle.
+  ASSERT_EQ(effects[0].parameters[0].ends.size(), 2u);
+  EXPECT_NEAR(effects[0].parameters[0].ends[0].mean, 0.5, 1e-9);
+  EXPECT_NEAR(effects[0].parameters[0].ends[1].mean, 2.5, 1e-9);
+  EXPECT_GT(effects[0].parameters[0].levels.size(), 2u);
+}
+
+/// A grid whose response is a function of its two parameters.
+ResponseGrid grid_of(const std::function<double(double, double)>& response) {
+  ResponseGrid grid{.x_key = "a", .y_key = "b", .x = {0, 1, 3}, .y = {-1, 2}, .mean = {}};
+  for (const double x : grid.x) {
+    grid.mean.emplace_back();
+    for (const double y : grid.y) grid.mean.back().push_back(response(x, y));
+  }
+  return grid;
+}
+
+TEST(SweepContours, OfAPlaneAreStraightLinesThroughEveryCell) {
+  const auto grid = grid_of([](double x, double y) { return x + 2 * y; });
+
+  const auto stretches = contour(grid, 1.5);
+
+  ASSERT_EQ(stretches.size(), 2u);
+  double length = 0;
+  for (const auto& [from, to] : stretches) {
+    EXPECT_NEAR(from.x + 2 * from.y, 1.5, 1e-12);
+    EXPECT_NEAR(to.x + 2 * to.y, 1.5, 1e-12);
+    length += std::hypot(to.x - from.x, to.y - from.y);
+  }
+  // From x = 0 (y = 0.75) to x = 3 (y = -0.75).
+  EXPECT_NEAR(length, std::hypot(3, 1.5), 1e-12);
+  EXPECT_TRUE(contour(grid, 100).empty());
+}
+
+TEST(SweepContours, OfASaddleCutOffTheCornersThatTheMiddleDoesNotBelongTo) {
+  ResponseGrid grid{.x_key = "a", .y_key = "b", .x = {0, 1}, .y = {0, 1}, .mean = {{1, 0}, {0, 1}}};
+
+  const auto low = contour(grid, 0.25), high = contour(grid, 0.75);
+
+  // The middle is 0.5: above 0.25 it belongs to (0, 0) and (1, 1), so the lines cut off (1, 0) and (0, 1).
+  ASSERT_EQ(low.size(), 2u);
+  for (const auto& [from, to] : low) EXPECT_GT(std::abs((from.x + to.x) / 2 - (from.y + to.y) / 2), 0.5);
+  ASSERT_EQ(high.size(), 2u);
+  for (const auto& [from, to] : high) EXPECT_GT(std::abs((from.x + to.x) / 2 + (from.y + to.y) / 2 - 1), 0.5);
+}
+
+TEST(SweepPage, HasAFigureForEveryQuestionOrSaysWhyThereIsNone) {
+  SweepTable table;
+  table.columns = {"a", "b", "word", "repeat", "delta_t_k", "y"};
+  const Sweep sweep = expanded("[grid]\na = [0, 1, 2]\nb = [0, 1]\nword = [\"x\", \"<y>\"]\n[repeat]\nseeds = 2\n");
+  for (std::size_t i = 0; i < sweep.count(); ++i) {
+    const auto values = values_of(sweep, i);
+    const double a = *parse_number(values[0]), b = *parse_number(values[1]);
+    table.rows.push_back({a, b, values[2], sweep.task(i).repeat, 2.0, 3 * a + b + 0.01 * static_cast<double>(i % 2)});
+  }
+  table.tasks = sweep.count();
+  const auto effects = sweep_effects(sweep, table, "y");
+  ASSERT_EQ(effects.size(), 1u);
+
+  const auto tornado_drawing = tornado(effects[0], "t");
+  const auto grid = response_grid(sweep, table, effects[0]);
+  const std::string page = render_html(sweep_page(sweep, table, effects));
+
+  ASSERT_TRUE(tornado_drawing && grid);
+  EXPECT_EQ(tornado_drawing->labels.size() > 6, true);
+  EXPECT_EQ(grid->x_key, "a");
+  EXPECT_NEAR(grid->mean[2][1], 7.005, 1e-12);
+  EXPECT_THAT(page, HasSubstr("&lt;y&gt;"));
+  EXPECT_FALSE(response_curve(effects[0], effects[0].parameters[2], "c"));
+  EXPECT_TRUE(render_html(sweep_page(sweep, table, {})).size() > 100);
+  ResponseEffects one{"y", 1, {{.key = "a", .levels = {{"1", 2, {}, 1}}}}};
+  EXPECT_EQ(tornado(one, "t").error().code, ErrorCode::not_identifiable);
+  EXPECT_EQ(response_grid(sweep, SweepTable{}, effects[0]).error().code, ErrorCode::not_identifiable);
+}
+
+TEST(ShippedSweeps, GiveATableInTheirShortForm) {
+  const TemporaryFolder folder;
+  for (const char* name : {"sc2000-sensitivity", "observer-and-sensor", "budget-tolerance"}) {
+    const std::string text = *read_text_file(source_file(std::string("bench/sweeps/") + name + ".toml"));
+    folder.write(std::string(name) + ".toml", text);
+    const auto runnable = load_sweep(folder.path() / (std::string(name) + ".toml"));
+    ASSERT_TRUE(runnable) << runnable.error().message;
+    EXPECT_EQ(runnable->sweep.refused(), 0u) << name;
+    // The first task and the last stand for the others.
+    for (const std::size_t i : {std::size_t{0}, runnable->sweep.count() - 1})
+      EXPECT_EQ(run_and_store(*runnable, i, {}).kind, TaskOutcome::Kind::done) << name;
+    EXPECT_EQ(collected(runnable->sweep, MissingTasks::left_out)->rows.size(), 4u) << name;
+  }
 }
 
 /// Chunks of two tasks of five, each a shell that says how it ended.
