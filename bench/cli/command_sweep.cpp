@@ -10,10 +10,12 @@
 #include "bench/cli/commands.h"
 #include "bench/cli/sweep_engines.h"
 #include "bench/judgement/verdict.h"
+#include "bench/report/html.h"
 #include "bench/sweep/processes.h"
 #include "bench/sweep/result_store.h"
 #include "bench/sweep/schedulers.h"
 #include "bench/sweep/sweep_effects.h"
+#include "bench/sweep/sweep_page.h"
 #include "bench/sweep/sweep_table.h"
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
@@ -276,6 +278,10 @@ int run_collect(Console& console, const SweepArguments& a) {
     return report_error(console, written.error());
   if (auto written = write_sqlite(*table, sqlite); !written) return report_error(console, written.error());
   const auto effects = sweep_effects(runnable->sweep, *table, a.response);
+  if (!a.page.empty()) {
+    const std::string page = render_html(sweep_page(runnable->sweep, *table, effects));
+    if (auto written = write_file_atomically(a.page, page); !written) return report_error(console, written.error());
+  }
   if (console.json()) {
     Json json = to_json(*table);
     json["effects"] = to_json(effects);
@@ -350,6 +356,7 @@ void add_sweep_command(CLI::App& app, Program& program) {
   auto* collect = add_part(*sweep, "collect", "one table of all results, as CSV and SQLite", a);
   collect->add_option("--csv", a->csv, "file of the table; default: table.csv beside the results");
   collect->add_option("--sqlite", a->sqlite, "file of the database; default: table.sqlite beside the results");
+  collect->add_option("--page", a->page, "file of a page with tables and figures of the response; default: none");
   collect->add_option("--response", a->response, "column whose effects are computed")->capture_default_str();
   collect->add_flag("--partial", a->partial, "leaves tasks without a result out");
   finish_command(*collect, program, [a](Console& console) { return run_collect(console, *a); });

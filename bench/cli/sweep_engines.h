@@ -11,7 +11,8 @@ namespace todbench {
 
 /// What the parts of `todbench sweep` take.
 struct SweepArguments {
-  std::string file, scheduler = "parallel", engine = "local", options_file, csv, sqlite, response = "acuity_per_mrad";
+  std::string file, scheduler = "parallel", engine = "local", options_file, csv, sqlite, page,
+                    response = "acuity_per_mrad";
   std::optional<std::size_t> index, jobs;
   std::string range;
   std::size_t chunk = 0;  ///< 0: not said

@@ -6,9 +6,10 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -23,36 +24,73 @@ int code_of(int status) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/// The children that run; whatever happens none is left behind.
+/// The children that run. All members are thread-safe.
 class Children {
  public:
-  ~Children() {
-    for (const pid_t process : processes_) {
-      ::kill(process, SIGTERM);
-      (void)ended(process).has_value();
+  /// Starts a child unless it is too late for that, waits for its end without asking again and again, and says its exit
+  /// code; nothing where it was too late.
+  Result<std::optional<int>> run(std::vector<std::string> command) {
+    pid_t process = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      if (ending_) return std::optional<int>();
+      const auto started = spawned(std::move(command), ChildOutput::nowhere);
+      if (!started) return tl::unexpected(started.error());
+      process = *started;
+      processes_.push_back(process);
     }
+    // Its number stays its own until it is taken off the list: nobody else is sent the signal.
+    siginfo_t end{};
+    while (::waitid(P_PID, static_cast<id_t>(process), &end, WEXITED | WNOWAIT) < 0 && errno == EINTR) {
+    }
+    const std::lock_guard lock(mutex_);
+    std::erase(processes_, process);
+    const auto code = ended(process);
+    if (!code) return tl::unexpected(code.error());
+    return std::optional<int>(*code);
   }
-  void add(pid_t process) { processes_.push_back(process); }
-  [[nodiscard]] std::size_t count() const { return processes_.size(); }
-  void ask_to_end() const {
+  /// Asks those that run to end; no other is started.
+  void ask_to_end() {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
     for (const pid_t process : processes_) ::kill(process, SIGTERM);
-  }
-  /// The exit codes of those that have ended, taken from the list.
-  std::vector<int> taken() {
-    std::vector<int> codes;
-    std::erase_if(processes_, [&](pid_t process) {
-      int status = 0;
-      const pid_t found = ::waitpid(process, &status, WNOHANG);
-      if (found == 0 || (found < 0 && errno == EINTR)) return false;
-      codes.push_back(found < 0 ? 1 : code_of(status));
-      return true;
-    });
-    return codes;
   }
 
  private:
+  std::mutex mutex_;
+  bool ending_ = false;
   std::vector<pid_t> processes_;
 };
+
+/// What the threads of a pool share, but for the children.
+struct PoolState {
+  std::mutex mutex{};
+  std::size_t next = 0, done = 0;
+  int worst = 0;
+  std::optional<Error> error{};
+};
+
+/// One of the jobs: chunk after chunk, as long as there are any.
+void run_job(const ProcessPool& pool, Children& children, PoolState& state) {
+  while (true) {
+    std::size_t first = 0, last = 0;
+    {
+      const std::lock_guard lock(state.mutex);
+      if (state.next >= pool.tasks) return;
+      first = state.next;
+      last = std::min(first + pool.chunk, pool.tasks) - 1;
+      state.next = last + 1;
+    }
+    const auto code = children.run(pool.command(first, last));
+    const std::lock_guard lock(state.mutex);
+    if (!code && !state.error) state.error = code.error();
+    if (!code) children.ask_to_end();
+    if (!code || !*code) return;
+    state.worst = std::max(state.worst, **code);
+    state.done += last - first + 1;
+    if (pool.on_progress) pool.on_progress(state.done);
+  }
+}
 
 }  // namespace
 
@@ -92,27 +130,15 @@ std::string own_program() {
 
 Result<int> run_pool(const ProcessPool& pool, std::stop_token stop) {
   Children children;
-  std::size_t next = 0, done = 0;
-  int worst = 0;
-  bool asked_to_end = false;
-  while (children.count() > 0 || (next < pool.tasks && !stop.stop_requested())) {
-    while (next < pool.tasks && children.count() < pool.jobs && !stop.stop_requested()) {
-      const std::size_t last = std::min(next + pool.chunk, pool.tasks) - 1;
-      const auto process = spawned(pool.command(next, last), ChildOutput::nowhere);
-      if (!process) return tl::unexpected(process.error());
-      children.add(*process);
-      next = last + 1;
-    }
-    if (stop.stop_requested() && !std::exchange(asked_to_end, true)) children.ask_to_end();
-    for (const int code : children.taken()) {
-      worst = std::max(worst, code);
-      done = std::min(done + pool.chunk, pool.tasks);
-      if (pool.on_progress) pool.on_progress(done);
-    }
-    // A process takes tenths of a second at least; nobody waits for these milliseconds.
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  PoolState state;
+  {
+    const std::stop_callback on_stop(stop, [&] { children.ask_to_end(); });
+    std::vector<std::jthread> jobs;
+    for (std::size_t i = 0; i < std::min(pool.jobs, (pool.tasks + pool.chunk - 1) / pool.chunk); ++i)
+      jobs.emplace_back([&] { run_job(pool, children, state); });
   }
-  return stop.stop_requested() ? interrupted_code : worst;
+  if (state.error) return tl::unexpected(*state.error);
+  return stop.stop_requested() ? interrupted_code : state.worst;
 }
 
 }  // namespace todbench

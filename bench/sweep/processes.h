@@ -26,11 +26,11 @@ struct ProcessPool {
   std::size_t tasks = 0, jobs = 1;
   std::size_t chunk = 1;  ///< tasks a process
   /// The command for tasks `first` to `last`, both included.
-  std::function<std::vector<std::string>(std::size_t first, std::size_t last)> command{};
-  std::function<void(std::size_t done)> on_progress{};
+  std::function<std::vector<std::string>(std::size_t first, std::size_t last)> command{};  ///< any thread
+  std::function<void(std::size_t done)> on_progress{};  ///< any thread, one call at a time
 };
-/// Runs all tasks, `jobs` processes at a time; the worst exit code. When asked to stop it ends its children with
-/// SIGTERM, waits for them and returns 130.
+/// Runs all tasks, `jobs` processes at a time, each awaited by a thread that sleeps until then; the worst exit code.
+/// When asked to stop it ends its children with SIGTERM, waits for them and returns 130.
 [[nodiscard]] Result<int> run_pool(const ProcessPool& pool, std::stop_token stop);
 
 }  // namespace todbench

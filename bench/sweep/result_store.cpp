@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <map>
+#include <sstream>
 #include <utility>
 
 #include "bench/session/build_info.h"
@@ -32,13 +34,38 @@ std::string host_name() {
   return ::gethostname(name.data(), name.size() - 1) == 0 ? std::string(name.data()) : "unknown";
 }
 
+/// This process as an element of a job that Slurm starts again when its node is lost or it is preempted.
+struct SlurmElement {
+  std::string job;
+  double restarts = 0;
+};
+std::optional<SlurmElement> slurm_element() {
+  const auto variable = [](const char* name) {
+    const char* text = std::getenv(name);
+    return std::string(text == nullptr ? "" : text);
+  };
+  const std::string job = variable("SLURM_ARRAY_JOB_ID") + "_" + variable("SLURM_ARRAY_TASK_ID");
+  if (job.size() < 3 || job.find('\n') != std::string::npos) return std::nullopt;
+  return SlurmElement{job, parse_number(variable("SLURM_RESTART_COUNT")).value_or(0)};
+}
+
+/// Whether the lock is of this very element before Slurm started it again: the process that held it is gone, on
+/// whatever host it was.
+bool is_of_earlier_start(const std::vector<std::string>& lock) {
+  const auto element = slurm_element();
+  if (!element || lock.size() < 4) return false;
+  const auto restarts = parse_number(lock[3]);
+  return lock[2] == element->job && restarts && *restarts < element->restarts;
+}
+
 /// Held while a task runs; made with O_EXCL, which network file systems keep too.
 class Lock {
  public:
   static std::optional<Lock> taken(const std::filesystem::path& file) {
     const int descriptor = ::open(file.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0644);
     if (descriptor < 0) return std::nullopt;
-    const std::string text = fmt::format("{}\n{}\n", host_name(), ::getpid());
+    std::string text = fmt::format("{}\n{}\n", host_name(), ::getpid());
+    if (const auto element = slurm_element()) text += fmt::format("{}\n{}\n", element->job, element->restarts);
     const auto written = ::write(descriptor, text.data(), text.size());
     ::close(descriptor);
     if (written != static_cast<ssize_t>(text.size())) {
@@ -60,24 +87,38 @@ class Lock {
   std::filesystem::path file_;
 };
 
+std::vector<std::string> lines_of_lock(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+bool is_younger_than(const std::filesystem::path& file, std::chrono::seconds age) {
+  std::error_code problem;
+  const auto written = std::filesystem::last_write_time(file, problem);
+  return !problem && std::filesystem::file_time_type::clock::now() - written < age;
+}
+
+/// Whether this host runs the process; one that has ended and that nobody has waited for is not running.
+bool is_running(pid_t process) {
+  if (::kill(process, 0) != 0 && errno != EPERM) return false;
+  const auto stat = read_text_file(fmt::format("/proc/{}/stat", process));
+  const auto name_end = stat ? stat->rfind(')') : std::string::npos;
+  return name_end == std::string::npos || name_end + 2 >= stat->size() || (*stat)[name_end + 2] != 'Z';
+}
+
 /// Whether the one who wrote the lock may still be at work.
 bool is_alive(const std::filesystem::path& lock) {
   const auto text = read_text_file(lock);
   if (!text) return false;
-  const auto end = text->find('\n');
-  const auto process = end == std::string::npos
-                           ? std::nullopt
-                           : parse_number(text->substr(end + 1, text->find('\n', end + 1) - end - 1));
-  if (!process) {
-    // Just being written, or by a process that was killed then.
-    std::error_code problem;
-    const auto written = std::filesystem::last_write_time(lock, problem);
-    return !problem && std::filesystem::file_time_type::clock::now() - written < std::chrono::seconds(10);
-  }
-  if (text->substr(0, end) == host_name()) return ::kill(static_cast<pid_t>(*process), 0) == 0 || errno == EPERM;
-  std::error_code problem;
-  const auto written = std::filesystem::last_write_time(lock, problem);
-  return !problem && std::filesystem::file_time_type::clock::now() - written < patience_with_hosts;
+  const auto lines = lines_of_lock(*text);
+  const auto process = lines.size() < 2 ? std::nullopt : parse_number(lines[1]);
+  // Just being written, or by a process that was killed then.
+  if (!process) return is_younger_than(lock, std::chrono::seconds(10));
+  if (is_of_earlier_start(lines)) return false;
+  if (lines[0] == host_name()) return is_running(static_cast<pid_t>(*process));
+  return is_younger_than(lock, patience_with_hosts);
 }
 
 std::filesystem::path with_ending(std::filesystem::path result, const char* ending) {

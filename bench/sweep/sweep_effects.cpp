@@ -1,5 +1,6 @@
 #include "bench/sweep/sweep_effects.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -155,6 +156,77 @@ std::vector<EffectLevel> levels_of(const Observations& rows, std::size_t paramet
   return levels;
 }
 
+/// Means over classes of equal count of a drawn parameter, each at the mean of its values.
+std::vector<EffectLevel> class_levels(const Observations& rows, std::size_t parameter) {
+  const auto classes = classes_of(rows, parameter);
+  std::map<double, std::map<std::size_t, std::vector<double>>> responses;
+  std::map<double, std::vector<double>> values;
+  for (const auto& row : rows) {
+    const double name = parse_number(classes.at(row.values[parameter])).value_or(0);
+    responses[name][row.repeat].push_back(row.response);
+    values[name].push_back(parse_number(row.values[parameter]).value_or(0));
+  }
+  std::vector<EffectLevel> levels;
+  for (const auto& [name, by_repeat] : responses) {
+    std::vector<double> all, of_repeats;
+    for (const auto& [repeat, some] : by_repeat) {
+      all.insert(all.end(), some.begin(), some.end());
+      of_repeats.push_back(mean(some));
+    }
+    levels.push_back({number_text(mean(values[name])), mean(all), interval_of(of_repeats), all.size()});
+  }
+  return levels;
+}
+
+/// Least squares of the response over drawn parameters, each from -1 to 1 over its range: the mean, then half of what
+/// each changes from end to end. Nothing with fewer rows than unknowns.
+std::optional<std::vector<double>> plane_of(const Observations& rows, const std::vector<SweepRange>& ranges,
+                                            std::size_t first_parameter) {
+  const auto unknowns = static_cast<Eigen::Index>(ranges.size() + 1), n = static_cast<Eigen::Index>(rows.size());
+  if (n <= unknowns) return std::nullopt;
+  Eigen::MatrixXd design(n, unknowns);
+  Eigen::VectorXd response(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Observation& row = rows[static_cast<std::size_t>(i)];
+    design(i, 0) = 1;
+    response(i) = row.response;
+    for (std::size_t j = 0; j < ranges.size(); ++j) {
+      const double value = parse_number(row.values[first_parameter + j]).value_or(0);
+      const double middle = (ranges[j].low + ranges[j].high) / 2, half = (ranges[j].high - ranges[j].low) / 2;
+      design(i, static_cast<Eigen::Index>(j) + 1) = (value - middle) / half;
+    }
+  }
+  const Eigen::VectorXd found = design.colPivHouseholderQr().solve(response);
+  return std::vector<double>(found.data(), found.data() + found.size());
+}
+
+/// The ends of a drawn parameter on the planes of all repeats.
+std::vector<EffectLevel> ends_of(const std::map<std::size_t, Observations>& by_repeat,
+                                 const std::vector<SweepRange>& ranges, std::size_t first_parameter,
+                                 std::size_t drawn) {
+  std::vector<double> low, high;
+  std::size_t count = 0;
+  for (const auto& [repeat, rows] : by_repeat) {
+    const auto plane = plane_of(rows, ranges, first_parameter);
+    if (!plane) return {};
+    low.push_back((*plane)[0] - (*plane)[drawn + 1]);
+    high.push_back((*plane)[0] + (*plane)[drawn + 1]);
+    count += rows.size();
+  }
+  return {{number_text(ranges[drawn].low), mean(low), interval_of(low), count},
+          {number_text(ranges[drawn].high), mean(high), interval_of(high), count}};
+}
+
+Json levels_json(const std::vector<EffectLevel>& levels) {
+  Json json = Json::array();
+  for (const auto& level : levels)
+    json.push_back({{"value", level.value},
+                    {"mean", json_number(level.mean)},
+                    {"ci95", json_interval(level.ci95)},
+                    {"rows", level.rows}});
+  return json;
+}
+
 }  // namespace
 
 std::vector<ResponseEffects> sweep_effects(const Sweep& sweep, const SweepTable& table, const std::string& response) {
@@ -169,7 +241,9 @@ std::vector<ResponseEffects> sweep_effects(const Sweep& sweep, const SweepTable&
     ResponseEffects found{response, contrast, {}};
     for (std::size_t i = 0; i < keys.size(); ++i) {
       ParameterEffect effect{.key = keys[i]};
-      if (i < fixed) effect.levels = levels_of(rows, i);
+      effect.levels = i < fixed ? levels_of(rows, i) : class_levels(rows, i);
+      // Beside a grid the plane would have to hold the grid as well.
+      if (i >= fixed && fixed == 0) effect.ends = ends_of(by_repeat, sweep.file().sample, fixed, i - fixed);
       add_indices(effect, by_repeat, i, i >= fixed || !sweep.file().sample.empty());
       found.parameters.push_back(std::move(effect));
     }
@@ -183,18 +257,13 @@ Json to_json(const std::vector<ResponseEffects>& effects) {
   for (const auto& response : effects) {
     Json parameters = Json::array();
     for (const auto& effect : response.parameters) {
-      Json levels = Json::array();
-      for (const auto& level : effect.levels)
-        levels.push_back({{"value", level.value},
-                          {"mean", json_number(level.mean)},
-                          {"ci95", json_interval(level.ci95)},
-                          {"rows", level.rows}});
       parameters.push_back({{"key", effect.key},
                             {"first_order", json_number(effect.first_order)},
                             {"first_order_ci95", json_interval(effect.first_order_ci95)},
                             {"total", json_number(effect.total)},
                             {"total_ci95", json_interval(effect.total_ci95)},
-                            {"levels", levels}});
+                            {"levels", levels_json(effect.levels)},
+                            {"ends", levels_json(effect.ends)}});
     }
     list.push_back({{"response", response.response}, {"delta_t_k", response.delta_t_k}, {"parameters", parameters}});
   }

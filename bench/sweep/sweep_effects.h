@@ -8,8 +8,8 @@
 
 namespace todbench {
 
-/// Mean response at one value of a parameter, over everything else, with the 95 % interval of the mean over the
-/// repeats.
+/// Mean response at one value of a parameter (of a drawn one at the mean of a class), over everything else, with the 95
+/// % interval of the mean over the repeats.
 struct EffectLevel {
   std::string value;
   double mean = 0;
@@ -19,6 +19,10 @@ struct EffectLevel {
 struct ParameterEffect {
   std::string key;
   std::vector<EffectLevel> levels{};
+  /// Of a drawn parameter: the response at the two ends of its range, everything else at its mean, on the plane through
+  /// all rows of a repeat (least squares over all parameters together, so that the others' linear parts do not count as
+  /// noise); averaged over the repeats.
+  std::vector<EffectLevel> ends{};
   /// Share of the variance of the response that the parameter alone explains, and with all its interactions; of each
   /// repeat, averaged, with the interval of that mean. In a full factorial exact sums of squares; of a drawn sample the
   /// correlation ratio over classes of equal count, corrected for their number (no total).

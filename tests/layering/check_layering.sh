@@ -56,7 +56,7 @@ BEGIN {
   may["bench/observer_fit"] = science " bench/text bench/plan bench/judgement bench/session bench/report"
   may["bench/run"] = science " " devices " bench/text bench/plan bench/judgement bench/session bench/report"
   may["bench/studies"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
-  may["bench/sweep"] = science " bench/text bench/plan bench/judgement bench/session bench/run"
+  may["bench/sweep"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
   may["bench/doctor"] = core " bench/text"
   bench = "bench/text bench/plan bench/judgement bench/session bench/report bench/observer_fit bench/reference_set bench/run bench/studies bench/sweep"
   may["bench/cli"] = science " acquisition/recording bench/doctor " bench

@@ -148,6 +148,8 @@ TEST(SweepCommand, HasTheSameTableHoweverItWasRun) {
   const Json json = one_object(in("collect", {"--json"}));
   EXPECT_EQ(json["rows"].size(), 8u);
   EXPECT_EQ(json["effects"][0]["parameters"][0]["key"], "netd_k");
+  EXPECT_EQ(in("collect", {"--page", "page.html"}).code, 0);
+  EXPECT_THAT(content(folder.path() / "a/page.html"), HasSubstr("</html>"));
 }
 
 TEST(SweepCommand, PrintsTaskListsAndRefusesInASentence) {

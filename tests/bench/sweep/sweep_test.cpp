@@ -3,20 +3,30 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <set>
+#include <stop_token>
+#include <thread>
 
+#include "bench/report/html.h"
+#include "bench/sweep/processes.h"
 #include "bench/sweep/result_store.h"
 #include "bench/sweep/schedulers.h"
 #include "bench/sweep/sweep_effects.h"
+#include "bench/sweep/sweep_figures.h"
+#include "bench/sweep/sweep_page.h"
 #include "bench/sweep/sweep_table.h"
 #include "bench/sweep/task_plan.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
+#include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace todbench {
@@ -236,6 +246,32 @@ TEST(SweepStatus, TellsWhatIsDoneMissingStaleAndForeign) {
   EXPECT_FALSE(collected(other.sweep, MissingTasks::left_out));
 }
 
+TEST(SweepRun, OfAnElementThatSlurmStartedAgainTakesOverTheLockOfItsLostNode) {
+  const TemporaryFolder folder;
+  const RunnableSweep runnable = quick_sweep(folder);
+  ASSERT_EQ(run_and_store(runnable, 0, {}).kind, TaskOutcome::Kind::done);
+  const auto leave_lock = [&](std::size_t i) {
+    std::ofstream(result_file(runnable.sweep, runnable.sweep.task(i)).replace_extension(".lock"))
+        << "a-node-that-was-lost\n1\n12_3\n1\n";
+  };
+  leave_lock(1);
+  leave_lock(2);
+  ::setenv("SLURM_ARRAY_JOB_ID", "12", 1);
+  ::setenv("SLURM_ARRAY_TASK_ID", "3", 1);
+  ::setenv("SLURM_RESTART_COUNT", "1", 1);
+
+  const auto same_start = run_and_store(runnable, 1, {}).kind;
+  ::setenv("SLURM_RESTART_COUNT", "2", 1);
+  const auto later_start = run_and_store(runnable, 1, {}).kind;
+  ::setenv("SLURM_ARRAY_TASK_ID", "4", 1);
+  const auto another_element = run_and_store(runnable, 2, {}).kind;
+  for (const char* name : {"SLURM_ARRAY_JOB_ID", "SLURM_ARRAY_TASK_ID", "SLURM_RESTART_COUNT"}) ::unsetenv(name);
+
+  EXPECT_EQ(same_start, TaskOutcome::Kind::locked);
+  EXPECT_EQ(later_start, TaskOutcome::Kind::done);
+  EXPECT_EQ(another_element, TaskOutcome::Kind::locked);
+}
+
 TEST(SweepCollect, RefusesResultsOfSeveralVersions) {
   const TemporaryFolder folder;
   const RunnableSweep runnable = quick_sweep(folder);
@@ -289,6 +325,138 @@ TEST(SweepEffects, OfADrawnSampleComeFromClasses) {
   // Shares 4/5 and 1/5; sixteen classes leave 1/256 of a's own variance within them.
   EXPECT_NEAR(effects[0].parameters[0].first_order.value(), 0.8, 0.02);
   EXPECT_NEAR(effects[0].parameters[1].first_order.value(), 0.2, 0.02);
+  // The response is a plane: its ends are exact, b at its middle.
+  ASSERT_EQ(effects[0].parameters[0].ends.size(), 2u);
+  EXPECT_NEAR(effects[0].parameters[0].ends[0].mean, 0.5, 1e-9);
+  EXPECT_NEAR(effects[0].parameters[0].ends[1].mean, 2.5, 1e-9);
+  EXPECT_GT(effects[0].parameters[0].levels.size(), 2u);
+}
+
+/// A grid whose response is a function of its two parameters.
+ResponseGrid grid_of(const std::function<double(double, double)>& response) {
+  ResponseGrid grid{.x_key = "a", .y_key = "b", .x = {0, 1, 3}, .y = {-1, 2}, .mean = {}};
+  for (const double x : grid.x) {
+    grid.mean.emplace_back();
+    for (const double y : grid.y) grid.mean.back().push_back(response(x, y));
+  }
+  return grid;
+}
+
+TEST(SweepContours, OfAPlaneAreStraightLinesThroughEveryCell) {
+  const auto grid = grid_of([](double x, double y) { return x + 2 * y; });
+
+  const auto stretches = contour(grid, 1.5);
+
+  ASSERT_EQ(stretches.size(), 2u);
+  double length = 0;
+  for (const auto& [from, to] : stretches) {
+    EXPECT_NEAR(from.x + 2 * from.y, 1.5, 1e-12);
+    EXPECT_NEAR(to.x + 2 * to.y, 1.5, 1e-12);
+    length += std::hypot(to.x - from.x, to.y - from.y);
+  }
+  // From x = 0 (y = 0.75) to x = 3 (y = -0.75).
+  EXPECT_NEAR(length, std::hypot(3, 1.5), 1e-12);
+  EXPECT_TRUE(contour(grid, 100).empty());
+}
+
+TEST(SweepContours, OfASaddleCutOffTheCornersThatTheMiddleDoesNotBelongTo) {
+  ResponseGrid grid{.x_key = "a", .y_key = "b", .x = {0, 1}, .y = {0, 1}, .mean = {{1, 0}, {0, 1}}};
+
+  const auto low = contour(grid, 0.25), high = contour(grid, 0.75);
+
+  // The middle is 0.5: above 0.25 it belongs to (0, 0) and (1, 1), so the lines cut off (1, 0) and (0, 1).
+  ASSERT_EQ(low.size(), 2u);
+  for (const auto& [from, to] : low) EXPECT_GT(std::abs((from.x + to.x) / 2 - (from.y + to.y) / 2), 0.5);
+  ASSERT_EQ(high.size(), 2u);
+  for (const auto& [from, to] : high) EXPECT_GT(std::abs((from.x + to.x) / 2 + (from.y + to.y) / 2 - 1), 0.5);
+}
+
+TEST(SweepPage, HasAFigureForEveryQuestionOrSaysWhyThereIsNone) {
+  SweepTable table;
+  table.columns = {"a", "b", "word", "repeat", "delta_t_k", "y"};
+  const Sweep sweep = expanded("[grid]\na = [0, 1, 2]\nb = [0, 1]\nword = [\"x\", \"<y>\"]\n[repeat]\nseeds = 2\n");
+  for (std::size_t i = 0; i < sweep.count(); ++i) {
+    const auto values = values_of(sweep, i);
+    const double a = *parse_number(values[0]), b = *parse_number(values[1]);
+    table.rows.push_back({a, b, values[2], sweep.task(i).repeat, 2.0, 3 * a + b + 0.01 * static_cast<double>(i % 2)});
+  }
+  table.tasks = sweep.count();
+  const auto effects = sweep_effects(sweep, table, "y");
+  ASSERT_EQ(effects.size(), 1u);
+
+  const auto tornado_drawing = tornado(effects[0], "t");
+  const auto grid = response_grid(sweep, table, effects[0]);
+  const std::string page = render_html(sweep_page(sweep, table, effects));
+
+  ASSERT_TRUE(tornado_drawing && grid);
+  EXPECT_EQ(tornado_drawing->labels.size() > 6, true);
+  EXPECT_EQ(grid->x_key, "a");
+  EXPECT_NEAR(grid->mean[2][1], 7.005, 1e-12);
+  EXPECT_THAT(page, HasSubstr("&lt;y&gt;"));
+  EXPECT_FALSE(response_curve(effects[0], effects[0].parameters[2], "c"));
+  EXPECT_TRUE(render_html(sweep_page(sweep, table, {})).size() > 100);
+  ResponseEffects one{"y", 1, {{.key = "a", .levels = {{"1", 2, {}, 1}}}}};
+  EXPECT_EQ(tornado(one, "t").error().code, ErrorCode::not_identifiable);
+  EXPECT_EQ(response_grid(sweep, SweepTable{}, effects[0]).error().code, ErrorCode::not_identifiable);
+}
+
+TEST(ShippedSweeps, GiveATableInTheirShortForm) {
+  const TemporaryFolder folder;
+  for (const char* name : {"sc2000-sensitivity", "observer-and-sensor", "budget-tolerance"}) {
+    const std::string text = *read_text_file(source_file(std::string("bench/sweeps/") + name + ".toml"));
+    folder.write(std::string(name) + ".toml", text);
+    const auto runnable = load_sweep(folder.path() / (std::string(name) + ".toml"));
+    ASSERT_TRUE(runnable) << runnable.error().message;
+    EXPECT_EQ(runnable->sweep.refused(), 0u) << name;
+    // The first task and the last stand for the others.
+    for (const std::size_t i : {std::size_t{0}, runnable->sweep.count() - 1})
+      EXPECT_EQ(run_and_store(*runnable, i, {}).kind, TaskOutcome::Kind::done) << name;
+    EXPECT_EQ(collected(runnable->sweep, MissingTasks::left_out)->rows.size(), 4u) << name;
+  }
+}
+
+/// Chunks of two tasks of five, each a shell that says how it ended.
+ProcessPool pool_of(const std::string& script, std::size_t jobs) {
+  return {.tasks = 5, .jobs = jobs, .chunk = 2, .command = [script](std::size_t first, std::size_t last) {
+            return std::vector<std::string>{"/bin/sh", "-c", script, "sh", std::to_string(first), std::to_string(last)};
+          }};
+}
+
+TEST(ProcessPool, RunsEveryChunkAndSaysTheWorstExitCode) {
+  const TemporaryFolder folder;
+  for (const std::size_t jobs : {1u, 2u, 9u}) {
+    const auto name = folder.path() / std::to_string(jobs);
+    ProcessPool pool = pool_of("echo $1-$2 >> " + name.string() + "; exit $1", jobs);
+    std::vector<std::size_t> progress;
+    pool.on_progress = [&](std::size_t done) { progress.push_back(done); };
+
+    EXPECT_EQ(run_pool(pool, {}).value(), 4);
+
+    const std::string text = *read_text_file(name);
+    for (const char* chunk : {"0-1\n", "2-3\n", "4-4\n"}) EXPECT_THAT(text, HasSubstr(chunk));
+    EXPECT_EQ(text.size(), 12u);
+    EXPECT_EQ(progress.size(), 3u);
+    EXPECT_EQ(progress.back(), 5u);
+  }
+  ProcessPool pool = pool_of("", 2);
+  pool.command = [](std::size_t, std::size_t) { return std::vector<std::string>{"/no/such/program"}; };
+  EXPECT_EQ(run_pool(pool, {}).error().code, ErrorCode::not_found);
+}
+
+TEST(ProcessPool, EndsItsChildrenWhenAskedToStop) {
+  // Every child would run for an hour; the first that is there asks for the end of all.
+  const TemporaryFolder folder;
+  const auto pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::stop_source stop;
+  const std::jthread asks([&] {
+    std::ifstream reads(pipe);
+    reads.get();
+    stop.request_stop();
+  });
+
+  EXPECT_EQ(run_pool(pool_of("echo > " + pipe.string() + "; exec sleep 3600", 1), stop.get_token()).value(), 130);
+  EXPECT_EQ(run_pool(pool_of("exec sleep 3600", 2), stop.get_token()).value(), 130) << "nothing is started any more";
 }
 
 TEST(LoadSweep, RefusesUnknownKeysAndValuesBeforeAnythingRuns) {

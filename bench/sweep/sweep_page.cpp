@@ -1,0 +1,112 @@
+#include "bench/sweep/sweep_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "bench/report/number_format.h"
+#include "bench/sweep/sweep_figures.h"
+#include "bench/text/text.h"
+
+namespace todbench {
+namespace {
+
+RichText share(std::optional<double> value, const Interval& interval, std::string_view reason) {
+  if (!value) return missing(reason);
+  std::string text = shown(*value, 3);
+  if (interval.low && interval.high) text += " [" + shown(*interval.low, 3) + ", " + shown(*interval.high, 3) + "]";
+  return unbroken(text);
+}
+
+Table index_table(const ResponseEffects& effects, bool drawn) {
+  Table table{.caption = "Shares of the variance of " + effects.response + ", 95 % over the repeats",
+              .header = {"Parameter", "First order", "Total"},
+              .rows = {}};
+  for (const auto& effect : effects.parameters) {
+    table.rows.push_back(
+        {plain(effect.key), share(effect.first_order, effect.first_order_ci95, "no variance"),
+         share(effect.total, effect.total_ci95, drawn ? "not identifiable from a drawn sample" : "no variance")});
+  }
+  return table;
+}
+
+Table level_table(const ResponseEffects& effects) {
+  Table table{.caption = "Mean of " + effects.response + " at each value, over everything else",
+              .header = {"Parameter", "Value", "Mean, 95 % over the repeats", "Rows"},
+              .rows = {}};
+  for (const auto& effect : effects.parameters) {
+    for (const auto& level : effect.levels) {
+      const auto number = parse_number(level.value);
+      table.rows.push_back({plain(effect.key), plain(number ? stated(*number) : level.value),
+                            unbroken(with_interval(level.mean, level.ci95)), plain(std::to_string(level.rows))});
+    }
+  }
+  return table;
+}
+
+Section response_section(const Sweep& sweep, const SweepTable& table, const ResponseEffects& effects,
+                         std::size_t number) {
+  const std::string id = fmt::format("contrast-{}", number);
+  const bool drawn_sample = !sweep.file().sample.empty();
+  Section section{fmt::format("{} at {} K", effects.response, stated(effects.delta_t_k)), {}};
+  section.blocks.emplace_back(index_table(effects, drawn_sample));
+  section.blocks.emplace_back(
+      Figure{tornado(effects, id + "-tornado"),
+             drawn_sample ? "Main effects: the response at the ends of each range on the plane through all rows"
+                          : "Main effects: from the lowest to the highest mean response, with the values where they "
+                            "are"});
+  FigurePairs curves;
+  for (std::size_t i = 0; i < effects.parameters.size(); ++i) {
+    const auto& effect = effects.parameters[i];
+    if (auto curve = response_curve(effects, effect, fmt::format("{}-curve-{}", id, i)))
+      curves.figures.push_back({std::move(curve), "Mean response against " + effect.key});
+  }
+  if (!curves.figures.empty()) section.blocks.emplace_back(std::move(curves));
+  const auto grid = response_grid(sweep, table, effects);
+  section.blocks.emplace_back(
+      Figure{grid ? contour_plot(*grid, effects, id + "-contours") : Result<Drawing>(tl::unexpected(grid.error())),
+             "Contours over the two parameters that explain most, means over everything else, bilinear between the "
+             "combinations"});
+  section.blocks.emplace_back(level_table(effects));
+  return section;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const auto& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+Section identity_section(const Sweep& sweep, const SweepTable& table) {
+  ValueTable values{.caption = "Where the numbers come from", .values = {}};
+  values.values = {{"Program", plain("todbench " + table.version + " (" + table.commit + ")")},
+                   {"Sweep (SHA-256)", plain(sweep.hash())},
+                   {"Tasks with a result", plain(fmt::format("{} of {}", table.tasks - table.missing, table.tasks))},
+                   {"Combinations that a condition refuses", plain(std::to_string(sweep.refused()))},
+                   {"Parameters", plain(joined(sweep.keys()))},
+                   {"Random numbers", plain(sweep.file().paired ? "those of a repeat are the same for all tasks"
+                                                                : "every task has its own")}};
+  return {"Record", {std::move(values)}};
+}
+
+}  // namespace
+
+Document sweep_page(const Sweep& sweep, const SweepTable& table, const std::vector<ResponseEffects>& effects) {
+  Document document{.title = "Sweep " + sweep.file().name,
+                    .heading = "Sweep " + sweep.file().name,
+                    .subtitle = fmt::format("{} rows of {} tasks", table.rows.size(), table.tasks - table.missing),
+                    .page_label = sweep.file().name,
+                    .opening = {},
+                    .sections = {}};
+  if (table.missing > 0)
+    document.opening.emplace_back(Paragraph{
+        strong(fmt::format("{} tasks have no result: means and shares are those of the others.", table.missing))});
+  if (effects.empty()) document.opening.emplace_back(Paragraph{plain("The table has no numbers of this response.")});
+  for (std::size_t i = 0; i < effects.size(); ++i)
+    document.sections.push_back(response_section(sweep, table, effects[i], i));
+  document.sections.push_back(identity_section(sweep, table));
+  return document;
+}
+
+}  // namespace todbench
