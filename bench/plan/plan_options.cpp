@@ -39,6 +39,7 @@ ConstantStimuliOptions stimuli_options(const Plan& plan, const std::vector<Targe
                                        Side side) {
   ConstantStimuliOptions options;
   for (const TargetPlate& plate : plates) options.plates.push_back(plate.name);
+  options.drawings = plates;
   options.mountings = plan.target.mountings;
   options.delta_t_k = plan.target.delta_t_k;
   options.phases = side == Side::measured ? plan.target.phases : plan.simulation.phases;

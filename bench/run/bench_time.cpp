@@ -13,6 +13,7 @@ std::vector<TargetState> listed_states(const Plan& plan, const std::vector<Targe
   ConstantStimuliOptions stimuli = stimuli_options(plan, plates, plan.camera.ifov_mrad, Side::measured);
   // Shifts are counted, not measured: a plan without a camera has them too.
   stimuli.pixel_mm = 1;
+  stimuli.drawings.clear();
   if (plan.schedule.kind == ScheduleKind::adaptive) {
     const double visit_order[] = {3, 2, 1, 0};
     std::copy(std::begin(visit_order), std::end(visit_order), std::begin(stimuli.change_cost_s));

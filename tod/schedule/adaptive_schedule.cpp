@@ -44,7 +44,15 @@ bool contradicted(const PsychometricFit& fit) {
 AdaptiveSchedule::AdaptiveSchedule(AdaptiveOptions options, const RandomStream& stream) : options_(std::move(options)) {
   assert(!options_.plates.empty() && options_.distance_m > 0 && options_.stimuli.phases > 0);
   for (std::size_t p = 0; p < options_.plates.size(); ++p) {
-    for (const Mounting mounting : options_.stimuli.mountings) set_ups_.push_back({p, mounting, 0});
+    std::vector<PhasedTriangle> triangles;
+    for (std::size_t m = 0; m < options_.stimuli.mountings.size(); ++m) {
+      const Mounting mounting = options_.stimuli.mountings[m];
+      set_ups_.push_back({.plate = p, .mounting = mounting, .group = m});
+      const auto more = phased_triangles(options_.plates[p], mounting, options_.stimuli.pixel_mm, m);
+      triangles.insert(triangles.end(), more.begin(), more.end());
+    }
+    if (options_.stimuli.mountings.empty()) continue;
+    phases_.push_back(even_phases(triangles, options_.stimuli.mountings.size(), options_.stimuli.phases));
   }
   std::vector<double> sorted = options_.stimuli.delta_t_k;
   std::ranges::stable_sort(sorted, [](double a, double b) { return std::abs(a) > std::abs(b); });
@@ -53,9 +61,12 @@ AdaptiveSchedule::AdaptiveSchedule(AdaptiveOptions options, const RandomStream& 
     Contrast contrast{.delta_t_k = sorted[c],
                       .knowledge = PsiPlacement(prior, stream.sub(2 * c)),
                       .trials = {},
-                      .phases = spread_phases(options_.max_presentations + 1, stream.sub(2 * c + 1)),
+                      .starts = {},
                       .progress = {}};
     contrast.progress.delta_t_k = sorted[c];
+    const RandomStream start = stream.sub(2 * c + 1);
+    for (std::size_t p = 0; p < options_.plates.size(); ++p)
+      contrast.starts.emplace_back(start.uniform(2 * p), start.uniform(2 * p + 1));
     contrasts_.push_back(std::move(contrast));
   }
   if (!set_ups_.empty() && !contrasts_.empty()) begin_visit();
@@ -99,6 +110,15 @@ void AdaptiveSchedule::begin_visit() {
   shown_here_ = 0;
 }
 
+cv::Point2d AdaptiveSchedule::next_phase(const Contrast& contrast) const {
+  const SetUp& set_up = set_ups_[current_set_up_];
+  const EvenPhases& phases = phases_[set_up.plate];
+  const cv::Point2d between = plastic_points(set_up.visits).back();
+  const cv::Point2d p = phases.shifts[set_up.group][static_cast<std::size_t>(shown_here_)] +
+                        contrast.starts[set_up.plate] + between.x * phases.cell[0] + between.y * phases.cell[1];
+  return {p.x - std::floor(p.x), p.y - std::floor(p.y)};
+}
+
 std::optional<TargetState> AdaptiveSchedule::next() {
   if (set_ups_.empty() || contrasts_.empty()) return std::nullopt;
   const auto all_settled = [&] {
@@ -120,8 +140,7 @@ std::optional<TargetState> AdaptiveSchedule::next() {
   state.plate = options_.plates[set_up.plate].name;
   state.mounting = set_up.mounting;
   state.delta_t_k = contrast.delta_t_k;
-  state.shift_mm =
-      options_.stimuli.pixel_mm * contrast.phases[static_cast<std::size_t>(contrast.progress.presentations)];
+  state.shift_mm = options_.stimuli.pixel_mm * next_phase(contrast);
   registered_ = true;
   ++contrast.progress.presentations;
   ++shown_here_;

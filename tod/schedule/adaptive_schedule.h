@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tod/psychometric/psychometric_fit.h"
+#include "tod/schedule/even_phases.h"
 #include "tod/schedule/psi_placement.h"
 #include "tod/schedule/schedule.h"
 
@@ -39,7 +40,8 @@ struct ContrastProgress {
 /// contrast, where the plate is registered, and goes on with the open ones. A contrast is settled when it has 40 trials
 /// of three sizes in eight presentations or more, a two-sided interval with half-width below the wanted one, and a fit
 /// that the data do not contradict (deviance, p > 0.001); it ends in the middle of a visit. The run ends when all are
-/// settled or at the cap.
+/// settled or at the cap. The shifts of a visit are those of even_phases(), over the mountings of its plate; those of
+/// every further visit of a set-up lie between them.
 class AdaptiveSchedule final : public TrialSchedule {
  public:
   AdaptiveSchedule(AdaptiveOptions options, const RandomStream& stream);
@@ -55,22 +57,26 @@ class AdaptiveSchedule final : public TrialSchedule {
   struct SetUp {
     std::size_t plate = 0;
     Mounting mounting = Mounting::identity;
+    std::size_t group = 0;  ///< number of the mounting
     int visits = 0;
   };
   struct Contrast {
     double delta_t_k = 0;
     PsiPlacement knowledge;
     std::vector<Trial> trials;
-    std::vector<cv::Point2d> phases;  ///< fractions of a pixel
+    std::vector<cv::Point2d> starts;  ///< of the phases of each plate, fractions of a pixel
     ContrastProgress progress;
   };
 
   void begin_visit();
+  /// Of the next presentation of a contrast in this set-up, as a fraction of a pixel.
+  [[nodiscard]] cv::Point2d next_phase(const Contrast& contrast) const;
   [[nodiscard]] double value_per_second(const SetUp& set_up) const;
   void judge(Contrast& contrast) const;
 
   AdaptiveOptions options_;
   std::vector<SetUp> set_ups_;
+  std::vector<EvenPhases> phases_;  ///< of each plate
   std::vector<Contrast> contrasts_;
   std::size_t current_set_up_ = 0;
   std::vector<std::size_t> to_visit_;  ///< contrasts of this visit still to come, the present one first

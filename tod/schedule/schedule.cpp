@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <map>
+
+#include "tod/schedule/even_phases.h"
 
 namespace todbench {
 namespace {
@@ -25,7 +28,7 @@ class Nesting {
   }
 
   std::vector<TargetState> run() {
-    descend(0, 0);
+    descend(0);
     return std::move(states_);
   }
 
@@ -43,19 +46,58 @@ class Nesting {
     }
   }
 
-  /// `outer` numbers the combination of the loops outside this one. Each gets shifts of its own, so that set-ups and
-  /// contrasts do not share phases; loops inside the shift share them, because there a new shift would cost more than
-  /// what they change.
-  void descend(std::size_t depth, std::uint64_t outer) {
+  /// Whether a loop is outside that of the shifts.
+  [[nodiscard]] bool outside(Dimension dimension) const {
+    return std::ranges::find(order_, dimension) < std::ranges::find(order_, shift_dimension);
+  }
+
+  /// The triangles that share shifts with those of plate `index_`: of every plate where that loop is inside.
+  [[nodiscard]] std::vector<PhasedTriangle> triangles_together() const {
+    std::vector<PhasedTriangle> all;
+    for (std::size_t p = 0; p < options_.plates.size(); ++p) {
+      if (outside(plate_dimension) && p != index_[plate_dimension]) continue;
+      const auto drawing = std::ranges::find(options_.drawings, options_.plates[p], &TargetPlate::name);
+      if (drawing == options_.drawings.end() || !(options_.pixel_mm > 0)) continue;
+      for (std::size_t m = 0; m < options_.mountings.size(); ++m) {
+        const auto more =
+            phased_triangles(*drawing, options_.mountings[m], options_.pixel_mm, outside(mounting_dimension) ? m : 0);
+        all.insert(all.end(), more.begin(), more.end());
+      }
+    }
+    return all;
+  }
+
+  /// The shifts of this turn of the loops outside. Mountings have one random start in common, so that their phases fit
+  /// together; plates and contrasts have their own. Loops inside the shift share shifts, because there a new one would
+  /// cost more than what they change.
+  [[nodiscard]] std::vector<cv::Point2d> shifts() {
+    const std::size_t plate = outside(plate_dimension) ? index_[plate_dimension] : 0;
+    const std::size_t group = outside(mounting_dimension) ? index_[mounting_dimension] : 0;
+    const std::size_t contrast = outside(contrast_dimension) ? index_[contrast_dimension] : 0;
+    auto [phases, is_new] = phases_.try_emplace(plate);
+    if (is_new) {
+      const std::size_t groups = outside(mounting_dimension) ? options_.mountings.size() : 1;
+      phases->second = even_phases(triangles_together(), groups, options_.phases);
+    }
+    const RandomStream start = stream_.sub(plate * contrasts_.size() + contrast);
+    std::vector<cv::Point2d> out;
+    for (const cv::Point2d& shift : phases->second.shifts[group]) {
+      const cv::Point2d p = shift + cv::Point2d(start.uniform(0), start.uniform(1));
+      out.push_back(options_.pixel_mm * cv::Point2d(p.x - std::floor(p.x), p.y - std::floor(p.y)));
+    }
+    return out;
+  }
+
+  void descend(std::size_t depth) {
     if (depth == dimensions) {
       states_.push_back(state_);
       return;
     }
     const std::size_t dimension = order_[depth];
-    const std::size_t count = length(dimension);
-    std::vector<cv::Point2d> phases;
-    if (dimension == shift_dimension) phases = spread_phases(options_.phases, stream_.sub(outer));
-    for (std::size_t i = 0; i < count; ++i) {
+    std::vector<cv::Point2d> shifts_mm;
+    if (dimension == shift_dimension && length(dimension) > 0) shifts_mm = shifts();
+    for (std::size_t i = 0; i < length(dimension); ++i) {
+      index_[dimension] = i;
       switch (dimension) {
         case plate_dimension:
           state_.plate = options_.plates[i];
@@ -67,10 +109,10 @@ class Nesting {
           state_.delta_t_k = contrasts_[i];
           break;
         default:
-          state_.shift_mm = options_.pixel_mm * phases[i];
+          state_.shift_mm = shifts_mm[i];
           break;
       }
-      descend(depth + 1, outer * count + i);
+      descend(depth + 1);
     }
   }
 
@@ -78,6 +120,8 @@ class Nesting {
   const RandomStream& stream_;
   std::vector<double> contrasts_;
   std::array<std::size_t, dimensions> order_{plate_dimension, mounting_dimension, contrast_dimension, shift_dimension};
+  std::array<std::size_t, dimensions> index_{};
+  std::map<std::size_t, EvenPhases> phases_;  ///< by plate
   TargetState state_;
   std::vector<TargetState> states_;
 };
@@ -85,6 +129,15 @@ class Nesting {
 }  // namespace
 
 void TrialSchedule::observe(std::span<const Trial> /*trials*/) {}
+
+std::vector<cv::Point2d> plastic_points(int count) {
+  const double step_x = 1 / plastic_number;
+  const double step_y = 1 / (plastic_number * plastic_number);
+  std::vector<cv::Point2d> points;
+  for (int i = 0; i < count; ++i)
+    points.emplace_back(i * step_x - std::floor(i * step_x), i * step_y - std::floor(i * step_y));
+  return points;
+}
 
 std::vector<cv::Point2d> spread_phases(int count, const RandomStream& stream) {
   const double step_x = 1 / plastic_number;

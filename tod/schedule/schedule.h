@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "acquisition/core/rng.h"
+#include "tod/plate/target_plate.h"
 #include "tod/presentation/target.h"
 #include "tod/presentation/trial.h"
 
@@ -28,6 +29,9 @@ class TrialSchedule {
 /// The method of constant stimuli on plates: every plate in every mounting at every contrast in every phase.
 struct ConstantStimuliOptions {
   std::vector<std::string> plates;
+  /// Of the plates, by name: phases of their triangles are chosen together. A plate that is not here counts as one
+  /// triangle in its middle.
+  std::vector<TargetPlate> drawings;
   std::vector<Mounting> mountings;
   std::vector<double> delta_t_k;
   int phases = 16;                              ///< sub-pixel shifts per plate, mounting and contrast
@@ -35,12 +39,18 @@ struct ConstantStimuliOptions {
   double change_cost_s[4] = {60, 30, 20, 0.1};  ///< plate, mounting, contrast, shift
 };
 
+/// The first `count` points of the additive recurrence with the plastic number (Roberts 2018) in [0, 1)^2, from the
+/// origin.
+[[nodiscard]] std::vector<cv::Point2d> plastic_points(int count);
+
 /// `count` sub-pixel shifts in [0, 1)^2, spread evenly for every count (additive recurrence with the plastic number,
 /// Roberts 2018), started at a random place of `stream`.
 [[nodiscard]] std::vector<cv::Point2d> spread_phases(int count, const RandomStream& stream);
 
 /// Presentations nested so that what takes longest to change changes least often; within a contrast group the highest
 /// contrast comes first, because the plate is registered there. Ties keep the order plate, mounting, contrast, shift.
+/// Shifts are those of even_phases(), over mountings where a shift is cheaper than a mounting, from a place of the
+/// pixel that is random for every plate and contrast.
 [[nodiscard]] std::vector<TargetState> constant_stimuli(const ConstantStimuliOptions& options,
                                                         const RandomStream& stream);
 
