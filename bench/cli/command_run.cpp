@@ -15,6 +15,7 @@
 #include "bench/run/replay.h"
 #include "bench/session/measures_record.h"
 #include "bench/session/provenance.h"
+#include "bench/session/uncertainty_record.h"
 #include "tod/psychometric/acuity.h"
 
 namespace todbench {
@@ -124,6 +125,28 @@ void print_measures(const Console& console, const ExperimentOutcome& outcome) {
   console.table({"measure", "unit", "value", "95 %", "twin"}, rows);
 }
 
+/// Statistical and expanded interval side by side, and what dominates.
+void print_uncertainty(const Console& console, const ExperimentOutcome& outcome) {
+  if (!outcome.uncertainty) return;
+  std::vector<TableRow> rows;
+  for (const PointUncertainty& point : outcome.uncertainty->points) {
+    const auto largest =
+        std::max_element(point.rows.begin(), point.rows.end(),
+                         [](const AppliedRow& a, const AppliedRow& b) { return a.contribution < b.contribution; });
+    rows.push_back({fixed(point.set_delta_t_k, 3), fixed(point.contrast_slope, 3),
+                    range(acuity_interval(point.statistical_mrad), 4), range(acuity_interval(point.expanded_mrad), 4),
+                    point.combined ? fixed(100 * point.combined->u, 2) : "–",
+                    largest == point.rows.end() ? "–" : largest->row.name});
+  }
+  console.text("");
+  console.table({"dT set [K]", "d ln acuity / d ln dT", "acuity, statistical 95 % [1/mrad]", "expanded 95 % [1/mrad]",
+                 "u [%]", "largest row"},
+                rows);
+  std::string missing;
+  for (const std::string& name : outcome.uncertainty->not_stated) missing += (missing.empty() ? "" : ", ") + name;
+  if (!missing.empty()) console.text("not stated: " + missing);
+}
+
 /// What every run says in JSON beside its numbers.
 void add_verdict(Json& json, const Verdict& verdict) {
   json["verdict"] = to_string(verdict.decision);
@@ -164,6 +187,7 @@ int run_measure(Console& console, const RunArguments& arguments, const Program& 
   if (!outcome) return report_error(console, outcome.error());
   if (console.json()) {
     Json json = curve_json(outcome->curve, outcome->effects, outcome->figures);
+    if (outcome->uncertainty) add_uncertainty(json, *outcome->uncertainty);
     add_verdict(json, outcome->verdict);
     add_measures(json, *outcome);
     console.object(json);
@@ -173,6 +197,7 @@ int run_measure(Console& console, const RunArguments& arguments, const Program& 
       console.text("");
       print_comparison(console, *outcome);
     }
+    print_uncertainty(console, *outcome);
     print_measures(console, *outcome);
     print_verdict(console, *outcome);
   }
@@ -189,6 +214,7 @@ int run_simulate(Console& console, SimulateArguments arguments, const Program& p
   if (!outcome) return report_error(console, outcome.error());
   if (console.json()) {
     Json json = curve_json(outcome->curve, outcome->effects, outcome->figures);
+    if (outcome->uncertainty) add_uncertainty(json, *outcome->uncertainty);
     add_verdict(json, outcome->verdict);
     add_measures(json, *outcome);
     console.object(json);
@@ -196,6 +222,7 @@ int run_simulate(Console& console, SimulateArguments arguments, const Program& p
     print_curve(console, outcome->curve);
     console.text("");
     print_effects(console, outcome->effects);
+    print_uncertainty(console, *outcome);
     print_measures(console, *outcome);
     print_verdict(console, *outcome);
   }
@@ -223,11 +250,13 @@ int run_demo(Console& console, const RunArguments& arguments, const std::string&
     Json json{{"measured", curve_json(outcome->curve, {}, outcome->figures)},
               {"simulated", outcome->twin ? curve_json(*outcome->twin, outcome->effects, {}) : Json()},
               {"comparison", outcome->comparison ? comparison_json(*outcome->comparison) : Json()}};
+    if (outcome->uncertainty) add_uncertainty(json["measured"], *outcome->uncertainty);
     add_verdict(json, outcome->verdict);
     json["session"] = outcome->folder.string();
     console.object(json);
   } else {
     if (outcome->comparison) print_comparison(console, *outcome);
+    print_uncertainty(console, *outcome);
     print_measures(console, *outcome);
     print_verdict(console, *outcome);
     console.text("report: " + (outcome->folder / "report.html").string());

@@ -43,38 +43,34 @@ void withhold(Demand& demand, const std::optional<Adequacy>& adequacy) {
 
 // acuity
 
-/// The smallest interval that contains both; an open side stays open.
-Interval hull(const Interval& a, const Interval& b) {
-  Interval both;
-  if (a.low && b.low) both.low = std::min(*a.low, *b.low);
-  if (a.high && b.high) both.high = std::max(*a.high, *b.high);
-  return both;
-}
+/// The interval of S75 that decides: with a budget the expanded one.
+struct Deciding {
+  Interval s75_mrad;
+  std::optional<Interval> statistical_mrad{};
+};
 
-/// The interval of S75 in mrad that decides. A slope at its lower bound makes any threshold number meaningless: no
-/// interval then.
-Interval deciding_interval(const TodPoint& point) {
-  const auto usable = [](const PsychometricFit& fit) {
-    return fit.verdict == FitVerdict::flat_or_decreasing || fit.verdict == FitVerdict::no_data ? Interval{} : fit.ci95;
-  };
-  const Interval interval = usable(point.fit);
-  return point.lapse_warning && point.free_lapse_fit ? hull(interval, usable(*point.free_lapse_fit)) : interval;
+Deciding deciding_of(const TodPoint& point, const CurveUncertainty* uncertainty) {
+  const PointUncertainty* found = uncertainty == nullptr ? nullptr : point_at(*uncertainty, point.set_delta_t_k);
+  if (found == nullptr) return {deciding_interval(point)};
+  return {found->expanded_mrad, found->statistical_mrad};
 }
 
 /// Passes when the whole 95 % interval is at or above the limit (exactly on it passes), fails when the whole interval
 /// is below it; a one-sided limit of the fit decides in its direction. Where a free lapse explains the data
 /// significantly better, both fits have to agree: the union of their intervals counts.
-Demand judged_acuity(const AcuityLimit& limit, const TodCurve& curve) {
+Demand judged_acuity(const AcuityLimit& limit, const TodCurve& curve, const CurveUncertainty* uncertainty) {
   Demand demand{.kind = DemandKind::acuity, .delta_t_k = limit.delta_t_k, .limit = limit.least_acuity_per_mrad};
   const TodPoint* point = point_at(curve, limit.delta_t_k);
   if (point == nullptr) {
     demand.reason = "this contrast was not measured";
     return demand;
   }
-  const Interval s75_mrad = deciding_interval(*point);
+  const Deciding deciding = deciding_of(*point, uncertainty);
+  const Interval& s75_mrad = deciding.s75_mrad;
   const double largest_mrad = 1 / limit.least_acuity_per_mrad;
   demand.result = acuity_per_mrad(point->fit);
   demand.interval = acuity_interval(s75_mrad);
+  if (deciding.statistical_mrad) demand.statistical = acuity_interval(*deciding.statistical_mrad);
   // Compared as sizes, the quantity that was estimated: one rounding instead of two, so that "exactly on the limit"
   // exists.
   if (s75_mrad.high && *s75_mrad.high <= largest_mrad) {
@@ -96,7 +92,8 @@ Demand judged_acuity(const AcuityLimit& limit, const TodCurve& curve) {
 
 std::vector<Demand> judge_acuity(const Evidence& evidence) {
   std::vector<Demand> demands;
-  for (const AcuityLimit& limit : evidence.limits.acuity) demands.push_back(judged_acuity(limit, evidence.curve));
+  for (const AcuityLimit& limit : evidence.limits.acuity)
+    demands.push_back(judged_acuity(limit, evidence.curve, evidence.uncertainty));
   return demands;
 }
 
@@ -106,9 +103,13 @@ std::string acuity_in_words(const Demand& demand) {
 
 // identified
 
-Demand judged_identified(const TodPoint& point) {
+Demand judged_identified(const TodPoint& point, const CurveUncertainty* uncertainty) {
   Demand demand{.kind = DemandKind::identified, .delta_t_k = point.set_delta_t_k};
   demand.interval = acuity_interval(point.fit.ci95);
+  if (const auto found = deciding_of(point, uncertainty); found.statistical_mrad && threshold_identified(point.fit)) {
+    demand.statistical = demand.interval;
+    demand.interval = acuity_interval(found.s75_mrad);
+  }
   if (threshold_identified(point.fit)) {
     demand.result = acuity_per_mrad(point.fit);
     demand.decision = VerdictKind::pass;
@@ -128,7 +129,7 @@ std::vector<Demand> judge_identified(const Evidence& evidence) {
     if (std::any_of(limits.begin(), limits.end(),
                     [&](const auto& limit) { return same_contrast(point.set_delta_t_k, limit.delta_t_k); }))
       continue;
-    demands.push_back(judged_identified(point));
+    demands.push_back(judged_identified(point, evidence.uncertainty));
   }
   return demands;
 }
@@ -156,35 +157,34 @@ std::optional<double> largest_deviation_percent(const Comparison& comparison) {
 
 /// The interval of the largest deviation, from the 90 % intervals of the ratios: two one-sided tests at 5 % show
 /// equivalence where its upper end is within the margin. A side that a ratio leaves open is open.
-Interval deviation_interval_percent(const Comparison& comparison) {
+Interval deviation_interval_percent(const std::vector<Interval>& ratios_90) {
   double low = 0, high = 0;
-  for (const ComparisonPoint& point : comparison.points) {
-    const auto& [ratio_low, ratio_high] = point.ratio_ci90;
+  for (const auto& [ratio_low, ratio_high] : ratios_90) {
     if (!ratio_low || !ratio_high) return {};
     const bool holds_one = *ratio_low <= 1 && *ratio_high >= 1;
     const double a = deviation_percent(*ratio_low), b = deviation_percent(*ratio_high);
     if (!holds_one) low = std::max(low, std::min(a, b));
     high = std::max({high, a, b});
   }
-  if (comparison.points.empty()) return {};
+  if (ratios_90.empty()) return {};
   return {low, high};
 }
 
 /// "; ratios with their 90 % intervals between 0.951 and 1.063", or nothing where a side is open.
-std::string span_of_ratios(const Comparison& comparison) {
+std::string span_of_ratios(const std::vector<Interval>& ratios_90) {
   std::optional<double> low, high;
-  for (const ComparisonPoint& point : comparison.points) {
-    if (!point.ratio_ci90.low || !point.ratio_ci90.high) return {};
-    low = std::min(low.value_or(*point.ratio_ci90.low), *point.ratio_ci90.low);
-    high = std::max(high.value_or(*point.ratio_ci90.high), *point.ratio_ci90.high);
+  for (const Interval& ratio : ratios_90) {
+    if (!ratio.low || !ratio.high) return {};
+    low = std::min(low.value_or(*ratio.low), *ratio.low);
+    high = std::max(high.value_or(*ratio.high), *ratio.high);
   }
   if (!low) return {};
   return "; 90 % intervals of the ratios between " + rounded(*low) + " and " + rounded(*high);
 }
 
-std::string reason_of(const Comparison& comparison) {
-  const std::string span = span_of_ratios(comparison);
-  switch (comparison.verdict) {
+std::string reason_of(ComparisonVerdict verdict, const std::vector<Interval>& ratios_90) {
+  const std::string span = span_of_ratios(ratios_90);
+  switch (verdict) {
     case ComparisonVerdict::equivalent:
       return "equivalent at every contrast (two one-sided tests at 5 %)" + span;
     case ComparisonVerdict::different:
@@ -193,6 +193,42 @@ std::string reason_of(const Comparison& comparison) {
       return "neither equivalence nor a difference is shown by these data (two one-sided tests at 5 %)" + span;
   }
   return "";
+}
+
+/// Of each contrast the 90 % interval that decides.
+std::vector<Interval> ratios_90(const Comparison& comparison, const CurveUncertainty* uncertainty) {
+  std::vector<Interval> ratios;
+  for (const ComparisonPoint& point : comparison.points) {
+    const PointUncertainty* found = uncertainty == nullptr ? nullptr : point_at(*uncertainty, point.set_delta_t_k);
+    ratios.push_back(found != nullptr && found->ratio ? found->ratio->ci90 : point.ratio_ci90);
+  }
+  return ratios;
+}
+
+/// What is left of a contrast's verdict with the expanded intervals.
+ComparisonVerdict expanded_verdict(const ComparisonPoint& point, const ExpandedRatio& ratio) {
+  const double margin = 1 + 0.01 * point.margin_percent;
+  const auto& [low, high] = ratio.ci90;
+  if (point.verdict == ComparisonVerdict::equivalent && low && high && *low >= 1 / margin && *high <= margin)
+    return ComparisonVerdict::equivalent;
+  const bool apart = (ratio.ci95.low && *ratio.ci95.low > 1) || (ratio.ci95.high && *ratio.ci95.high < 1);
+  return point.verdict == ComparisonVerdict::different && apart ? ComparisonVerdict::different
+                                                                : ComparisonVerdict::inconclusive;
+}
+
+/// The verdict of the comparison, with the uncertainty that does not cancel between camera and twin.
+ComparisonVerdict comparison_verdict(const Comparison& comparison, const CurveUncertainty* uncertainty) {
+  if (uncertainty == nullptr) return comparison.verdict;
+  ComparisonVerdict all = ComparisonVerdict::equivalent;
+  for (const ComparisonPoint& point : comparison.points) {
+    const PointUncertainty* found = point_at(*uncertainty, point.set_delta_t_k);
+    const ComparisonVerdict one =
+        found != nullptr && found->ratio ? expanded_verdict(point, *found->ratio) : point.verdict;
+    if (one == ComparisonVerdict::different) return one;
+    if (one == ComparisonVerdict::inconclusive) all = one;
+  }
+  // What made the comparison undecided as a whole still does.
+  return comparison.verdict == ComparisonVerdict::inconclusive ? comparison.verdict : all;
 }
 
 /// Passes, fails or stays open as the comparison says, where it was made with the margin that is demanded.
@@ -210,9 +246,13 @@ std::vector<Demand> judge_equivalence(const Evidence& evidence) {
     return {demand};
   }
   demand.result = largest_deviation_percent(*evidence.comparison);
-  demand.interval = deviation_interval_percent(*evidence.comparison);
-  demand.decision = decision_of(evidence.comparison->verdict);
-  demand.reason = reason_of(*evidence.comparison);
+  const std::vector<Interval> ratios = ratios_90(*evidence.comparison, evidence.uncertainty);
+  const ComparisonVerdict verdict = comparison_verdict(*evidence.comparison, evidence.uncertainty);
+  demand.interval = deviation_interval_percent(ratios);
+  if (evidence.uncertainty != nullptr)
+    demand.statistical = deviation_interval_percent(ratios_90(*evidence.comparison, nullptr));
+  demand.decision = decision_of(verdict);
+  demand.reason = reason_of(verdict, ratios);
   if (const auto& found = evidence.comparison->adequacy; found && !found->adequate())
     demand.reason += "; not fit for a decision: " + reasons_unfit(*found);
   return {demand};

@@ -103,8 +103,8 @@ class RowDraws {
 
 /// 95 % of |sum| lie below it; every row is symmetric.
 double monte_carlo_half_width(const UncertaintyBudget& budget, const std::vector<BudgetShare>& shares,
-                              std::uint64_t seed) {
-  std::vector<double> sums(budget_draws, 0.0);
+                              std::uint64_t seed, int draws) {
+  std::vector<double> sums(static_cast<std::size_t>(draws), 0.0);
   for (std::size_t r = 0; r < budget.rows.size(); ++r) {
     if (shares[r].contribution == 0) continue;
     const RowDraws draw(budget.rows[r], RandomStream(seed, "uncertainty budget").sub(r));
@@ -118,33 +118,7 @@ double monte_carlo_half_width(const UncertaintyBudget& budget, const std::vector
 
 }  // namespace
 
-std::string_view to_string(BudgetDistribution distribution) {
-  switch (distribution) {
-    case BudgetDistribution::normal:
-      return "normal";
-    case BudgetDistribution::rectangular:
-      return "rectangular";
-    case BudgetDistribution::triangular:
-      return "triangular";
-    case BudgetDistribution::u_shaped:
-      return "u-shaped";
-  }
-  return "";
-}
-
-std::string_view to_string(BudgetCommon common) {
-  switch (common) {
-    case BudgetCommon::twin:
-      return "twin";
-    case BudgetCommon::series:
-      return "series";
-    case BudgetCommon::contrasts:
-      return "contrasts";
-  }
-  return "";
-}
-
-Result<CombinedUncertainty> combined(const UncertaintyBudget& budget, std::uint64_t seed) {
+Result<CombinedUncertainty> combined(const UncertaintyBudget& budget, std::uint64_t seed, int draws) {
   if (auto checked = check(budget); !checked) return tl::unexpected(checked.error());
   CombinedUncertainty out;
   double largest = 0;
@@ -172,7 +146,7 @@ Result<CombinedUncertainty> combined(const UncertaintyBudget& budget, std::uint6
     out.k = quantile(complement(boost::math::normal(), upper));
   }
   out.expanded_gum = out.k * out.u;
-  out.expanded_monte_carlo = monte_carlo_half_width(budget, out.shares, seed);
+  if (draws > 0) out.expanded_monte_carlo = monte_carlo_half_width(budget, out.shares, seed, draws);
   out.expanded = std::max(out.expanded_gum, out.expanded_monte_carlo);
   if (!std::isfinite(out.expanded)) return fail(ErrorCode::invalid_input, "a row is too large for a number");
   return out;

@@ -28,6 +28,14 @@ Decided decided(const Verdict& verdict, const TodCurve& curve) {
   return {VerdictKind::pass, "every demand is met"};
 }
 
+/// "; without the uncertainty of distance, form", or nothing.
+std::string without(const Verdict& verdict) {
+  if (!verdict.not_stated || verdict.not_stated->empty()) return {};
+  std::string names;
+  for (const std::string& name : *verdict.not_stated) names += (names.empty() ? "" : ", ") + name;
+  return "; without the uncertainty of " + names;
+}
+
 }  // namespace
 
 std::string_view to_string(VerdictKind kind) {
@@ -97,9 +105,10 @@ Verdict judge(const Evidence& evidence) {
   for (const DemandKindRow& row : demand_kinds()) {
     for (Demand& demand : row.judge(evidence)) verdict.demands.push_back(std::move(demand));
   }
+  if (evidence.uncertainty != nullptr) verdict.not_stated = evidence.uncertainty->not_stated;
   auto [decision, reason] = decided(verdict, evidence.curve);
   verdict.decision = decision;
-  verdict.reason = std::move(reason);
+  verdict.reason = std::move(reason) + without(verdict);
   return verdict;
 }
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/judgement/acuity_uncertainty.h"
 #include "bench/plan/plan.h"
 #include "tod/comparison/comparison.h"
 #include "tod/psychometric/tod_curve.h"
@@ -40,8 +41,10 @@ struct Demand {
   std::optional<double> delta_t_k{};  ///< set contrast; nothing where the demand is not about one contrast
   std::optional<double> limit{};      ///< nothing: the demand is no number
   std::optional<double> result{};
-  Interval interval{};
+  Interval interval{};        ///< that decides
   int interval_percent = 95;  ///< confidence of the interval
+  /// Of the finite number of trials alone, where a budget expands the interval that decides.
+  std::optional<Interval> statistical{};
   VerdictKind decision = VerdictKind::inconclusive;
   std::string reason{};  ///< a sentence
 };
@@ -55,6 +58,8 @@ struct Verdict {
   std::vector<Demand> demands{};
   std::optional<std::string> ended_early{};  ///< why the run did
   JudgedWhen judged = JudgedWhen::at_end_of_run;
+  /// Rows that the budget of the plan leaves out; nothing: the plan has no budget.
+  std::optional<std::vector<std::string>> not_stated{};
 };
 
 /// What is judged. Borrows for the call.
@@ -64,6 +69,7 @@ struct Evidence {
   const std::optional<Comparison>& comparison;
   std::optional<std::string> ended_early{};
   JudgedWhen judged = JudgedWhen::at_end_of_run;
+  const CurveUncertainty* uncertainty = nullptr;  ///< of the curve; null: the plan has no budget
 };
 
 /// Judges every kind of demand. The whole fails if one demand fails, is inconclusive if one is, if nothing was measured

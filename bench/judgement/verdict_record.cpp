@@ -29,6 +29,7 @@ Json demand_json(const Demand& demand) {
   json["result"] = json_number(demand.result);
   json["interval"] = json_interval(demand.interval);
   json["interval_percent"] = demand.interval_percent;
+  if (demand.statistical) json["statistical_interval"] = json_interval(*demand.statistical);
   json["decision"] = to_string(demand.decision);
   json["reason"] = demand.reason;
   return json;
@@ -43,6 +44,8 @@ Demand demand_from(const JsonReader& reader) {
   demand.result = reader.at("result").optional_number();
   demand.interval = reader.at("interval").interval();
   demand.interval_percent = static_cast<int>(reader.at("interval_percent").whole());
+  if (const JsonReader statistical = reader.at_if_there("statistical_interval"); !statistical.is_null())
+    demand.statistical = statistical.interval();
   demand.decision = reader.at("decision").named(decisions);
   demand.reason = reader.at("reason").text();
   return demand;
@@ -61,6 +64,7 @@ Json verdict_json(const Verdict& verdict) {
   for (const Demand& demand : verdict.demands) json["demands"].push_back(demand_json(demand));
   json["ended_early"] = verdict.ended_early ? Json(*verdict.ended_early) : Json();
   json["judged"] = to_string(verdict.judged);
+  if (verdict.not_stated) json["uncertainty_not_stated"] = *verdict.not_stated;
   return json;
 }
 
@@ -76,6 +80,8 @@ Result<Verdict> verdict_from(const Json& record) {
   const JsonReader ended_early = reader.at("ended_early");
   if (!ended_early.is_null()) verdict.ended_early = ended_early.text();
   verdict.judged = reader.at("judged").named(moments);
+  if (const JsonReader not_stated = reader.at_if_there("uncertainty_not_stated"); !not_stated.is_null())
+    verdict.not_stated = not_stated.texts();
   if (const Result<void> read = reader.finish(); !read) return tl::unexpected(read.error());
   return verdict;
 }

@@ -32,6 +32,15 @@ constexpr const auto& values_of(const PsychometricForm&) {
 constexpr const auto& values_of(const Mounting&) {
   return all_mountings;
 }
+constexpr const auto& values_of(const BudgetDistribution&) {
+  return budget_distributions;
+}
+constexpr const auto& values_of(const BudgetCommon&) {
+  return budget_commons;
+}
+constexpr const auto& values_of(const BudgetInput&) {
+  return budget_inputs;
+}
 constexpr const auto& values_of(const Effect&) {
   return all_effects;
 }

@@ -12,6 +12,7 @@
 
 #include "acquisition/core/accuracy.h"
 #include "acquisition/core/result.h"
+#include "bench/plan/budget_row.h"
 #include "bench/plan/resources.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "tod/measurement/measurement.h"
@@ -168,6 +169,7 @@ struct Plan {
   LimitsPlan limits;
   MeasurementPlan measurement;
   MeasuresPlan measures;
+  UncertaintyPlan uncertainty;
   std::vector<InstrumentPlan> instruments;
   bool operator==(const Plan&) const = default;
 };

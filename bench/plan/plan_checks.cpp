@@ -106,6 +106,52 @@ ValueMistakes check_limit_contrast(const Plan& plan, std::size_t row) {
   return mistakes;
 }
 
+ValueMistakes check_require(const Plan& plan, std::size_t /*row*/) {
+  if (!plan.uncertainty.require) return {};
+  std::string missing;
+  for (const BudgetInput input : not_stated(plan.uncertainty)) {
+    missing += (missing.empty() ? "" : ", ") + std::string(to_string(input));
+  }
+  if (missing.empty()) return {};
+  return {{std::nullopt, "the budget has to be complete and does not state " + missing}};
+}
+
+ValueMistakes check_budget_name(const Plan& plan, std::size_t row) {
+  const std::string& name = plan.uncertainty.rows[row].name;
+  for (const std::string_view own : {finite_trials_row, seen_contrast_row, read_back_row}) {
+    if (name == own) return {{std::nullopt, "the run itself states the row \"" + name + "\""}};
+  }
+  for (std::size_t other = 0; other < row; ++other) {
+    if (plan.uncertainty.rows[other].name == name)
+      return {{std::nullopt, "row '" + one_line(name) + "' is there twice"}};
+  }
+  return {};
+}
+
+ValueMistakes check_budget_unit(const Plan& plan, std::size_t row) {
+  const BudgetRow& stated = plan.uncertainty.rows[row];
+  const BudgetInput input = input_of(stated);
+  if (stated.sensitivity) return {};
+  const std::string of = "row '" + one_line(stated.name) + "' enters " + std::string(to_string(input));
+  const auto unit = budget_unit(kind_of(input), stated.unit);
+  if (!unit) {
+    return {{std::nullopt, of + ": expected " +
+                               (kind_of(input) == InputKind::geometry   ? "\"mm\", \"%\" or \"1\""
+                                : kind_of(input) == InputKind::contrast ? "\"K\", \"mK\", \"%\" or \"1\""
+                                                                        : "\"%\" or \"1\"") +
+                               ", or a sensitivity, found \"" + one_line(stated.unit) + "\""}};
+  }
+  if (!unit->relative && input == BudgetInput::ifov)
+    return {{std::nullopt, of + ": expected \"%\" or \"1\", found \"" + one_line(stated.unit) + "\""}};
+  return {};
+}
+
+ValueMistakes check_coverage_factor(const Plan& plan, std::size_t row) {
+  const BudgetRow& stated = plan.uncertainty.rows[row];
+  if (stated.coverage_factor == 1 || stated.distribution == BudgetDistribution::normal) return {};
+  return {{std::nullopt, "row '" + one_line(stated.name) + "': only a normal value has a coverage factor"}};
+}
+
 ValueMistakes check_due_date(const Plan& plan, std::size_t row) {
   const std::string& date = plan.instruments[row].calibration_due;
   if (date.empty() || parse_date(date)) return {};

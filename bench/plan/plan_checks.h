@@ -31,6 +31,14 @@ using ValueMistakes = std::vector<ValueMistake>;
 [[nodiscard]] ValueMistakes check_transfer_steps(const Plan& plan, std::size_t row);
 /// Among the contrasts of the target, and not in an earlier row.
 [[nodiscard]] ValueMistakes check_limit_contrast(const Plan& plan, std::size_t row);
+/// A complete budget states every expected row.
+[[nodiscard]] ValueMistakes check_require(const Plan& plan, std::size_t row);
+/// Not in an earlier row, and no name of a row that a run states itself.
+[[nodiscard]] ValueMistakes check_budget_name(const Plan& plan, std::size_t row);
+/// A unit of what the row enters, unless a sensitivity converts it.
+[[nodiscard]] ValueMistakes check_budget_unit(const Plan& plan, std::size_t row);
+/// Of a normal value only.
+[[nodiscard]] ValueMistakes check_coverage_factor(const Plan& plan, std::size_t row);
 [[nodiscard]] ValueMistakes check_due_date(const Plan& plan, std::size_t row);
 
 /// "YYYY-MM-DD", a day that there is.

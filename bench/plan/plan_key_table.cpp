@@ -407,6 +407,107 @@ PlanSection acuity_limits_section() {
           .form = {"Limits, ΔT (K): least acuity (1/mrad)", "planLimits"}};
 }
 
+PlanSection uncertainty_section() {
+  return {.name = "uncertainty",
+          .sentence =
+              "What the interval of the finite number of trials does not hold. A plan with rows is judged by the "
+              "interval expanded by them.",
+          .keys = {{.name = "require",
+                    .type = FlagKey{},
+                    .sentence = "refuse a plan whose budget leaves out an expected row",
+                    .place = in(&Plan::uncertainty, &UncertaintyPlan::require),
+                    .check = check_require,
+                    .written_at_default = false}}};
+}
+
+/// Words of distributions: their names, and what a budget may say in place of them.
+const std::vector<std::string>& distribution_words() {
+  static const std::vector<std::string> words = [] {
+    std::vector<std::string> all = names_of(budget_distributions);
+    for (const BudgetDistribution distribution : budget_distributions) {
+      if (distribution != BudgetDistribution::normal)
+        all.push_back(std::string(to_string(distribution)) + " half-width");
+    }
+    return all;
+  }();
+  return words;
+}
+
+/// "rectangular half-width" is "rectangular".
+KeyPlace distribution_place() {
+  return {
+      .get = [](const Plan& plan, std::size_t row) { return to_key_value(plan.uncertainty.rows[row].distribution); },
+      .set =
+          [](Plan& plan, std::size_t row, const KeyValue& value) {
+            const auto& word = std::get<std::string>(value);
+            plan.uncertainty.rows[row].distribution = value_named<BudgetDistribution>(word.substr(0, word.find(' ')));
+          }};
+}
+
+PlanSection budget_row_section() {
+  const auto rows = [](auto& plan) -> auto& {
+    return plan.uncertainty.rows;
+  };
+  const auto of = [rows](auto member) { return in_row(rows, member); };
+  return {
+      .name = "uncertainty.component",
+      .sentence = "A row of the budget, as in the file of todbench budget.",
+      .keys = {{.name = "name",
+                .type = TextKey{},
+                .sentence = "what is uncertain",
+                .place = of(&BudgetRow::name),
+                .required = Required::always,
+                .check = check_budget_name},
+               {.name = "value",
+                .type = NumberKey{not_negative},
+                .sentence = "standard uncertainty, half-width or amplitude, as the distribution says; 0: known exactly",
+                .place = of(&BudgetRow::value),
+                .required = Required::always},
+               {.name = "unit",
+                .type = TextKey{},
+                .sentence = "of the value: m, cm, mm, um of lengths, K, mK of contrasts, %, 1",
+                .place = of(&BudgetRow::unit),
+                .check = check_budget_unit},
+               {.name = "distribution",
+                .type = ChoiceKey{distribution_words()},
+                .sentence = "of the value",
+                .place = distribution_place(),
+                .other_names = {"kind"}},
+               {.name = "coverage_factor",
+                .type = NumberKey{positive},
+                .sentence = "of a normal value: value / coverage_factor is standard",
+                .place = of(&BudgetRow::coverage_factor),
+                .check = check_coverage_factor},
+               {.name = "degrees_of_freedom",
+                .type = NumberOrWordKey{NumberRange::between(1, 1e300), "infinite"},
+                .sentence = "of the value",
+                .place = of(&BudgetRow::degrees_of_freedom),
+                .other_names = {"nu"}},
+               {.name = "enters",
+                .type = ChoiceKey{names_of(budget_inputs)},
+                .sentence = "through what the row reaches the acuity",
+                .place = of(&BudgetRow::enters),
+                .written_at_default = false},
+               {.name = "sensitivity",
+                .type = OptionalNumberKey{NumberRange::any()},
+                .sentence = "of ln acuity to the value; without it that of what the row enters",
+                .place = of(&BudgetRow::sensitivity)},
+               {.name = "source",
+                .type = TextKey{},
+                .sentence = "what the value rests on",
+                .place = of(&BudgetRow::source)},
+               {.name = "certificate",
+                .type = TextKey{},
+                .sentence = "number of its certificate",
+                .place = of(&BudgetRow::certificate)},
+               {.name = "common",
+                .type = ChoicesKey{names_of(budget_commons), "word", MayBeEmpty::yes},
+                .sentence = "with what the row is shared: it cancels in a ratio to it",
+                .place = of(&BudgetRow::common)}},
+      .rows = rows_of(rows),
+      .other_names = {"components", "row", "rows"}};
+}
+
 PlanSection instrument_section() {
   const auto rows = [](auto& plan) -> auto& {
     return plan.instruments;
@@ -437,10 +538,10 @@ PlanSection instrument_section() {
 }  // namespace
 
 const std::vector<PlanSection>& plan_sections() {
-  static const std::vector<PlanSection> sections{about_section(),    camera_section(),        target_section(),
-                                                 observer_section(), simulation_section(),    schedule_section(),
-                                                 fit_section(),      measurement_section(),   measures_section(),
-                                                 limits_section(),   acuity_limits_section(), instrument_section()};
+  static const std::vector<PlanSection> sections{
+      about_section(),         camera_section(),      target_section(),      observer_section(),  simulation_section(),
+      schedule_section(),      fit_section(),         measurement_section(), measures_section(),  limits_section(),
+      acuity_limits_section(), uncertainty_section(), budget_row_section(),  instrument_section()};
   return sections;
 }
 

@@ -33,6 +33,22 @@ KeyType type_in(const PlanKey& key, const Plan& plan) {
   return key.type;
 }
 
+std::string_view name_in(const TomlReader& table, const PlanKey& key) {
+  for (const std::string_view other : key.other_names) {
+    if (!table.has(key.name) && table.has(other)) return other;
+  }
+  return key.name;
+}
+
+std::vector<TomlReader> rows_in(TomlReader& parent, const PlanSection& section) {
+  const std::size_t dot = section.name.rfind('.');
+  const std::string_view own = dot == std::string_view::npos ? section.name : section.name.substr(dot + 1);
+  for (const std::string_view other : section.other_names) {
+    if (!parent.has(own) && parent.has(other)) return parent.sections(other);
+  }
+  return parent.sections(own);
+}
+
 std::vector<PlanMistake> mistakes_in(const Plan& plan) {
   std::vector<PlanMistake> all;
   for (const PlanSection& section : plan_sections()) {

@@ -64,6 +64,9 @@ struct PlanKey {
   std::function<std::optional<NumberRange>(const Plan&)> narrowed{};
   /// What the rest of the plan says against the value.
   std::function<std::vector<ValueMistake>(const Plan&, std::size_t row)> check{};
+  /// A plan in which it has its default is written without it.
+  bool written_at_default = true;
+  std::vector<std::string_view> other_names{};  ///< that a file may have in place of `name`
 };
 
 /// Of a section that may be repeated, [[name]].
@@ -76,8 +79,9 @@ struct PlanSection {
   std::string_view name;  ///< as in the file, "limits.acuity"; empty: the keys before every section
   std::string_view sentence;
   std::vector<PlanKey> keys;
-  SectionRows rows{};  ///< without functions: the section is there once
-  FormLine form{};     ///< of a repeated section: its rows as "VALUE: VALUE, ..."
+  SectionRows rows{};                           ///< without functions: the section is there once
+  FormLine form{};                              ///< of a repeated section: its rows as "VALUE: VALUE, ..."
+  std::vector<std::string_view> other_names{};  ///< of a repeated section, in place of the last part of `name`
 
   [[nodiscard]] bool repeated() const { return rows.count != nullptr; }
   /// 1 for a section that is there once.
@@ -102,6 +106,11 @@ struct KeyAt {
 [[nodiscard]] KeyValue default_of(const KeyAt& key);
 /// The type with its range as the rest of the plan narrows it.
 [[nodiscard]] KeyType type_in(const PlanKey& key, const Plan& plan);
+
+/// The first name of the key that the table has; its own where it has none.
+[[nodiscard]] std::string_view name_in(const TomlReader& table, const PlanKey& key);
+/// The tables of a repeated section, by the last part of its name or another one of its names.
+[[nodiscard]] std::vector<TomlReader> rows_in(TomlReader& parent, const PlanSection& section);
 
 /// Something wrong with a plan.
 struct PlanMistake {

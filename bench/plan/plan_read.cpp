@@ -21,7 +21,7 @@ class Tables {
     TomlReader& parent = dot == std::string::npos ? tables_[""].front() : table(name.substr(0, dot));
     const std::string own = name.substr(dot == std::string::npos ? 0 : dot + 1);
     std::vector<TomlReader> opened =
-        section.repeated() ? parent.sections(own) : std::vector<TomlReader>{parent.section(own)};
+        section.repeated() ? rows_in(parent, section) : std::vector<TomlReader>{parent.section(own)};
     return tables_.emplace(name, std::move(opened)).first->second;
   }
 
@@ -36,9 +36,9 @@ class Tables {
 
 void reject(TomlReader& table, const PlanKey& key, const ValueMistake& mistake) {
   if (mistake.element) {
-    table.reject(key.name, *mistake.element, mistake.sentence);
+    table.reject(name_in(table, key), *mistake.element, mistake.sentence);
   } else {
-    table.reject(key.name, mistake.sentence);
+    table.reject(name_in(table, key), mistake.sentence);
   }
 }
 
@@ -74,13 +74,14 @@ class PlanReader {
   void read_key(TomlReader& table, const KeyAt& at) {
     const PlanKey& key = *at.key;
     const KeyType type = type_in(key, plan_);
-    if (!table.has(key.name) && required(table, key)) {
-      (void)read_value(type, table, key.name, std::nullopt);
+    const std::string_view name = name_in(table, key);
+    if (!table.has(name) && required(table, key)) {
+      (void)read_value(type, table, name, std::nullopt);
       missing_.insert({at.key, at.row});
       return;
     }
     const KeyValue fallback = key.fallback.value ? key.fallback.value(plan_, parts_) : key.place.get(plan_, at.row);
-    key.place.set(plan_, at.row, read_value(type, table, key.name, fallback));
+    key.place.set(plan_, at.row, read_value(type, table, name, fallback));
     if (const auto* one = std::get_if<ResourceKey>(&type)) read_named(table, at, one->kind);
     if (const auto* many = std::get_if<ResourcesKey>(&type)) read_named(table, at, many->kind);
   }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 
 #include "bench/plan/plan.h"
@@ -9,9 +10,16 @@ namespace {
 
 void write_keys(std::string& text, const PlanSection& section, const Plan& plan, std::size_t row) {
   for (const PlanKey& key : section.keys) {
+    if (!key.written_at_default && key.place.get(plan, row) == default_of({&section, &key, row})) continue;
     const std::optional<std::string> value = toml_value(key.type, key.place.get(plan, row));
     if (value) text += std::string(key.name) + " = " + *value + "\n";
   }
+}
+
+/// A section that a plan of defaults is written without.
+bool only_where_set(const PlanSection& section) {
+  return std::none_of(section.keys.begin(), section.keys.end(),
+                      [](const PlanKey& key) { return key.written_at_default; });
 }
 
 /// Free tables stand behind the keys of their section, which would otherwise be theirs.
@@ -34,8 +42,11 @@ std::string to_toml(const Plan& plan) {
     const std::string header =
         section.repeated() ? "[[" + std::string(section.name) + "]]" : "[" + std::string(section.name) + "]";
     for (std::size_t row = 0; row < section.count(plan); ++row) {
+      std::string keys;
+      write_keys(keys, section, plan, row);
+      if (keys.empty() && only_where_set(section)) continue;
       if (!section.name.empty()) text += "\n" + header + "\n";
-      write_keys(text, section, plan, row);
+      text += keys;
     }
     write_free_tables(text, section, plan);
   }

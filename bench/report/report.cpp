@@ -6,6 +6,7 @@
 #include "bench/report/html.h"
 #include "bench/report/measures_section.h"
 #include "bench/report/report_pieces.h"
+#include "bench/report/uncertainty_section.h"
 
 namespace todbench {
 namespace {
@@ -48,6 +49,7 @@ Document report_document(const ReportData& data) {
   add(identification_section(data));
   add(limits_section(data));
   add(curve_section(data));
+  add(uncertainty_section(data));
   add(psychometric_section(data));
   add(human_section(data));
   add(comparison_section(data));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "acquisition/core/frame_source.h"
+#include "bench/judgement/acuity_uncertainty.h"
 #include "bench/judgement/verdict.h"
 #include "bench/report/document.h"
 #include "bench/report/plot.h"
@@ -61,6 +62,8 @@ struct ReportData {
   std::optional<Comparison> comparison;  ///< A is measured, B is simulated
 
   std::optional<SessionMeasures> measures;  ///< physical; nothing: none was asked for
+
+  std::optional<CurveUncertainty> uncertainty;  ///< of the measured curve, or of the simulated one alone
 
   std::optional<Verdict> verdict;  ///< of the session
 

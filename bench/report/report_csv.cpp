@@ -125,6 +125,32 @@ void add_curve(std::string& table, const std::string& section, const std::option
   }
 }
 
+/// Statistical intervals stand in the rows of the curve.
+void add_uncertainty(std::string& table, const std::optional<CurveUncertainty>& uncertainty) {
+  if (!uncertainty) return;
+  for (const PointUncertainty& point : uncertainty->points) {
+    const auto interval = [&](std::string name, const Interval& found, std::string unit) {
+      add(table, {.section = "uncertainty",
+                  .name = std::move(name),
+                  .set_delta_t_k = point.set_delta_t_k,
+                  .interval = found,
+                  .interval_percent = 95,
+                  .unit = std::move(unit)});
+    };
+    interval("s75_expanded_mrad", point.expanded_mrad, "mrad");
+    interval("acuity_expanded_per_mrad", acuity_interval(point.expanded_mrad), "1/mrad");
+    for (const AppliedRow& row : point.rows) {
+      add(table, {.section = "uncertainty",
+                  .name = row.row.name,
+                  .set_delta_t_k = point.set_delta_t_k,
+                  .value = row.contribution,
+                  .text = row.row.certificate});
+    }
+  }
+  for (const std::string& name : uncertainty->not_stated)
+    add(table, {.section = "uncertainty", .name = name, .text = "not stated"});
+}
+
 void add_comparison(std::string& table, const std::optional<Comparison>& comparison) {
   if (!comparison) return;
   for (const ComparisonPoint& point : comparison->points) {
@@ -163,6 +189,7 @@ std::string report_csv(const ReportData& data) {
   add_curve(table, "human", data.human);
   add_comparison(table, data.comparison);
   add_frames(table, data);
+  add_uncertainty(table, data.uncertainty);
   return table;
 }
 

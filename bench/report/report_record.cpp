@@ -183,8 +183,11 @@ Section statements_section(const ReportData& data) {
       "Intervals have a coverage of 95 %. They are profile-likelihood intervals (likelihood drop 3.84) of the fitted "
       "function, widened by the variance between groups of trials that share a frame or a place on the plate, with "
       "Student's t.");
+  if (data.uncertainty)
+    item("The expanded intervals hold in addition the rows of the budget under Uncertainty; they decide.");
   item(
-      "The intervals hold what varies between trials: noise, sampling phase and the finite number of answers. They do "
+      std::string(data.uncertainty ? "The statistical intervals hold" : "The intervals hold") +
+      " what varies between trials: noise, sampling phase and the finite number of answers. They do "
       "not hold what is "
       "the same in all trials: triangle sizes, distance (1 % of it is 1 % of acuity), the calibration of the contrast, "
       "and the difference "

@@ -189,6 +189,13 @@ RichText result_cell(const Demand& demand) {
                   " %)");
 }
 
+/// The interval of the finite number of trials, beside the one that decides.
+RichText statistical_cell(const Demand& demand) {
+  Demand alone = demand;
+  if (demand.statistical) alone.interval = *demand.statistical;
+  return result_cell(alone);
+}
+
 Table answers_table(const std::string& caption, const TodCurve& curve) {
   Table rows;
   rows.caption = caption;
@@ -270,17 +277,30 @@ Section limits_section(const ReportData& data) {
   if (!data.verdict || !limits_asked(*data.verdict))
     section.blocks.emplace_back(Paragraph{missing("the plan asks for no limits")});
   if (!data.verdict || data.verdict->demands.empty()) return section;
+  const auto& demands = data.verdict->demands;
+  const bool expanded =
+      std::any_of(demands.begin(), demands.end(), [](const Demand& demand) { return demand.statistical.has_value(); });
   Table rows;
   // What changed files say of a limit is no verdict.
   const bool believed = report_verdict(data) != ReportVerdict::changed;
-  rows.header = {"Quantity", "Unit", "Limit", "Result [95 %]", believed ? "Verdict" : "In the files", "Reason"};
-  for (const Demand& demand : data.verdict->demands) {
+  rows.header = {"Quantity",
+                 "Unit",
+                 "Limit",
+                 expanded ? "Result [expanded 95 %]" : "Result [95 %]",
+                 believed ? "Verdict" : "In the files",
+                 "Reason"};
+  if (expanded) rows.header.insert(rows.header.begin() + 4, "Statistical [95 %]");
+  for (const Demand& demand : demands) {
     const std::string decision(to_string(demand.decision));
     rows.rows.push_back({plain(title(demand)), plain(row_of(demand.kind).unit), limit_cell(demand), result_cell(demand),
                          believed ? badge(decision, mood_of(demand.decision)) : plain(decision),
                          text_or_missing(demand.reason, "none given")});
+    if (expanded) rows.rows.back().insert(rows.rows.back().begin() + 4, statistical_cell(demand));
   }
   section.blocks.emplace_back(std::move(rows));
+  if (data.verdict->not_stated && !data.verdict->not_stated->empty())
+    section.blocks.emplace_back(
+        Paragraph{plain("The budget of the plan is not complete: " + data.verdict->reason + ".")});
   section.blocks.emplace_back(note(plain(one_sided_note)));
   return section;
 }

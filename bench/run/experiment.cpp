@@ -298,7 +298,8 @@ Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const Experime
                     .measures = std::move(measures),
                     .effects = inputs->effects,
                     .figures = figures_of(*provenance.run),
-                    .ended_by = run->result.ended_by},
+                    .ended_by = run->result.ended_by,
+                    .presentations = std::move(run->result.presentations)},
                    plan, frame, provenance);
 }
 
@@ -396,6 +397,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
                             .figures = figures_of(*provenance.run),
                             .ended_by = result->ended_by};
   outcome.measures = std::move(measured->measures);
+  outcome.presentations = std::move(result->presentations);
   if (!outcome.ended_by) {
     TwinResults twin = run_twin(plan, inputs, outcome.curve, *folder, options.host, listener, stop);
     provenance.twin_run = std::move(twin.run);

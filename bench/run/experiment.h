@@ -9,6 +9,7 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "bench/judgement/verdict.h"
 #include "bench/plan/loaded_plan.h"
@@ -57,6 +58,8 @@ struct ExperimentOutcome {
   SensorPlan effects;                             ///< of the simulated sensor
   RunFigures figures;                             ///< of `curve`
   std::optional<Error> ended_by;                  ///< why it stopped early; the folder is valid and marked interrupted
+  std::vector<Presentation> presentations{};      ///< of `curve`
+  std::optional<CurveUncertainty> uncertainty{};  ///< of `curve`; nothing where the plan has no budget
 };
 
 /// Measures with the devices of the plan, runs its simulated twin and compares. Fails when nothing could be measured:

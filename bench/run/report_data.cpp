@@ -86,6 +86,7 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
   data.plan = provenance.effects;
   data.cost = session.cost;
   data.measures = session.measures;
+  data.uncertainty = session.uncertainty;
   data.verdict = verdict_of(session);
   if (provenance.run) {
     data.set_ups = provenance.run->set_ups;

@@ -115,7 +115,12 @@ ExperimentOutcome concluded(ExperimentOutcome outcome, const Plan& plan, const S
                             const Provenance& provenance) {
   Refusals refused;
   free_ending_room(frame.folder.path(), EndingRoom::results);
-  refused.keep(frame.folder.write_curves(outcome.curve, outcome.twin, provenance.side));
+  auto uncertainty = curve_uncertainty(plan, outcome.curve, outcome.presentations, outcome.comparison);
+  if (uncertainty)
+    outcome.uncertainty = *std::move(uncertainty);
+  else if (!outcome.ended_by)
+    outcome.ended_by = uncertainty.error();
+  refused.keep(frame.folder.write_curves(outcome.curve, outcome.twin, provenance.side, outcome.uncertainty));
   if (outcome.comparison) refused.keep(frame.folder.write_comparison(*outcome.comparison));
   if (outcome.measures || outcome.twin_measures)
     refused.keep(frame.folder.write_measures(outcome.measures, outcome.twin_measures));
@@ -123,7 +128,8 @@ ExperimentOutcome concluded(ExperimentOutcome outcome, const Plan& plan, const S
   outcome.verdict = judge({.limits = plan.limits,
                            .curve = outcome.curve,
                            .comparison = outcome.comparison,
-                           .ended_early = outcome.ended_by ? std::optional(outcome.ended_by->message) : std::nullopt});
+                           .ended_early = outcome.ended_by ? std::optional(outcome.ended_by->message) : std::nullopt,
+                           .uncertainty = outcome.uncertainty ? &*outcome.uncertainty : nullptr});
   auto closed = close_session(frame, provenance, outcome.verdict, outcome.ended_by);
   if (!closed && !outcome.ended_by) outcome.ended_by = closed.error();
   return outcome;

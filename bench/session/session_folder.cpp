@@ -9,6 +9,7 @@
 #include "bench/session/cost_record.h"
 #include "bench/session/ending_reserve.h"
 #include "bench/session/fit_record.h"
+#include "bench/session/uncertainty_record.h"
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
 #include "bench/text/text.h"
@@ -67,7 +68,22 @@ std::string csv_number(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? number_text(*value) : "";
 }
 
-void add_rows(std::string& text, const TodCurve& curve, Side side) {
+/// The last columns: expanded intervals and standard uncertainty of ln acuity.
+void add_expanded(std::string& text, const PointUncertainty* found) {
+  if (found == nullptr) {
+    text += ",,,,,";
+    return;
+  }
+  const Interval acuity = acuity_interval(found->expanded_mrad);
+  for (const std::optional<double>& value :
+       {found->expanded_mrad.low, found->expanded_mrad.high, acuity.low, acuity.high,
+        found->combined ? std::optional(found->combined->u) : std::nullopt}) {
+    text += "," + csv_number(value);
+  }
+}
+
+/// Of the curve that has no budget of its own `uncertainty` is one without points.
+void add_rows(std::string& text, const TodCurve& curve, Side side, const std::optional<CurveUncertainty>& uncertainty) {
   for (const TodPoint& point : curve.points) {
     const Interval acuity = acuity_interval(point.fit.ci95);
     text += to_string(side);
@@ -78,7 +94,9 @@ void add_rows(std::string& text, const TodCurve& curve, Side side) {
           point.direct_s75_mrad, point.direct_s75_se_mrad}) {
       text += "," + csv_number(value);
     }
-    text += "," + std::string(to_string(point.fit.verdict)) + "\n";
+    text += "," + std::string(to_string(point.fit.verdict));
+    if (uncertainty) add_expanded(text, point_at(*uncertainty, point.set_delta_t_k));
+    text += "\n";
   }
 }
 
@@ -209,13 +227,19 @@ Result<TargetsWriter> SessionFolder::open_targets(SessionCurve which) {
   return TargetsWriter::create(targets_file(folder_, which));
 }
 
-Result<void> SessionFolder::write_curves(const TodCurve& main, const std::optional<TodCurve>& twin, Side side) {
+Result<void> SessionFolder::write_curves(const TodCurve& main, const std::optional<TodCurve>& twin, Side side,
+                                         const std::optional<CurveUncertainty>& uncertainty) {
   Json json;
   json["main"] = curve_record(main);
   json["twin"] = twin ? curve_record(*twin) : Json(nullptr);
   if (const Result<void> written = write_file_atomically(folder_ / "fits.json", to_page(json)); !written)
     return written;
-  return write_file_atomically(folder_ / "curve.csv", curve_csv(main, twin, side));
+  if (uncertainty) {
+    if (auto written = write_file_atomically(folder_ / "uncertainty.json", to_page(uncertainty_json(*uncertainty)));
+        !written)
+      return written;
+  }
+  return write_file_atomically(folder_ / "curve.csv", curve_csv(main, twin, side, uncertainty));
 }
 
 Result<void> SessionFolder::write_comparison(const Comparison& comparison) {
@@ -248,13 +272,20 @@ Result<void> SessionFolder::finish(Provenance provenance, SessionState state) {
   return write_manifest(folder_);
 }
 
-std::string curve_csv(const TodCurve& main, const std::optional<TodCurve>& twin, Side side) {
+std::string curve_csv(const TodCurve& main, const std::optional<TodCurve>& twin, Side side,
+                      const std::optional<CurveUncertainty>& uncertainty) {
   std::string text =
       "side,set_delta_t_k,delta_t_k,delta_t_se_k,s75_mrad,s75_ci95_low_mrad,s75_ci95_high_mrad,acuity_per_mrad,"
       "acuity_ci95_low_per_mrad,acuity_ci95_high_per_mrad,slope,lapse,trials,s75_direct_mrad,s75_direct_se_mrad,"
-      "verdict\n";
-  add_rows(text, main, side);
-  if (twin) add_rows(text, *twin, Side::simulated);
+      "verdict";
+  if (uncertainty) {
+    text +=
+        ",s75_expanded95_low_mrad,s75_expanded95_high_mrad,acuity_expanded95_low_per_mrad,"
+        "acuity_expanded95_high_per_mrad,u_ln_acuity";
+  }
+  text += "\n";
+  add_rows(text, main, side, uncertainty);
+  if (twin) add_rows(text, *twin, Side::simulated, uncertainty ? std::optional(CurveUncertainty{}) : std::nullopt);
   return text;
 }
 
@@ -287,6 +318,9 @@ Result<Session> read_session(const std::filesystem::path& folder) {
   auto measures = read_record(folder / "measures.json", measures_from);
   if (!measures) return tl::unexpected(measures.error());
   session.measures = *std::move(measures);
+  auto uncertainty = read_record(folder / "uncertainty.json", uncertainty_from);
+  if (!uncertainty) return tl::unexpected(uncertainty.error());
+  session.uncertainty = *std::move(uncertainty);
   auto verdict = read_record(folder / "verdict.json", verdict_from);
   if (!verdict) return tl::unexpected(verdict.error());
   session.verdict = *std::move(verdict);
@@ -309,7 +343,8 @@ Verdict verdict_of(const Session& session) {
                 .curve = session.curve.value_or(TodCurve{}),
                 .comparison = session.comparison,
                 .ended_early = ended_early(session),
-                .judged = JudgedWhen::afterwards});
+                .judged = JudgedWhen::afterwards,
+                .uncertainty = session.uncertainty ? &*session.uncertainty : nullptr});
 }
 
 Result<void> keep_verdict(const std::filesystem::path& folder, const Verdict& verdict) {

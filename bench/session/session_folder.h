@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/judgement/acuity_uncertainty.h"
 #include "bench/judgement/verdict.h"
 #include "bench/plan/loaded_plan.h"
 #include "bench/session/manifest.h"
@@ -55,8 +56,9 @@ class SessionFolder {
   [[nodiscard]] Result<TrialsWriter> open_trials(SessionCurve which);
   /// targets.csv or targets_simulated.csv.
   [[nodiscard]] Result<TargetsWriter> open_targets(SessionCurve which);
-  /// fits.json and curve.csv.
-  [[nodiscard]] Result<void> write_curves(const TodCurve& main, const std::optional<TodCurve>& twin, Side side);
+  /// fits.json, curve.csv and, with a budget of the main curve, uncertainty.json.
+  [[nodiscard]] Result<void> write_curves(const TodCurve& main, const std::optional<TodCurve>& twin, Side side,
+                                          const std::optional<CurveUncertainty>& uncertainty = {});
   /// comparison.json.
   [[nodiscard]] Result<void> write_comparison(const Comparison& comparison);
   /// measures.json.
@@ -92,7 +94,8 @@ struct Session {
   std::optional<TodCurve> curve;  ///< as it was fitted; nothing where the run ended before
   std::optional<TodCurve> twin;
   std::optional<Comparison> comparison;
-  std::optional<SessionMeasures> measures;  ///< physical; nothing where none was asked for
+  std::optional<SessionMeasures> measures;      ///< physical; nothing where none was asked for
+  std::optional<CurveUncertainty> uncertainty;  ///< of `curve`; nothing where the plan has no budget
   std::optional<Verdict> verdict;    ///< as it was stored; nothing in an old session, or where the run was cut off
   std::optional<CostFrontier> cost;  ///< what accuracy costs, where it was measured for this session
   /// Of the manifest that vouches for these values (ManifestCheck); empty where none does.
@@ -116,7 +119,8 @@ struct Session {
 /// stays as it is. `io` with the path.
 [[nodiscard]] Result<void> keep_verdict(const std::filesystem::path& folder, const Verdict& verdict);
 
-/// curve.csv.
-[[nodiscard]] std::string curve_csv(const TodCurve& main, const std::optional<TodCurve>& twin, Side side);
+/// curve.csv. With a budget the expanded intervals of the main curve stand in columns of their own, the last ones.
+[[nodiscard]] std::string curve_csv(const TodCurve& main, const std::optional<TodCurve>& twin, Side side,
+                                    const std::optional<CurveUncertainty>& uncertainty = {});
 
 }  // namespace todbench

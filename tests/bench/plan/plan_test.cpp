@@ -58,6 +58,25 @@ Plan unusual_plan() {
   return plan;
 }
 
+Plan plan_with_budget() {
+  Plan plan;
+  plan.uncertainty.rows = {{.name = "distance",
+                            .value = 2.5,
+                            .distribution = BudgetDistribution::rectangular,
+                            .degrees_of_freedom = 12.5,
+                            .unit = "mm",
+                            .source = "tape",
+                            .certificate = "K-17",
+                            .common = {BudgetCommon::twin, BudgetCommon::series}},
+                           {.name = "focus",
+                            .value = 0,
+                            .coverage_factor = 2,
+                            .sensitivity = -0.5,
+                            .unit = "mm",
+                            .enters = BudgetInput::contrast}};
+  return plan;
+}
+
 Plan graded_plan() {
   Plan plan;
   plan.schedule.answers = AnswerKind::graded;
@@ -67,13 +86,59 @@ Plan graded_plan() {
 }
 
 TEST(Plan, WhatIsWrittenReadsBackEqual) {
-  for (const Plan& plan : {Plan{}, unusual_plan(), graded_plan()}) {
+  for (const Plan& plan : {Plan{}, unusual_plan(), graded_plan(), plan_with_budget()}) {
     const Result<Plan> back = parse(to_toml(plan));
 
     ASSERT_TRUE(back) << back.error().message << "\n" << to_toml(plan);
     EXPECT_EQ(*back, plan) << to_toml(plan);
     EXPECT_EQ(to_toml(*back), to_toml(plan));
   }
+}
+
+TEST(Plan, WithoutABudgetIsWrittenWithoutOne) {
+  EXPECT_THAT(to_toml(unusual_plan()), Not(HasSubstr("uncertainty")));
+}
+
+TEST(Plan, ReadsABudgetByTheWordsOfItsFile) {
+  const Result<Plan> plan = parse(
+      "[[uncertainty.row]]\nname = 'distance'\nvalue = 2\nkind = 'rectangular half-width'\nnu = 9\nunit = 'mm'\n"
+      "[[uncertainty.row]]\nname = 'Air_path'\nvalue = 1\nunit = '%'\n");
+
+  ASSERT_TRUE(plan) << plan.error().message;
+  ASSERT_EQ(plan->uncertainty.rows.size(), 2u);
+  EXPECT_EQ(plan->uncertainty.rows[0].distribution, BudgetDistribution::rectangular);
+  EXPECT_EQ(plan->uncertainty.rows[0].degrees_of_freedom, 9);
+  EXPECT_EQ(input_of(plan->uncertainty.rows[1]), BudgetInput::air_path);
+}
+
+TEST(Plan, RefusesABudgetThatIsWrong) {
+  const auto refusal = [](const std::string& rows) {
+    const Result<Plan> plan = parse(rows);
+    return plan ? "accepted" : plan.error().message;
+  };
+  const std::string row = "[[uncertainty.component]]\nname = 'distance'\n";
+
+  EXPECT_THAT(refusal(row + "value = -1\n"), HasSubstr("a number of 0 or more"));
+  EXPECT_THAT(refusal(row + "value = 1\nunit = 'K'\n"), HasSubstr("found \"K\""));
+  EXPECT_THAT(refusal("[[uncertainty.component]]\nname = 'focus'\nvalue = 1\nunit = 'mm'\n"),
+              HasSubstr("enters acuity"));
+  EXPECT_THAT(refusal(row + "value = 1\nunit = 'mm'\n" + row + "value = 1\nunit = '%'\n"), HasSubstr("is there twice"));
+  EXPECT_THAT(refusal("[[uncertainty.component]]\nname = 'finite trials'\nvalue = 1\n"), HasSubstr("the run itself"));
+  EXPECT_THAT(refusal(row + "value = 1\ndistribution = 'rectangular'\ncoverage_factor = 2\n"),
+              HasSubstr("only a normal value"));
+}
+
+TEST(Plan, ThatRequiresABudgetHasACompleteOne) {
+  std::string complete = "[uncertainty]\nrequire = true\n";
+  const Result<Plan> refused =
+      parse(complete + "[[uncertainty.component]]\nname = 'distance'\nvalue = 1\nunit = 'mm'\n");
+  for (const BudgetInput input : expected_inputs)
+    complete += "[[uncertainty.component]]\nname = '" + std::string(to_string(input)) + "'\nvalue = 0\n";
+
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("does not state entrance-pupil"));
+  const Result<Plan> plan = parse(complete);
+  EXPECT_TRUE(plan) << plan.error().message;
 }
 
 TEST(Plan, SeveralFramesAreForGradedAnswers) {

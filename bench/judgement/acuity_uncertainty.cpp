@@ -1,0 +1,312 @@
+#include "bench/judgement/acuity_uncertainty.h"
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+
+namespace todbench {
+namespace {
+
+constexpr double upper_tail = 0.025;
+
+double contrast_k(const TodPoint& point) {
+  const double seen = std::abs(point.delta_t_k);
+  return seen > 0 && std::isfinite(seen) ? seen : std::abs(point.set_delta_t_k);
+}
+
+/// Smallest interval that contains both; an open side stays open.
+Interval hull_of(const Interval& a, const Interval& b) {
+  Interval both;
+  if (a.low && b.low) both.low = std::min(*a.low, *b.low);
+  if (a.high && b.high) both.high = std::max(*a.high, *b.high);
+  return both;
+}
+
+struct LogPoint {
+  std::size_t index;
+  double x, y;
+};
+
+/// Slope at p of the parabola through p, a and b.
+double parabola_slope(const LogPoint& p, const LogPoint& a, const LogPoint& b) {
+  const double to_a = (a.y - p.y) / (a.x - p.x), to_b = (b.y - p.y) / (b.x - p.x);
+  return (to_a * (b.x - p.x) - to_b * (a.x - p.x)) / (b.x - a.x);
+}
+
+double secant(const LogPoint& a, const LogPoint& b) {
+  return (b.y - a.y) / (b.x - a.x);
+}
+
+double slope_at(const std::vector<LogPoint>& points, std::size_t i) {
+  const std::size_t last = points.size() - 1;
+  if (last == 0) return 1;
+  if (i > 0 && i < last) return std::abs(parabola_slope(points[i], points[i - 1], points[i + 1]));
+  const std::size_t near = i == 0 ? 1 : last - 1;
+  const double line = std::abs(secant(points[i], points[near]));
+  if (last == 1) return line;
+  return std::max(line, std::abs(parabola_slope(points[i], points[near], points[i == 0 ? 2 : last - 2])));
+}
+
+/// Mean of what the camera saw less what the target said, at a set contrast.
+std::optional<double> read_back_deviation_k(std::span<const Presentation> presentations, double set_delta_t_k) {
+  double sum = 0;
+  int count = 0;
+  for (const Presentation& shown : presentations) {
+    if (!same_contrast(shown.set.delta_t_k, set_delta_t_k) || !shown.delta_t_k) continue;
+    const double deviation = *shown.delta_t_k - shown.said.state.delta_t_k;
+    if (!std::isfinite(deviation)) continue;
+    sum += deviation;
+    ++count;
+  }
+  return count > 0 ? std::optional(sum / count) : std::nullopt;
+}
+
+/// What a point's rows are converted with.
+struct Conversion {
+  double distance_m = 0;
+  double size_m = 0;  ///< of the triangle at the threshold, on the plate
+  double contrast_k = 0;
+  double slope = 0;
+};
+
+/// Of ln acuity to the value in the unit of the row.
+double sensitivity_of(const BudgetRow& row, const Conversion& at) {
+  if (row.sensitivity) return *row.sensitivity;
+  const BudgetInput input = input_of(row);
+  const InputKind kind = kind_of(input);
+  const BudgetUnit unit = budget_unit(kind, row.unit).value_or(BudgetUnit{});
+  if (kind == InputKind::contrast) return at.slope * (unit.relative ? unit.factor : unit.factor / at.contrast_k);
+  if (kind == InputKind::direct || unit.relative) return unit.factor;
+  return unit.factor / (input == BudgetInput::cut_outs ? at.size_m : at.distance_m);
+}
+
+/// The rows of the plan and of the run, with their sensitivities.
+std::vector<BudgetRow> rows_at(const UncertaintyPlan& plan, const TodPoint& point, const Conversion& at,
+                               const std::optional<double>& deviation_k) {
+  std::vector<BudgetRow> rows = plan.rows;
+  if (point.delta_t_se_k > 0 && std::isfinite(point.delta_t_se_k)) {
+    rows.push_back({.name = std::string(seen_contrast_row),
+                    .value = point.delta_t_se_k,
+                    .unit = "K",
+                    .source = "standard error over the measurements of it",
+                    .enters = BudgetInput::contrast});
+  }
+  if (deviation_k) {
+    rows.push_back({.name = std::string(read_back_row),
+                    .value = std::abs(*deviation_k),
+                    .distribution = BudgetDistribution::rectangular,
+                    .unit = "K",
+                    .source = "mean over the presentations, not corrected",
+                    .enters = BudgetInput::contrast});
+  }
+  for (BudgetRow& row : rows) {
+    row.enters = input_of(row);
+    row.sensitivity = sensitivity_of(row, at);
+  }
+  return rows;
+}
+
+std::optional<double> freedom_of(const PsychometricFit& fit) {
+  return fit.clusters > 1 ? std::optional(std::max(1.0, fit.clusters - 1)) : std::nullopt;
+}
+
+double coverage_factor(const std::optional<double>& degrees_of_freedom) {
+  if (degrees_of_freedom) return quantile(complement(boost::math::students_t(*degrees_of_freedom), upper_tail));
+  return quantile(complement(boost::math::normal(), upper_tail));
+}
+
+/// A half-width of ln S75 as the row of the finite trials.
+BudgetRow trials_row(double half, const PsychometricFit& fit) {
+  const auto freedom = freedom_of(fit);
+  return {.name = std::string(finite_trials_row),
+          .value = half / coverage_factor(freedom),
+          .degrees_of_freedom = freedom,
+          .sensitivity = 1,
+          .unit = "1",
+          .source = "95 % interval of the fit",
+          .enters = BudgetInput::acuity};
+}
+
+bool cancels_in(const BudgetRow& row, BudgetCommon common) {
+  return std::find(row.common.begin(), row.common.end(), common) != row.common.end();
+}
+
+double root_sum_of_squares(const std::vector<AppliedRow>& rows, const std::optional<BudgetCommon>& cancelled) {
+  double sum = 0;
+  for (const AppliedRow& applied : rows) {
+    if (applied.row.name == finite_trials_row || (cancelled && cancels_in(applied.row, *cancelled))) continue;
+    sum = std::hypot(sum, applied.contribution);
+  }
+  return sum;
+}
+
+/// Nothing uncertain is no error here.
+Result<std::optional<CombinedUncertainty>> combined_rows(const std::vector<BudgetRow>& rows, std::uint64_t seed,
+                                                         int draws) {
+  if (std::none_of(rows.begin(), rows.end(),
+                   [](const BudgetRow& row) { return row.value * std::abs(row.sensitivity.value_or(1)) > 0; }))
+    return std::nullopt;
+  auto found = combined({.quantity = "ln acuity", .unit = "1", .rows = rows}, seed, draws);
+  if (!found) return tl::unexpected(found.error());
+  return *std::move(found);
+}
+
+/// The expanded half-width of ln S75 on a side whose statistical one is `half`: that of the GUM, times what the draws
+/// of the mean of both sides exceed it by.
+Result<double> expanded_half(double half, std::vector<BudgetRow> rows, const PsychometricFit& fit, double excess) {
+  constexpr int no_draws = 0;
+  rows.insert(rows.begin(), trials_row(half, fit));
+  const auto found = combined_rows(rows, 0, no_draws);
+  if (!found) return tl::unexpected(found.error());
+  return *found ? std::max(half, excess * (*found)->expanded_gum) : half;
+}
+
+/// A limit without a threshold moves by all of what is stated.
+double moved_out(double limit_mrad, double u_stated, double direction) {
+  return limit_mrad * std::exp(direction * coverage_factor({}) * u_stated);
+}
+
+std::vector<AppliedRow> applied(const std::vector<BudgetRow>& rows, const std::vector<BudgetShare>& shares,
+                                std::size_t stated) {
+  std::vector<AppliedRow> out;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    out.push_back({.row = rows[i],
+                   .input = rows[i].enters,
+                   .standard_uncertainty = shares[i].standard_uncertainty,
+                   .contribution = shares[i].contribution,
+                   .share_percent = shares[i].share_percent,
+                   .from_run = rows[i].name == finite_trials_row || i >= stated});
+  }
+  return out;
+}
+
+/// Joins a side of a ratio's interval and what is stated, at the coverage that `z` stands for.
+std::optional<double> joined(const std::optional<double>& ratio, const std::optional<double>& side, double u,
+                             double z) {
+  if (!ratio || !side || !(*ratio > 0) || !(*side > 0)) return std::nullopt;
+  const double half = std::log(*side / *ratio);
+  return *ratio * std::exp(std::copysign(std::hypot(half, z * u), half));
+}
+
+std::optional<ExpandedRatio> expanded_ratio(const Comparison& comparison, double set_delta_t_k, double u) {
+  for (const ComparisonPoint& point : comparison.points) {
+    if (!same_contrast(point.set_delta_t_k, set_delta_t_k)) continue;
+    const boost::math::normal normal;
+    const double z95 = quantile(complement(normal, upper_tail)), z90 = quantile(complement(normal, 0.05));
+    return ExpandedRatio{
+        {joined(point.ratio, point.ratio_ci95.low, u, z95), joined(point.ratio, point.ratio_ci95.high, u, z95)},
+        {joined(point.ratio, point.ratio_ci90.low, u, z90), joined(point.ratio, point.ratio_ci90.high, u, z90)}};
+  }
+  return std::nullopt;
+}
+
+Result<void> expand(PointUncertainty& out, const TodPoint& point, const std::vector<BudgetRow>& rows,
+                    std::size_t stated, std::uint64_t seed) {
+  const auto& [low, high] = out.statistical_mrad;
+  const auto& threshold = point.fit.threshold;
+  std::vector<BudgetRow> all = rows;
+  const bool both = threshold && low && high && *threshold > 0;
+  if (both) all.insert(all.begin(), trials_row(0.5 * std::log(*high / *low), point.fit));
+  auto found = combined_rows(all, seed, session_budget_draws);
+  if (!found) return tl::unexpected(found.error());
+  if (*found) {
+    out.rows = applied(all, (*found)->shares, stated + (both ? 1 : 0));
+  } else {
+    out.rows = applied(all, std::vector<BudgetShare>(all.size()), stated + (both ? 1 : 0));
+  }
+  const double excess = *found ? (*found)->expanded / (*found)->expanded_gum : 1;
+  if (both) out.combined = *std::move(found);
+  out.u_stated = root_sum_of_squares(out.rows, std::nullopt);
+  out.u_not_twin = root_sum_of_squares(out.rows, BudgetCommon::twin);
+  out.u_not_series = root_sum_of_squares(out.rows, BudgetCommon::series);
+  out.u_not_contrasts = root_sum_of_squares(out.rows, BudgetCommon::contrasts);
+  for (const double direction : {-1.0, 1.0}) {
+    const std::optional<double>& side = direction < 0 ? low : high;
+    std::optional<double>& expanded = direction < 0 ? out.expanded_mrad.low : out.expanded_mrad.high;
+    if (!side || !(*side > 0)) {
+      expanded = side;
+    } else if (threshold && *threshold > 0) {
+      const auto half = expanded_half(std::abs(std::log(*side / *threshold)), rows, point.fit, excess);
+      if (!half) return tl::unexpected(half.error());
+      expanded = *threshold * std::exp(direction * *half);
+      // Never inside the statistical one by rounding, nor where the threshold lies outside it.
+      expanded = direction < 0 ? std::min(*expanded, *side) : std::max(*expanded, *side);
+    } else {
+      expanded = moved_out(*side, out.u_stated, direction);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+const PointUncertainty* point_at(const CurveUncertainty& uncertainty, double set_delta_t_k) {
+  for (const PointUncertainty& point : uncertainty.points) {
+    if (same_contrast(point.set_delta_t_k, set_delta_t_k)) return &point;
+  }
+  return nullptr;
+}
+
+Interval deciding_interval(const TodPoint& point) {
+  const auto usable = [](const PsychometricFit& fit) {
+    return fit.verdict == FitVerdict::flat_or_decreasing || fit.verdict == FitVerdict::no_data ? Interval{} : fit.ci95;
+  };
+  const Interval interval = usable(point.fit);
+  return point.lapse_warning && point.free_lapse_fit ? hull_of(interval, usable(*point.free_lapse_fit)) : interval;
+}
+
+std::vector<double> contrast_slopes(const TodCurve& curve) {
+  std::vector<double> slopes(curve.points.size(), 1.0);
+  for (const bool positive : {false, true}) {
+    std::vector<LogPoint> points;
+    for (std::size_t i = 0; i < curve.points.size(); ++i) {
+      const TodPoint& point = curve.points[i];
+      if ((point.set_delta_t_k > 0) != positive || !point.fit.threshold || !(*point.fit.threshold > 0)) continue;
+      if (!(contrast_k(point) > 0)) continue;
+      points.push_back({i, std::log(contrast_k(point)), -std::log(*point.fit.threshold)});
+    }
+    std::sort(points.begin(), points.end(), [](const LogPoint& a, const LogPoint& b) { return a.x < b.x; });
+    // Contrasts that the camera saw as the same one have no slope between them.
+    points.erase(std::unique(points.begin(), points.end(),
+                             [](const LogPoint& a, const LogPoint& b) { return std::abs(a.x - b.x) < 0.005; }),
+                 points.end());
+    for (std::size_t i = 0; i < points.size(); ++i) slopes[points[i].index] = slope_at(points, i);
+  }
+  return slopes;
+}
+
+Result<std::optional<CurveUncertainty>> curve_uncertainty(const Plan& plan, const TodCurve& curve,
+                                                          std::span<const Presentation> presentations,
+                                                          const std::optional<Comparison>& comparison) {
+  if (!plan.uncertainty.stated()) return std::nullopt;
+  CurveUncertainty out;
+  for (const BudgetInput input : not_stated(plan.uncertainty)) out.not_stated.emplace_back(to_string(input));
+  const std::vector<double> slopes = contrast_slopes(curve);
+  bool read_back = true;
+  for (std::size_t i = 0; i < curve.points.size(); ++i) {
+    const TodPoint& point = curve.points[i];
+    PointUncertainty found{.set_delta_t_k = point.set_delta_t_k, .contrast_slope = slopes[i], .rows = {}};
+    const Interval interval = deciding_interval(point);
+    found.statistical_mrad = interval;
+    // Without a threshold the size in question is that of the limit which the data give.
+    const double size_mrad = point.fit.threshold.value_or(interval.low.value_or(interval.high.value_or(1)));
+    const double distance_m = plan.target.distance_m;
+    const auto deviation_k = read_back_deviation_k(presentations, point.set_delta_t_k);
+    read_back = read_back && deviation_k;
+    const std::vector<BudgetRow> rows = rows_at(plan.uncertainty, point,
+                                                {.distance_m = distance_m,
+                                                 .size_m = size_mrad * 1e-3 * distance_m,
+                                                 .contrast_k = contrast_k(point),
+                                                 .slope = slopes[i]},
+                                                deviation_k);
+    if (auto expanded = expand(found, point, rows, plan.uncertainty.rows.size(), plan.seed); !expanded)
+      return tl::unexpected(with_context("[uncertainty]", expanded.error()));
+    if (comparison) found.ratio = expanded_ratio(*comparison, point.set_delta_t_k, found.u_not_twin);
+    out.points.push_back(std::move(found));
+  }
+  if (!read_back) out.not_stated.emplace_back(read_back_row);
+  return out;
+}
+
+}  // namespace todbench
