@@ -25,6 +25,7 @@ int main() {
   options.distance_m = 2;
   options.plates = {plate};
   ListedSchedule schedule(constant_stimuli({.plates = {plate.name},
+                                            .drawings = {plate},
                                             .mountings = {Mounting::identity, Mounting::rotated_180},
                                             .delta_t_k = {2},
                                             .phases = 8,

@@ -31,7 +31,7 @@ struct ConstantStimuliOptions {
   std::vector<std::string> plates;
   /// Of the plates, by name: phases of their triangles are chosen together. A plate that is not here counts as one
   /// triangle in its middle.
-  std::vector<TargetPlate> drawings;
+  std::vector<TargetPlate> drawings{};
   std::vector<Mounting> mountings;
   std::vector<double> delta_t_k;
   int phases = 16;                              ///< sub-pixel shifts per plate, mounting and contrast
