@@ -12,6 +12,8 @@ namespace {
 struct ModuleArguments {
   std::string command;
   int limit_ms = 5000;
+  std::size_t memory_mib = 0;
+  bool network = false;
 };
 
 Json report_json(const ModuleReport& report) {
@@ -26,6 +28,7 @@ Json report_json(const ModuleReport& report) {
   return {{"ok", true},
           {"deterministic", true},
           {"shapes", shapes},
+          {"network_cut", report.network_cut},
           {"latency_ms", json_number(report.latency_ms)},
           {"linear", report.linear},
           {"linearity_deviation", json_number(report.linearity_deviation)},
@@ -38,7 +41,9 @@ int run_check(Console& console, const ModuleArguments& a) {
   const auto report =
       check_module({.command = a.command,
                     .header = R"({"protocol": "todbench-module", "version": 1, "place": "picture", "parameters": {}})",
-                    .limit = std::chrono::milliseconds(a.limit_ms)});
+                    .limit = std::chrono::milliseconds(a.limit_ms),
+                    .memory_limit_mib = a.memory_mib,
+                    .network = a.network ? ModuleNetwork::ours : ModuleNetwork::cut});
   if (!report) {
     if (console.json()) console.object({{"ok", false}, {"reason", report.error().message}});
     return report_error(console, report.error());
@@ -49,6 +54,7 @@ int run_check(Console& console, const ModuleArguments& a) {
   }
   console.text(
       fmt::format("keeps the contract: {} shapes answered, two processes agree bit for bit", report->shapes.size()));
+  console.text(report->network_cut ? "it had no network" : "it had the network of this host");
   console.text(fmt::format("{:.3f} ms an exchange of 320 x 240 numbers", report->latency_ms));
   console.text(fmt::format("{}, deviation {:.2g}; response to an impulse: sum {:.4g}, middle {:.4g}",
                            report->linear ? "linear" : "not linear", report->linearity_deviation, report->impulse_sum,
@@ -65,6 +71,10 @@ void add_module_command(CLI::App& app, Program& program) {
   auto a = std::make_shared<ModuleArguments>();
   check->add_option("COMMAND", a->command, "for a shell, in quotes")->required();
   check->add_option("--limit-ms", a->limit_ms, "for an answer")->check(whole_number(1, 600000))->capture_default_str();
+  check->add_option("--memory-mib", a->memory_mib, "address space that each of its processes may have; 0: no limit")
+      ->check(whole_number(0, 1 << 20))
+      ->capture_default_str();
+  check->add_flag("--network", a->network, "leaves it the network of this host");
   finish_command(*check, program, [a](Console& console) { return run_check(console, *a); });
 }
 

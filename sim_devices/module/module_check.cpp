@@ -62,6 +62,7 @@ double largest(const cv::Mat1f& picture) {
 
 Result<ModuleReport> check_module(const ModuleOptions& options) {
   ModuleReport report;
+  report.network_cut = options.network == ModuleNetwork::cut && can_cut_network();
   constexpr int side = 33;
   const std::vector<cv::Mat1f> pictures{noise({32, 24}, 1), noise({24, 32}, 2), noise({1, 1}, 3), noise({160, 120}, 4)};
   const auto first = answers_to(options, pictures), second = answers_to(options, pictures);

@@ -12,6 +12,7 @@ namespace todbench {
 /// What a module that keeps the contract was found to do. Nothing of it is a fault.
 struct ModuleReport {
   std::vector<cv::Size> shapes;  ///< that it answered
+  bool network_cut = false;      ///< it could reach nobody
   double latency_ms = 0;         ///< median of an exchange of 320 x 240 numbers
   bool linear = false;           ///< deviation below 1e-4
   double linearity_deviation =

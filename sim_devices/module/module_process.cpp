@@ -11,6 +11,7 @@
 #include <array>
 #include <cerrno>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 
 #include <fmt/format.h>
@@ -44,10 +45,23 @@ void never_wait(int descriptor) {
   ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) | O_NONBLOCK);
 }
 
-/// The shell in a process group of its own, with these standard streams and no signal blocked.
-Result<pid_t> spawned_shell(const std::string& command, const Pipe& in, const Pipe& out, const Pipe& err) {
-  std::array<std::string, 3> words{"sh", "-c", command};
-  std::array<char*, 4> pointers{words[0].data(), words[1].data(), words[2].data(), nullptr};
+/// A shell for the command, in a network of its own: the file system is as ours, its processes end with the first.
+std::vector<std::string> words_of(const ModuleOptions& options) {
+  std::vector<std::string> words;
+  if (options.network == ModuleNetwork::cut && can_cut_network()) {
+    words = {"bwrap", "--dev-bind", "/", "/", "--unshare-net", "--unshare-pid", "--proc", "/proc", "--die-with-parent"};
+  }
+  const std::string limit =
+      options.memory_limit_mib == 0 ? "" : fmt::format("ulimit -v {} || exit 1\n", options.memory_limit_mib * 1024);
+  words.insert(words.end(), {"/bin/sh", "-c", limit + options.command});
+  return words;
+}
+
+/// The words in a process group of their own, with these standard streams and no signal blocked.
+Result<pid_t> spawned_group(std::vector<std::string> words, const Pipe& in, const Pipe& out, const Pipe& err) {
+  std::vector<char*> pointers;
+  for (auto& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, in.read, 0);
@@ -64,7 +78,7 @@ Result<pid_t> spawned_shell(const std::string& command, const Pipe& in, const Pi
   posix_spawnattr_setpgroup(&attributes, 0);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
   pid_t process = -1;
-  const int failure = ::posix_spawn(&process, "/bin/sh", &actions, &attributes, pointers.data(), environ);
+  const int failure = ::posix_spawnp(&process, pointers.front(), &actions, &attributes, pointers.data(), environ);
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (failure != 0) return fail(ErrorCode::internal, "no process for a module can be made");
@@ -73,12 +87,19 @@ Result<pid_t> spawned_shell(const std::string& command, const Pipe& in, const Pi
 
 }  // namespace
 
+bool can_cut_network() {
+  static const bool can = std::system(
+                              "bwrap --dev-bind / / --unshare-net --unshare-pid --proc /proc --die-with-parent true "
+                              ">/dev/null 2>&1 </dev/null") == 0;
+  return can;
+}
+
 Result<ModuleProcess> ModuleProcess::start(const ModuleOptions& options) {
   auto in = made_pipe(), out = made_pipe(), err = made_pipe();
   for (const auto* pipe : {&in, &out, &err}) {
     if (!*pipe) return tl::unexpected(pipe->error());
   }
-  auto process = spawned_shell(options.command, *in, *out, *err);
+  auto process = spawned_group(words_of(options), *in, *out, *err);
   close_end(in->read);
   close_end(out->write);
   close_end(err->write);
@@ -144,12 +165,12 @@ Error ModuleProcess::died() const {
   return with_last_words({ErrorCode::disconnected, "the module ended before it answered"});
 }
 
-Result<MessageRead> ModuleProcess::transfer(std::chrono::steady_clock::time_point until, std::size_t most_values) {
+Result<NpyPlace> ModuleProcess::transfer(std::chrono::steady_clock::time_point until, std::size_t most_values) {
   const std::size_t most_bytes = most_values * sizeof(double) + 70000;
   while (true) {
-    auto found = read_message(read_, most_values);
+    const auto found = find_message(read_, most_values);
     if (!found) return tl::unexpected(with_last_words(found.error()));
-    if (found->message) return found;
+    if (*found) return **found;
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
     if (left.count() <= 0) {
       return tl::unexpected(with_last_words(
@@ -196,21 +217,17 @@ Result<cv::Mat1f> ModuleProcess::exchange(const cv::Mat1f& picture) {
   const std::size_t most_values = std::max<std::size_t>(64, 16 * picture.total());
   const auto found = transfer(std::chrono::steady_clock::now() + options_.limit, most_values);
   if (!found) return refused(found.error());
-  const NpyMessage& message = *found->message;
-  read_.erase(0, found->bytes);
   const auto rows = static_cast<std::size_t>(picture.rows), columns = static_cast<std::size_t>(picture.cols);
-  if (message.shape != std::vector<std::size_t>{rows, columns}) {
+  if (found->shape != std::vector<std::size_t>{rows, columns}) {
     return refused(
         with_last_words({ErrorCode::integrity, fmt::format("the module answered with the shape ({}), expected ({}, {})",
-                                                           fmt::join(message.shape, ", "), rows, columns)}));
+                                                           fmt::join(found->shape, ", "), rows, columns)}));
   }
-  cv::Mat1f answer(picture.size());
-  for (std::size_t i = 0; i < message.values.size(); ++i) {
-    const auto value = static_cast<float>(message.values[i]);
-    if (!std::isfinite(value))
-      return refused(with_last_words({ErrorCode::integrity, "the module answered with a number that is not finite"}));
-    answer(static_cast<int>(i / columns), static_cast<int>(i % columns)) = value;
-  }
+  cv::Mat1f answer = picture_at(read_, *found);
+  read_.erase(0, found->bytes);
+  // In range: neither infinite nor NaN, which compares with nothing.
+  if (!cv::checkRange(answer))
+    return refused(with_last_words({ErrorCode::integrity, "the module answered with a number that is not finite"}));
   return answer;
 }
 

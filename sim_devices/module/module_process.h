@@ -13,11 +13,21 @@
 
 namespace todbench {
 
-/// How a module is started and how long it may take.
+/// Whether a module may reach other computers, and this one by its network.
+enum class ModuleNetwork {
+  cut,  ///< a network of its own without any way out, by Debian's bubblewrap; where that cannot run: as ours
+  ours,
+};
+/// Whether a network can be cut here: bubblewrap is installed and the system lets it work. Asked once.
+[[nodiscard]] bool can_cut_network();
+
+/// How a module is started and what it may take.
 struct ModuleOptions {
   std::string command{};                  ///< for a shell
   std::string header = "{}";              ///< JSON that is sent first, as a byte array
   std::chrono::milliseconds limit{5000};  ///< for an answer, the start of the process included in the first
+  std::size_t memory_limit_mib = 0;       ///< of address space, each process that it starts for itself; 0: none
+  ModuleNetwork network = ModuleNetwork::cut;
 };
 
 /// Picture to picture: writes one .npy array to the module's standard input and reads one of the same shape from its
@@ -38,7 +48,7 @@ class ModuleProcess {
 
  private:
   explicit ModuleProcess(const ModuleOptions& options) : options_(options) {}
-  [[nodiscard]] Result<MessageRead> transfer(std::chrono::steady_clock::time_point until, std::size_t most_values);
+  [[nodiscard]] Result<NpyPlace> transfer(std::chrono::steady_clock::time_point until, std::size_t most_values);
   void take_errors();
   [[nodiscard]] Error died() const;
   [[nodiscard]] Error with_last_words(Error error) const;

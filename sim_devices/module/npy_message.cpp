@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
 #include "acquisition/core/safe_text.h"
 
@@ -30,29 +32,28 @@ std::string with_header(std::string_view type, const std::string& shape) {
   return bytes + header;
 }
 
-template <typename T>
-std::vector<double> numbers_at(const char* bytes, std::size_t count) {
-  std::vector<double> values(count);
+template <typename T, typename To>
+void convert(const char* bytes, std::size_t count, To* to) {
   for (std::size_t i = 0; i < count; ++i) {
     T value;
     std::memcpy(&value, bytes + i * sizeof value, sizeof value);
-    values[i] = static_cast<double>(value);
+    to[i] = static_cast<To>(value);
   }
-  return values;
 }
 
 struct Type {
   std::string_view name;
   std::size_t bytes;
-  std::vector<double> (*read)(const char* bytes, std::size_t count);
+  void (*as_doubles)(const char* bytes, std::size_t count, double* to);
+  void (*as_floats)(const char* bytes, std::size_t count, float* to);
 };
-constexpr std::array types{
-    Type{"<f4", 4, numbers_at<float>},        Type{"<f8", 8, numbers_at<double>},
-    Type{"|u1", 1, numbers_at<std::uint8_t>}, Type{"|i1", 1, numbers_at<std::int8_t>},
-    Type{"|b1", 1, numbers_at<std::uint8_t>}, Type{"<u2", 2, numbers_at<std::uint16_t>},
-    Type{"<i2", 2, numbers_at<std::int16_t>}, Type{"<u4", 4, numbers_at<std::uint32_t>},
-    Type{"<i4", 4, numbers_at<std::int32_t>},
-};
+template <typename T>
+constexpr Type type_of(std::string_view name) {
+  return {name, sizeof(T), convert<T, double>, convert<T, float>};
+}
+constexpr std::array types{type_of<float>("<f4"),        type_of<double>("<f8"),        type_of<std::uint8_t>("|u1"),
+                           type_of<std::int8_t>("|i1"),  type_of<std::uint8_t>("|b1"),  type_of<std::uint16_t>("<u2"),
+                           type_of<std::int16_t>("<i2"), type_of<std::uint32_t>("<u4"), type_of<std::int32_t>("<i4")};
 
 /// What stands behind 'KEY': in the header's dictionary, up to `end`.
 std::string_view entry_of(std::string_view header, std::string_view key, char end) {
@@ -84,6 +85,7 @@ tl::unexpected<Error> wrong(const std::string& sentence) {
 
 std::string to_message(const cv::Mat1f& picture) {
   std::string bytes = with_header("<f4", fmt::format("{}, {}", picture.rows, picture.cols));
+  bytes.reserve(bytes.size() + picture.total() * sizeof(float));
   for (int row = 0; row < picture.rows; ++row)
     bytes.append(reinterpret_cast<const char*>(picture.ptr(row)),
                  static_cast<std::size_t>(picture.cols) * sizeof(float));
@@ -94,11 +96,12 @@ std::string to_message(std::string_view text) {
   return with_header("|u1", fmt::format("{},", text.size())) + std::string(text);
 }
 
-Result<MessageRead> read_message(std::string_view stream, std::size_t most_values) {
+Result<std::optional<NpyPlace>> find_message(std::string_view stream, std::size_t most_values) {
   const auto begins = stream.substr(0, magic.size());
   if (!magic.starts_with(begins))
     return wrong("is no .npy array, it begins with '" + one_line(std::string(begins)) + "'");
-  if (stream.size() < 12) return MessageRead{};
+  const std::optional<NpyPlace> not_yet;
+  if (stream.size() < 12) return not_yet;
   const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(stream[i])); };
   const std::size_t version = byte(6);
   if (version < 1 || version > 3) return wrong(fmt::format("is of version {} of .npy", version));
@@ -106,12 +109,11 @@ Result<MessageRead> read_message(std::string_view stream, std::size_t most_value
       version == 1 ? byte(8) | byte(9) << 8 : byte(8) | byte(9) << 8 | byte(10) << 16 | byte(11) << 24;
   const std::size_t begin = version == 1 ? 10 : 12;
   if (length > longest_header) return wrong("has too long a header");
-  if (stream.size() < begin + length) return MessageRead{};
+  if (stream.size() < begin + length) return not_yet;
   const std::string_view header = stream.substr(begin, length);
   const std::string_view name = entry_of(header, "'descr': '", '\'');
-  const Type* type = nullptr;
-  for (const auto& known : types) type = known.name == name ? &known : type;
-  if (type == nullptr) return wrong("has the type '" + one_line(std::string(name)) + "', expected one as <f4");
+  const auto* type = std::find_if(types.begin(), types.end(), [&](const Type& known) { return known.name == name; });
+  if (type == types.end()) return wrong("has the type '" + one_line(std::string(name)) + "', expected one as <f4");
   if (header.find("'fortran_order': False") == std::string_view::npos) return wrong("has columns first, expected rows");
   const auto shape = shape_from(entry_of(header, "'shape': (", ')'));
   if (!shape) return wrong("has no shape");
@@ -122,9 +124,23 @@ Result<MessageRead> read_message(std::string_view stream, std::size_t most_value
     count *= extent;
   }
   const std::size_t bytes = begin + length + count * type->bytes;
-  if (stream.size() < bytes) return MessageRead{};
-  NpyMessage message{*shape, type->read(stream.data() + begin + length, count)};
-  return MessageRead{std::move(message), bytes};
+  if (stream.size() < bytes) return not_yet;
+  return std::optional(NpyPlace{*shape, static_cast<std::size_t>(type - types.begin()), begin + length, count, bytes});
+}
+
+cv::Mat1f picture_at(std::string_view stream, const NpyPlace& place) {
+  cv::Mat1f picture(static_cast<int>(place.shape[0]), static_cast<int>(place.shape[1]));
+  types[place.type].as_floats(stream.data() + place.numbers, place.count, picture.ptr<float>());
+  return picture;
+}
+
+Result<MessageRead> read_message(std::string_view stream, std::size_t most_values) {
+  const auto place = find_message(stream, most_values);
+  if (!place) return tl::unexpected(place.error());
+  if (!*place) return MessageRead{};
+  NpyMessage message{(*place)->shape, std::vector<double>((*place)->count)};
+  types[(*place)->type].as_doubles(stream.data() + (*place)->numbers, (*place)->count, message.values.data());
+  return MessageRead{std::move(message), (*place)->bytes};
 }
 
 }  // namespace todbench

@@ -23,6 +23,19 @@ struct NpyMessage {
 /// A text as |u1, one dimension: the header that is sent first.
 [[nodiscard]] std::string to_message(std::string_view text);
 
+/// Where an array stands in a stream.
+struct NpyPlace {
+  std::vector<std::size_t> shape;
+  std::size_t type = 0;                ///< of the table in npy_message.cpp
+  std::size_t numbers = 0, count = 0;  ///< first byte of the numbers, how many there are
+  std::size_t bytes = 0;               ///< of the whole message
+};
+/// The array at the beginning of a stream once all of it is there; nothing while bytes are missing. Errors as
+/// read_message().
+[[nodiscard]] Result<std::optional<NpyPlace>> find_message(std::string_view stream, std::size_t most_values);
+/// Its numbers as a picture. Precondition: two dimensions, neither empty.
+[[nodiscard]] cv::Mat1f picture_at(std::string_view stream, const NpyPlace& place);
+
 /// What stands at the beginning of a stream.
 struct MessageRead {
   std::optional<NpyMessage> message;  ///< nothing: more bytes are needed

@@ -1,10 +1,15 @@
 // A module: picture in, picture out. The argument says what it does with it, or how it breaks the contract.
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <random>
 #include <string>
+#include <vector>
 
 #include "sim_devices/module/npy_message.h"
 
@@ -23,8 +28,20 @@ cv::Mat1f processed(const std::string& mode, const todbench::NpyMessage& message
   if (mode == "square") picture = picture.mul(picture);
   if (mode == "nan") picture(0, 0) = std::numeric_limits<float>::quiet_NaN();
   if (mode == "shape") picture = cv::Mat1f::zeros(2, 3);
-  if (mode == "random") picture(0, 0) += static_cast<float>(::getpid());
+  if (mode == "random") picture(0, 0) += static_cast<float>(std::random_device()());
   return picture;
+}
+
+/// Whether this computer answers at the port.
+bool reaches(int port) {
+  const int end = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const bool reached = ::connect(end, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  ::close(end);
+  return reached;
 }
 
 }  // namespace
@@ -54,6 +71,14 @@ int main(int argc, char** argv) {
       continue;
     }
     if (mode == "hang") ::pause();
+    if (mode == "endless") {
+      while (true) write_all(std::string(65536, ' '));
+    }
+    if (mode == "memory") {
+      const std::vector<char> much(std::size_t{1} << 30, 'm');
+      if (much[much.size() / 2] != 'm') return 1;
+    }
+    if (mode == "connect" && !reaches(std::atoi(argv[2]))) return 4;
     if (mode == "text") write_all("thank you\n");
     const std::string answer = todbench::to_message(processed(mode, message));
     write_all(answer);

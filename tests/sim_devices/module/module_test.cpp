@@ -1,7 +1,10 @@
 // Modules as programs: what keeps the contract, and every way to break it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <signal.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include "sim_devices/module/module_check.h"
 #include "sim_devices/module/npy_message.h"
@@ -85,8 +88,44 @@ TEST(ModuleCheck, NamesEveryWayToBreakTheContract) {
   EXPECT_THAT(refused("text").message, HasSubstr("no .npy array"));
   EXPECT_THAT(refused("random").message, HasSubstr("differently"));
   EXPECT_EQ(refused("twice").code, ErrorCode::integrity);
+  EXPECT_EQ(refused("endless").code, ErrorCode::integrity);
   EXPECT_EQ(check_module({.command = "/no/such/program", .limit = std::chrono::seconds(60)}).error().code,
             ErrorCode::disconnected);
+}
+
+#if !defined(__SANITIZE_ADDRESS__)
+// The address sanitizer reserves terabytes of address space.
+TEST(ModuleProcess, OfAModuleThatTakesMoreMemoryThanItMayEnds) {
+  ModuleOptions limited = example("memory"), unlimited = example("memory");
+  limited.memory_limit_mib = 512;
+  const cv::Mat1f picture = cv::Mat1f::zeros(2, 3);
+
+  EXPECT_EQ(ModuleProcess::start(limited)->exchange(picture).error().code, ErrorCode::disconnected);
+  EXPECT_TRUE(ModuleProcess::start(unlimited)->exchange(picture));
+}
+#endif
+
+TEST(ModuleProcess, HasNoNetworkUnlessItIsLeftIt) {
+  if (!can_cut_network()) GTEST_SKIP() << "bubblewrap is not installed or cannot work here";
+  const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t length = sizeof address;
+  ASSERT_EQ(::bind(listener, reinterpret_cast<const sockaddr*>(&address), length), 0);
+  ASSERT_EQ(::listen(listener, 4), 0);
+  ASSERT_EQ(::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &length), 0);
+  ModuleOptions cut = example("connect " + std::to_string(ntohs(address.sin_port))), ours = cut;
+  ours.network = ModuleNetwork::ours;
+  const cv::Mat1f picture = cv::Mat1f::zeros(2, 3);
+
+  const auto without = ModuleProcess::start(cut)->exchange(picture);
+  const auto with = ModuleProcess::start(ours)->exchange(picture);
+  ::close(listener);
+
+  ASSERT_FALSE(without);
+  EXPECT_EQ(without.error().code, ErrorCode::disconnected);
+  EXPECT_TRUE(with) << with.error().message;
 }
 
 }  // namespace
