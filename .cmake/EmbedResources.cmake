@@ -5,7 +5,8 @@ set(content "#include <array>\n\n#include \"bench/plan/resources.h\"\n\nnamespac
 set(rows "")
 set(count 0)
 foreach(entry "plate:tod/plate" "sensor:sim_devices/sensors" "observer:hvs/observers" "plan:bench/plans"
-        "atmosphere:sim_devices/atmosphere:json")
+        "atmosphere:sim_devices/atmosphere:json" "scene:sim_devices/scenes" "target:sim_devices/targets"
+        "target_set:sim_devices/target_sets")
   string(REPLACE ":" ";" entry "${entry}")
   list(GET entry 0 kind)
   list(GET entry 1 folder)

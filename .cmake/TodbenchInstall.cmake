@@ -6,7 +6,8 @@ set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
 
 set(todbench_data "${CMAKE_INSTALL_DATADIR}/todbench")
 install(TARGETS todbench COMPONENT program)
-foreach(entry "plates:tod/plate" "sensors:sim_devices/sensors" "observers:hvs/observers" "plans:bench/plans" "sweeps:bench/sweeps")
+foreach(entry "plates:tod/plate" "sensors:sim_devices/sensors" "observers:hvs/observers" "plans:bench/plans" "sweeps:bench/sweeps"
+        "scenes:sim_devices/scenes" "targets:sim_devices/targets" "target_sets:sim_devices/target_sets")
   string(REPLACE ":" ";" entry "${entry}")
   list(GET entry 0 kind)
   list(GET entry 1 folder)

@@ -46,6 +46,18 @@ std::optional<Samples> samples_of(std::uint16_t kind, std::uint16_t bits) {
   return std::nullopt;
 }
 
+/// A picture that claims more rows than the file has bytes would only cost memory: its last row is looked at first.
+/// Within a compressed strip rows are read in their order only; no lossless compression makes more than 4096 bytes of
+/// one.
+bool may_hold(const TiffFile& file, const std::filesystem::path& path, std::vector<char>& row, std::uint32_t height) {
+  std::uint16_t compression = COMPRESSION_NONE;
+  TIFFGetFieldDefaulted(file.get(), TIFFTAG_COMPRESSION, &compression);
+  if (compression == COMPRESSION_NONE) return TIFFReadScanline(file.get(), row.data(), height - 1, 0) >= 0;
+  std::error_code unknown;
+  const auto bytes = std::filesystem::file_size(path, unknown);
+  return !unknown && row.size() * static_cast<std::uint64_t>(height) / 4096 <= bytes;
+}
+
 }  // namespace
 
 Result<PictureFile> read_tiff_picture(const std::filesystem::path& path) {
@@ -65,9 +77,7 @@ Result<PictureFile> read_tiff_picture(const std::filesystem::path& path) {
     return fail(ErrorCode::invalid_input, file.why("the picture has rows of another length"));
   if (TIFFLastDirectory(file.get()) == 0) return fail(ErrorCode::invalid_input, "the file holds more than one picture");
   std::vector<char> row(width * stored->bytes);
-  // A picture that claims more rows than the file has bytes would only cost memory: look at the last row first.
-  if (TIFFReadScanline(file.get(), row.data(), height - 1, 0) < 0)
-    return fail(ErrorCode::invalid_input, file.why("the picture cannot be read"));
+  if (!may_hold(file, path, row, height)) return fail(ErrorCode::invalid_input, file.why("the picture cannot be read"));
   PictureFile out;
   out.picture.create(static_cast<int>(height), static_cast<int>(width));
   out.counts = stored->counts;

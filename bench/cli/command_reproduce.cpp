@@ -3,9 +3,11 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
+#include "bench/cli/scene_files.h"
 #include "bench/judgement/verdict.h"
-#include "bench/report/html.h"
+#include "bench/report/picture_page.h"
 #include "bench/studies/eo_vista.h"
+#include "bench/studies/eo_vista_craft.h"
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
 #include "bench/text/text.h"
@@ -52,6 +54,33 @@ Json json_of(const Reproduction& r) {
           {"ranges", ranges},         {"assumptions", r.assumptions}, {"settings", settings}};
 }
 
+/// The pictures of Figure 12 as files; their page entries.
+Result<std::vector<PagePicture>> write_craft(const std::filesystem::path& folder,
+                                             const std::vector<CraftPicture>& craft) {
+  std::vector<PagePicture> entries;
+  for (const auto& picture : craft) {
+    const auto png =
+        encoded_picture(grey_picture(picture.kelvin, picture.grey_low_k, picture.grey_high_k, 480), ".png");
+    if (!png) return tl::unexpected(png.error());
+    if (auto done = write_file_atomically(folder / (picture.name + ".png"), *png); !done)
+      return tl::unexpected(done.error());
+    entries.push_back({picture.title, picture.caption, *png});
+  }
+  return entries;
+}
+
+Json craft_json(const std::vector<CraftPicture>& craft) {
+  Json pictures = Json::array();
+  for (const auto& picture : craft) {
+    pictures.push_back({{"title", picture.title},
+                        {"png", picture.name + ".png"},
+                        {"range_m", picture.range_m > 0 ? Json(picture.range_m) : Json()},
+                        {"black_k", json_number(picture.grey_low_k)},
+                        {"white_k", json_number(picture.grey_high_k)}});
+  }
+  return pictures;
+}
+
 /// A new folder, an empty one, or one that may be overwritten.
 Result<std::filesystem::path> folder_for(const ReproduceArguments& arguments) {
   const std::filesystem::path folder = arguments.out;
@@ -83,10 +112,16 @@ int run_reproduce(Console& console, const ReproduceArguments& arguments, const P
   const auto found = reproduce_eo_vista(options);
   console.end_progress();
   if (!found) return report_error(console, found.error());
-  const Json json = json_of(*found);
+  const auto craft = eo_vista_craft(options.accuracy, options.seed);
+  if (!craft) return report_error(console, craft.error());
+  const auto pictures = write_craft(*folder, *craft);
+  if (!pictures) return report_error(console, pictures.error());
+  Json json = json_of(*found);
+  json["figure_12"] = craft_json(*craft);
   const auto page = *folder / "reproduction.html";
-  if (auto written = write_file_atomically(page, render_html(reproduction_document(*found))); !written)
-    return report_error(console, written.error());
+  const std::string html = page_with_pictures(reproduction_document(*found), "Pictures of a craft (Figure 12)",
+                                              *pictures, PicturePlace::last);
+  if (auto written = write_file_atomically(page, html); !written) return report_error(console, written.error());
   if (auto written = write_file_atomically(*folder / "reproduction.json", to_page(json)); !written)
     return report_error(console, written.error());
   if (console.json()) {

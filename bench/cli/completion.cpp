@@ -21,6 +21,8 @@ constexpr std::array named_resources{
     NamedResource{"--observer", ResourceKind::observer},
     NamedResource{"--plates", ResourceKind::plate},
     NamedResource{"PLAN.toml", ResourceKind::plan},
+    NamedResource{"SCENE.toml", ResourceKind::scene},
+    NamedResource{"SET.toml", ResourceKind::target_set},
 };
 constexpr std::string_view camera_argument = "CAMERA";
 

@@ -13,6 +13,7 @@
 
 #include "bench/cli/command_line.h"
 #include "bench/cli/command_module.h"
+#include "bench/cli/command_picture.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/exit_codes.h"
 #include "bench/judgement/verdict.h"
@@ -161,6 +162,7 @@ int run(int argc, char** argv) {
   add_mtf_command(app, program);
   add_noise_command(app, program);
   add_pattern_command(app, program);
+  add_picture_command(app, program);
   add_sfr_command(app, program);
   add_sitf_command(app, program);
   add_conformity_command(app, program);

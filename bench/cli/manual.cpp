@@ -112,7 +112,10 @@ ManualPage main_page(const CLI::App& app) {
                            .terms = {{"plans", listed(ResourceKind::plan)},
                                      {"plates", listed(ResourceKind::plate)},
                                      {"sensors", listed(ResourceKind::sensor)},
-                                     {"observers", listed(ResourceKind::observer)}}});
+                                     {"observers", listed(ResourceKind::observer)},
+                                     {"scenes", listed(ResourceKind::scene)},
+                                     {"targets", listed(ResourceKind::target)},
+                                     {"sets of targets", listed(ResourceKind::target_set)}}});
   page.sections.push_back(exit_status());
   page.sections.push_back(
       {.title = "Environment", .text = "", .terms = {{"NO_COLOR", "set: no colours on a terminal"}}});

@@ -77,6 +77,9 @@ std::vector<ValueMistake> read_parts(ResourceKind kind, const Plan& plan, const 
       return keep(read_part(kind, plan.simulation.sensor, find, parts, parse_sensor), parts.sensor);
     case ResourceKind::plan:
     case ResourceKind::atmosphere:
+    case ResourceKind::scene:
+    case ResourceKind::target:
+    case ResourceKind::target_set:
       break;
   }
   return {};

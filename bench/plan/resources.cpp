@@ -16,6 +16,12 @@ std::string_view to_string(ResourceKind kind) {
       return "plan";
     case ResourceKind::atmosphere:
       return "atmosphere";
+    case ResourceKind::scene:
+      return "scene";
+    case ResourceKind::target:
+      return "target";
+    case ResourceKind::target_set:
+      return "set of targets";
   }
   return "";
 }

@@ -6,6 +6,7 @@
 
 #include "sim_devices/prediction/direct_estimate.h"
 #include "sim_devices/sensor/image_chain.h"
+#include "sim_devices/sensor/scene_signal.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "tests/sim_devices/reference.h"
 #include "tests/sim_devices/test_plates.h"
@@ -96,6 +97,44 @@ void exposure_new_scene(benchmark::State& state) {
   }
 }
 BENCHMARK(exposure_new_scene)->Unit(benchmark::kMillisecond);
+
+/// Two hundred polygons of four to six corners all over a frame of 640 x 480.
+FieldScene scene_of_200_polygons() {
+  FieldScene scene;
+  const RandomStream numbers(1, "benchmark.scene");
+  for (std::uint64_t p = 0; p < 200; ++p) {
+    const RandomStream own = numbers.sub(p);
+    SceneRegion region;
+    const cv::Point2d middle(300 * own.uniform(0) - 150, 220 * own.uniform(1) - 110);
+    const int corners = 4 + static_cast<int>(p % 3);
+    const double size = 3 + 17 * own.uniform(2);
+    for (int k = 0; k < corners; ++k) {
+      const double angle = 2 * 3.14159265358979 * (k + 0.7 * own.uniform(static_cast<std::uint64_t>(10 + k))) / corners;
+      region.outline_m.push_back(middle + size * cv::Point2d(std::cos(angle), std::sin(angle)));
+    }
+    region.temperature_k = 295 + 10 * own.uniform(3);
+    scene.regions.push_back(region);
+  }
+  return scene;
+}
+
+/// At the first frame of a sensor its tables are made; they are kept.
+void scene_of_200_polygons_640x480(benchmark::State& state) {
+  SensorSpec spec = test::sc2000();
+  spec.width = 640;
+  spec.height = 480;
+  const SensorPlan plan = full_plan(spec, {}, {});
+  const FieldScene scene = scene_of_200_polygons();
+  const RadianceScale scale{};
+  auto imager = std::make_unique<const SceneImager>(spec, plan, Accuracy::normal());
+  double range_m = 400;
+  for (auto _ : state) {
+    if (state.range(0) != 0) imager = std::make_unique<const SceneImager>(spec, plan, Accuracy::normal());
+    range_m += 1e-3;
+    benchmark::DoNotOptimize(scene_signal_k(*imager, spec, scene, scale, {.range_m = range_m}, {640, 480}).value());
+  }
+}
+BENCHMARK(scene_of_200_polygons_640x480)->ArgName("first")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
 /// Three contrasts, template banks and transfer tables included.
 void direct_estimate_three_contrasts(benchmark::State& state, Accuracy accuracy) {

@@ -32,7 +32,7 @@ BEGIN {
   may["tod/measures"] = core
   may["tod/instruments"] = core " tod/plate tod/presentation"
   tod = hvs " tod/plate tod/pattern tod/presentation tod/registration tod/psychometric tod/schedule tod/measurement tod/comparison tod/adequacy tod/observer_fit tod/range tod/measures tod/camera_measures"
-  may["sim_devices/scene"] = hvs " tod/plate"
+  may["sim_devices/scene"] = hvs " tod/plate sim_devices/atmosphere"
   may["sim_devices/atmosphere"] = core " tod/range"
   may["sim_devices/module"] = core
   may["sim_devices/sensor"] = hvs " tod/plate tod/presentation sim_devices/scene"

@@ -1,6 +1,7 @@
 // Ranges through air, test pictures and sweeps as a user runs them.
 #include <cmath>
 #include <fstream>
+#include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
 #include "bench/plan/descriptions.h"
@@ -150,6 +151,69 @@ TEST(SweepCommand, HasTheSameTableHoweverItWasRun) {
   EXPECT_EQ(json["effects"][0]["parameters"][0]["key"], "netd_k");
   EXPECT_EQ(in("collect", {"--page", "page.html"}).code, 0);
   EXPECT_THAT(content(folder.path() / "a/page.html"), HasSubstr("</html>"));
+}
+
+TEST(PictureCommand, WritesEveryStageOnOneGreyScale) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> asked{
+      "picture", "craft-at-sea", "--sensor", "sc2000", "--range-m", "300",   "--extinction-per-km",
+      "0.5",     "--accuracy",   "draft",    "--out",  "p",         "--json"};
+
+  const Ended ended = todbench(asked, {.folder = folder.path()});
+  const Ended again = todbench(asked, {.folder = folder.path()});
+
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  expect_refused(again, 2, "--force");
+  const Json json = one_object(ended);
+  const double tau = std::exp(-0.5 * 0.3);
+  EXPECT_NEAR(json["transmittance"].get<double>(), tau, 1e-12);
+  EXPECT_NEAR(json["apparent_delta_t_k"].get<double>(), json["target"]["dt_rss_k"].get<double>() * tau, 1e-9);
+  ASSERT_EQ(json["stages"].size(), 7u);
+  double before = 1e9;
+  for (const auto& stage : json["stages"]) {
+    const auto picture = cv::imread((folder.path() / "p" / stage["tiff"].get<std::string>()).string(), -1);
+    ASSERT_EQ(picture.type(), CV_32F) << stage;
+    EXPECT_EQ(picture.cols, stage["width"].get<int>());
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "p" / stage["png"].get<std::string>()));
+    // What is filtered has no more contrast than before.
+    if (stage["name"] <= "4") {
+      EXPECT_LE(stage["max_k"].get<double>(), before + 1e-4);
+      before = stage["max_k"];
+    }
+  }
+  EXPECT_EQ(cv::imread((folder.path() / "p/frame.tiff").string(), -1).size(), cv::Size(320, 240));
+  EXPECT_EQ(content(folder.path() / "p/pictures.html").find("<script"), std::string::npos);
+}
+
+TEST(PictureCommand, RefusesScenesAndRangesThatCannotBe) {
+  const TemporaryFolder folder;
+  folder.write("crossing.toml",
+               "name = \"c\"\nbackground_k = 290\n[[region]]\nx_m = [0, 1, 1, 0]\ny_m = [0, 1, 0, 1]\n"
+               "temperature_k = 300\n");
+  folder.write("cold.toml",
+               "name = \"c\"\nbackground_k = 290\n[[region]]\nx_m = [0, 1, 1]\ny_m = [0, 0, 1]\ntemperature_k = -5\n");
+  folder.write("coarse.toml",
+               "name = \"c\"\nbackground_k = 290\n[picture]\nfile = \"p.tiff\"\npixel_mrad = 1\nrange_m = 100\n");
+  folder.write("bare.toml",
+               "name = \"c\"\nbackground_k = 290\n[picture]\nfile = \"c.tiff\"\npixel_mrad = 0.1\nrange_m = 9\n");
+  folder.write("short.csv", "range_m,tau\n10,0.99\n50,0.98\n");
+  cv::imwrite((folder.path() / "p.tiff").string(), cv::Mat1f(40, 40, 300.0F));
+  cv::imwrite((folder.path() / "c.tiff").string(), cv::Mat1w(40, 40, 3000));
+  const auto picture = [&](const std::string& scene, const std::string& range_m, const std::string& air = "clear") {
+    return todbench({"picture", scene, "--sensor", "sc2000", "--range-m", range_m, "--atmosphere", air, "--out", "p"},
+                    {.folder = folder.path()});
+  };
+
+  expect_refused(picture("./crossing.toml", "100"), 2, "crosses itself");
+  expect_refused(picture("./cold.toml", "100"), 2, "temperature_k");
+  expect_refused(picture("./coarse.toml", "100"), 2, "quarter of a pixel");
+  expect_refused(picture("./bare.toml", "100"), 2, "no scale");
+  expect_refused(picture("craft-at-sea", "100000", "us-standard"), 2, "table ends");
+  expect_refused(picture("craft-at-sea", "100", "./short.csv"), 2, "table ends at 50 m");
+  expect_refused(picture("tcat-a", "5000"), 2, "smaller than a pixel");
+  expect_refused(picture("craft-at-see", "100"), 2, "craft-at-sea");
+  expect_refused(picture("craft-at-sea", "-1"), 2, "--range-m");
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "p"));
 }
 
 TEST(SweepCommand, PrintsTaskListsAndRefusesInASentence) {

@@ -23,7 +23,10 @@ TEST(ReproduceCommand, WritesAPageWithThePublishedFiguresBesideOurs) {
   expect_refused(again, 2, "is not empty (--force overwrites");
   const Json json = one_object(ended);
   EXPECT_THAT(keys_of(json), UnorderedElementsAre("experiment", "source", "figures", "thresholds", "ranges",
-                                                  "assumptions", "settings"));
+                                                  "assumptions", "settings", "figure_12"));
+  ASSERT_EQ(json["figure_12"].size(), 3u);
+  for (const auto& picture : json["figure_12"])
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "r" / picture["png"].get<std::string>())) << picture;
   EXPECT_EQ(Json::parse(content_of(folder.path() / "r/reproduction.json")), json);
   std::set<std::string> cells;  // of Table 2: every sensor judged by every observer
   for (const auto& t : json["thresholds"]) {

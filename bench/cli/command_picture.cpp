@@ -1,0 +1,236 @@
+#include "bench/cli/command_picture.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "bench/cli/scene_files.h"
+#include "bench/plan/descriptions.h"
+#include "bench/report/picture_page.h"
+#include "bench/studies/scene_pictures.h"
+#include "bench/text/files.h"
+#include "bench/text/text.h"
+
+namespace todbench {
+namespace {
+
+struct PictureArguments {
+  std::string scene, sensor, observer = "hvs-1", atmosphere = "clear", haze = "rural-23km", accuracy = "normal", out;
+  double range_m = 0, extinction_per_km = 0, rotation_deg = 0, x_pitch = 0, y_pitch = 0, tolerance_percent = 1;
+  int microscan = 0, field_pitch = 0;
+  bool overwrite = false;
+};
+
+Result<ScenePicturesTask> picture_task(const PictureArguments& a, std::uint64_t seed) {
+  ScenePicturesTask task;
+  auto scene = scene_with_pictures(a.scene);
+  if (!scene) return tl::unexpected(scene.error());
+  auto sensor = load_sensor(a.sensor);
+  if (!sensor) return tl::unexpected(sensor.error());
+  if (a.microscan > 0) sensor->microscan = a.microscan;
+  auto observer = load_observer(a.observer);
+  if (!observer) return tl::unexpected(observer.error());
+  const auto accuracy = Accuracy::named(a.accuracy);
+  if (!accuracy) return tl::unexpected(accuracy.error());
+  AtmosphereRequest request;
+  request.band = {sensor->wavelength_min_um, sensor->wavelength_max_um};
+  request.haze = a.haze;
+  request.weight_temperature_k = sensor->scene_temperature_k;
+  request.extinction_per_km = a.extinction_per_km;
+  auto air =
+      load_atmosphere(a.extinction_per_km > 0 && a.atmosphere == "clear" ? "beer-lambert" : a.atmosphere, request);
+  if (!air) return tl::unexpected(air.error());
+  task.scene = *std::move(scene);
+  task.sensor = *std::move(sensor);
+  task.observer = *std::move(observer);
+  task.air = *std::move(air);
+  task.view = {.range_m = a.range_m, .rotation_deg = a.rotation_deg, .centre_pitch = {a.x_pitch, a.y_pitch}};
+  task.accuracy = *accuracy;
+  task.effects.tolerance_percent = a.tolerance_percent;
+  task.seed = seed;
+  task.field_pitch = a.field_pitch;
+  return task;
+}
+
+std::string grey_sentence(const ScenePictures& pictures) {
+  return fmt::format(
+      "Black is {:.3g} K, white {:.3g} K above the background in every picture; beyond them they are cut.",
+      pictures.grey_low_k, pictures.grey_high_k);
+}
+
+Document picture_document(const ScenePicturesTask& task, const ScenePictures& pictures) {
+  ValueTable values{"", {}};
+  const auto add = [&](const std::string& name, const std::string& value) {
+    values.values.push_back({name, plain(value)});
+  };
+  add("scene", task.scene.name + (task.scene.description.empty() ? "" : ": " + task.scene.description));
+  add("sensor", fmt::format("{}, {} samples a pitch", task.sensor.name, task.sensor.samples_per_pitch()));
+  add("range", fmt::format("{:g} m", task.view.range_m));
+  add("air", fmt::format("{}; transmittance {:.4f}", task.air.source.empty() ? task.air.name : task.air.source,
+                         pictures.transmittance));
+  if (pictures.signature) {
+    add("target", fmt::format("{:.3g} m (square root of area), {:.3g} K mean, {:.3g} K spread, {:.3g} K dT_RSS",
+                              pictures.signature->size_m(), pictures.signature->mean_dt_k, pictures.signature->sd_k,
+                              pictures.signature->dt_rss_k()));
+  }
+  add("contrast behind the air", fmt::format("{:.3g} K", pictures.apparent_dt_k));
+  add("background as the camera shows it", fmt::format("{:.2f} K", pictures.background_k));
+  add("grey scale", grey_sentence(pictures));
+  Table effects{"", {"Effect", "Decision", "Reason"}, {}};
+  const auto word = [](Decision decision) { return plain(decision == Decision::simulate ? "simulated" : "left out"); };
+  for (const auto& d : pictures.air)
+    effects.rows.push_back({plain("air: " + d.name), word(d.decision), plain(d.reason)});
+  for (const auto& d : pictures.effects.plan.decisions)
+    effects.rows.push_back({plain(to_string(d.effect)), word(d.decision), plain(d.reason)});
+  std::vector<Block> blocks{std::move(effects)};
+  for (const auto& warning : pictures.effects.warnings) blocks.emplace_back(note(plain(warning)));
+  const std::string title =
+      fmt::format("{} at {:g} m through {}", task.scene.name, task.view.range_m, task.sensor.name);
+  return {.title = title,
+          .heading = title,
+          .subtitle = "The picture after every stage",
+          .page_label = title,
+          .opening = {},
+          .sections = {{"What is shown", {std::move(values)}}, {"What was simulated, and why", std::move(blocks)}}};
+}
+
+Json picture_json(const ScenePicturesTask& task, const ScenePictures& pictures) {
+  Json air = Json::array(), stages = Json::array();
+  for (const auto& d : pictures.air) {
+    air.push_back(
+        {{"name", d.name}, {"decision", d.decision == Decision::simulate ? "simulate" : "skip"}, {"reason", d.reason}});
+  }
+  for (const auto& stage : pictures.stages) {
+    double low = 0, high = 0;
+    cv::minMaxLoc(stage.kelvin, &low, &high);
+    stages.push_back({{"name", stage.name},
+                      {"title", stage.title},
+                      {"png", stage.name + ".png"},
+                      {"tiff", stage.name + ".tiff"},
+                      {"width", stage.kelvin.cols},
+                      {"height", stage.kelvin.rows},
+                      {"pixels_per_pitch", json_number(stage.pixels_per_pitch)},
+                      {"min_k", json_number(low)},
+                      {"mean_k", json_number(cv::mean(stage.kelvin)[0])},
+                      {"max_k", json_number(high)}});
+  }
+  Json target;
+  if (pictures.signature) {
+    target = {{"size_m", json_number(pictures.signature->size_m())},
+              {"mean_dt_k", json_number(pictures.signature->mean_dt_k)},
+              {"sd_k", json_number(pictures.signature->sd_k)},
+              {"dt_rss_k", json_number(pictures.signature->dt_rss_k())}};
+  }
+  return {
+      {"scene", task.scene.name},
+      {"sensor", task.sensor.name},
+      {"samples_per_pitch", task.sensor.samples_per_pitch()},
+      {"range_m", json_number(task.view.range_m)},
+      {"atmosphere", {{"name", task.air.name}, {"source", task.air.source}, {"decisions", air}}},
+      {"transmittance", json_number(pictures.transmittance)},
+      {"background_k", json_number(pictures.background_k)},
+      {"target", target},
+      {"apparent_delta_t_k", json_number(pictures.apparent_dt_k)},
+      {"grey_scale", {{"black_k", json_number(pictures.grey_low_k)}, {"white_k", json_number(pictures.grey_high_k)}}},
+      {"effects", effects_json(pictures.effects.plan)},
+      {"warnings", pictures.effects.warnings},
+      {"stages", stages},
+      {"frame", {{"png", "frame.png"}, {"tiff", "frame.tiff"}}},
+      {"page", "pictures.html"}};
+}
+
+/// PNG and TIFF; the bytes of the former.
+Result<std::string> write_one(const std::filesystem::path& folder, const std::string& name, const cv::Mat1f& kelvin,
+                              const ScenePictures& pictures, int least_px) {
+  auto png = encoded_picture(grey_picture(kelvin, pictures.grey_low_k, pictures.grey_high_k, least_px), ".png");
+  if (!png) return png;
+  const auto tiff = encoded_picture(kelvin, ".tiff");
+  if (!tiff) return tiff;
+  if (auto done = write_file_atomically(folder / (name + ".png"), *png); !done) return tl::unexpected(done.error());
+  if (auto done = write_file_atomically(folder / (name + ".tiff"), *tiff); !done) return tl::unexpected(done.error());
+  return png;
+}
+
+Result<void> write_pictures(const std::filesystem::path& folder, const ScenePicturesTask& task,
+                            const ScenePictures& pictures) {
+  std::vector<PagePicture> page;
+  for (const auto& stage : pictures.stages) {
+    const auto png = write_one(folder, stage.name, stage.kelvin, pictures, 512);
+    if (!png) return tl::unexpected(png.error());
+    page.push_back({stage.title, stage.note, *png});
+  }
+  if (auto frame = write_one(folder, "frame", pictures.frame, pictures, 1); !frame)
+    return tl::unexpected(frame.error());
+  const std::string html = page_with_pictures(picture_document(task, pictures), "Stages", page, PicturePlace::first);
+  return write_file_atomically(folder / "pictures.html", html);
+}
+
+int run_picture(Console& console, const PictureArguments& a, std::uint64_t seed) {
+  auto task = picture_task(a, seed);
+  if (!task) return report_error(console, task.error());
+  for (const auto& sentence : task->air.notes) console.note(sentence);
+  const auto pictures = scene_pictures(*task);
+  if (!pictures) return report_error(console, {pictures.error().code, a.scene + ": " + pictures.error().message});
+  const auto existing = a.overwrite ? ExistingResults::overwritten : ExistingResults::refused;
+  if (auto made = make_result_folder(a.out, existing); !made) return report_error(console, made.error());
+  if (auto written = write_pictures(a.out, *task, *pictures); !written) return report_error(console, written.error());
+  for (const auto& warning : pictures->effects.warnings) console.note(warning);
+  if (console.json()) {
+    console.object(picture_json(*task, *pictures));
+    return 0;
+  }
+  std::vector<TableRow> rows;
+  for (const auto& stage : pictures->stages) {
+    double low = 0, high = 0;
+    cv::minMaxLoc(stage.kelvin, &low, &high);
+    rows.push_back({stage.name, stage.title, fixed(low, 3), fixed(high, 3)});
+  }
+  console.table({"file", "stage", "least [K]", "most [K]"}, rows);
+  console.text("");
+  console.text(fmt::format("transmittance {:.4f}; contrast behind the air {:.3g} K; background shown at {:.2f} K",
+                           pictures->transmittance, pictures->apparent_dt_k, pictures->background_k));
+  console.text(grey_sentence(*pictures));
+  console.text("page: " + (std::filesystem::path(a.out) / "pictures.html").string());
+  return 0;
+}
+
+}  // namespace
+
+void add_picture_command(CLI::App& app, Program& program) {
+  auto* command = app.add_subcommand("picture", "a scene through air and camera: the picture after every stage");
+  auto a = std::make_shared<PictureArguments>();
+  command->add_option("SCENE.toml", a->scene, "name or file")->required();
+  command->add_option("--sensor", a->sensor, "name or file")->required();
+  command->add_option("--range-m", a->range_m, "from camera to scene")->required()->check(number_in(1e-3, 1e6));
+  command->add_option("--out", a->out, "folder for pictures and page")->required();
+  command
+      ->add_option(
+          "--atmosphere", a->atmosphere,
+          "clear, us-standard, midlatitude-summer, midlatitude-winter, subarctic-winter, tropical, beer-lambert "
+          "(with --extinction-per-km); or FILE.csv, or a MODTRAN tape7")
+      ->capture_default_str();
+  command->add_option("--haze", a->haze, "aerosol of the shipped tables")->capture_default_str();
+  command->add_option("--extinction-per-km", a->extinction_per_km, "of the contrast")
+      ->check(number_in(0, 1e4))
+      ->capture_default_str();
+  command->add_option("--microscan", a->microscan, "in place of the sensor's")->check(whole_number(1, 4));
+  command->add_option("--observer", a->observer, "name or file, of the last stage")->capture_default_str();
+  command->add_option("--rotation-deg", a->rotation_deg, "of the scene, clockwise")->check(number_in(-360, 360));
+  command->add_option("--x-pitch", a->x_pitch, "of the scene's origin from the middle of the frame, to the right")
+      ->check(number_in(-1e5, 1e5));
+  command->add_option("--y-pitch", a->y_pitch, "the same, downwards")->check(number_in(-1e5, 1e5));
+  command->add_option("--field-pitch", a->field_pitch, "side of what is shown; default: the target and room round it")
+      ->check(whole_number(8, 4096));
+  command->add_option("--tolerance-percent", a->tolerance_percent, "of the acuity, for effects that are left out")
+      ->check(number_in(0.01, 50))
+      ->capture_default_str();
+  command->add_option("--accuracy", a->accuracy, "draft, normal or reference")
+      ->check(CLI::IsMember({"draft", "normal", "reference"}))
+      ->capture_default_str();
+  command->add_flag("--force", a->overwrite, "overwrite what is in the folder");
+  finish_command(*command, program,
+                 [a, &program](Console& console) { return run_picture(console, *a, program.common.seed); });
+}
+
+}  // namespace todbench

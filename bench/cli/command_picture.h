@@ -1,0 +1,10 @@
+// todbench picture
+#pragma once
+
+#include "bench/cli/commands.h"
+
+namespace todbench {
+
+void add_picture_command(CLI::App& app, Program& program);
+
+}  // namespace todbench

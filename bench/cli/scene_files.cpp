@@ -1,0 +1,35 @@
+#include "bench/cli/scene_files.h"
+
+#include <opencv2/imgcodecs.hpp>
+#include <vector>
+
+#include "acquisition/recording/picture_file.h"
+#include "bench/text/folders.h"
+
+namespace todbench {
+
+Result<FieldScene> scene_with_pictures(std::string_view reference) {
+  return load_scene(reference, [](const std::string& path) -> Result<StoredPicture> {
+    auto file = read_picture(path);
+    if (!file) return tl::unexpected(file.error());
+    return StoredPicture{file->picture, file->counts ? StoredPicture::Kind::counts : StoredPicture::Kind::numbers};
+  });
+}
+
+Result<std::string> encoded_picture(const cv::Mat& picture, const std::string& ending) {
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(ending, picture, bytes)) return fail(ErrorCode::internal, "a picture cannot be encoded");
+  return std::string(bytes.begin(), bytes.end());
+}
+
+Result<void> make_result_folder(const std::filesystem::path& folder, ExistingResults existing) {
+  std::error_code error;
+  if (std::filesystem::exists(folder, error) && !std::filesystem::is_directory(folder, error))
+    return fail(ErrorCode::invalid_input, folder.string() + ": is not a folder");
+  if (auto made = make_folder(folder); !made) return made;
+  if (existing == ExistingResults::refused && !std::filesystem::is_empty(folder, error))
+    return fail(ErrorCode::invalid_input, folder.string() + ": is not empty (--force overwrites what is in it)");
+  return {};
+}
+
+}  // namespace todbench

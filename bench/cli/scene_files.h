@@ -1,0 +1,23 @@
+// Scenes from files with the pictures that they name, and pictures into files.
+#pragma once
+
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "acquisition/core/result.h"
+#include "bench/plan/scene_descriptions.h"
+
+namespace todbench {
+
+/// load_scene() with TIFF and .npy pictures.
+[[nodiscard]] Result<FieldScene> scene_with_pictures(std::string_view reference);
+
+/// The bytes of a file: ".png" of 8 bits, or ".tiff" of 32-bit floating point.
+[[nodiscard]] Result<std::string> encoded_picture(const cv::Mat& picture, const std::string& ending);
+
+/// A folder for results: new, empty, or one that may be overwritten. `invalid_input` in one sentence.
+enum class ExistingResults { refused, overwritten };
+[[nodiscard]] Result<void> make_result_folder(const std::filesystem::path& folder, ExistingResults existing);
+
+}  // namespace todbench

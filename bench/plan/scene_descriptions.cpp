@@ -1,0 +1,232 @@
+#include "bench/plan/scene_descriptions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "bench/plan/descriptions.h"
+#include "bench/plan/strict_toml.h"
+
+namespace todbench {
+namespace {
+
+const NumberRange kelvin_range = NumberRange::above_to(0, 99999);
+const NumberRange share_range = NumberRange::between(0, 1);
+const NumberRange place_range = NumberRange::between(-1e6, 1e6);
+
+/// The outline from two lists of coordinates; y as it stands in the file.
+Polygon outline_of(TomlReader& table, const char* x_key, const char* y_key) {
+  const auto x = table.numbers(x_key, place_range, std::nullopt);
+  const auto y = table.numbers(y_key, place_range, std::nullopt);
+  Polygon outline;
+  if (x.size() != y.size()) {
+    table.reject(y_key, fmt::format("expected as many as in {}, {}, found {}", x_key, x.size(), y.size()));
+    return outline;
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) outline.emplace_back(x[i], y[i]);
+  return outline;
+}
+
+Polygon flipped(Polygon outline) {
+  for (auto& v : outline) v.y = -v.y;
+  return outline;
+}
+
+SceneRegion read_region(TomlReader& table, std::size_t number) {
+  SceneRegion region;
+  region.name = table.text("name", fmt::format("{}", number));
+  region.outline_m = flipped(outline_of(table, "x_m", "y_m"));
+  region.temperature_k = table.number("temperature_k", kelvin_range, std::nullopt);
+  region.emissivity = table.number("emissivity", share_range, region.emissivity);
+  region.target = table.flag("target", region.target);
+  return region;
+}
+
+std::filesystem::path folder_of(const Resource& resource) {
+  return std::filesystem::path(resource.origin).parent_path();
+}
+
+Result<TargetModel> parse_target(const Resource& resource) {
+  Result<TomlReader> reader = TomlReader::parse(resource.text, resource.origin);
+  if (!reader) return tl::unexpected(reader.error());
+  TargetModel model;
+  model.name = reader->text("name", std::nullopt);
+  model.description = reader->text("description", "");
+  auto parts = reader->sections("part");
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    TomlReader& table = parts[i];
+    TargetPart part;
+    part.name = table.text("name", fmt::format("{}", i + 1));
+    part.profile_m = outline_of(table, "x_m", "z_m");
+    part.width_m = table.number("width_m", NumberRange::above_to(0, 9999), std::nullopt);
+    part.side_m = table.number("side_m", place_range, part.side_m);
+    part.temperature_k = table.number("temperature_k", kelvin_range, std::nullopt);
+    part.emissivity = table.number("emissivity", share_range, part.emissivity);
+    const bool both = table.flag("both_sides", false);
+    model.parts.push_back(part);
+    if (both) {
+      part.side_m = -part.side_m;
+      model.parts.push_back(part);
+    }
+  }
+  if (const Result<void> read = reader->finish(); !read) return tl::unexpected(read.error());
+  if (const Result<void> possible = validate(model); !possible) return fail(resource.origin, possible.error());
+  return model;
+}
+
+/// Regions of a target that a scene names.
+Result<void> add_target(TomlReader& table, const std::filesystem::path& folder, FieldScene& scene) {
+  const std::string reference = table.text("target", "");
+  const double azimuth_deg = table.number("azimuth_deg", NumberRange::between(-360, 360), 90.0);
+  const double x_m = table.number("x_m", place_range, 0.0), y_m = table.number("y_m", place_range, 0.0);
+  if (reference.empty()) {
+    table.reject("target", "expected the name or the file of a target");
+    return {};
+  }
+  auto model = load_target(absolute_reference(reference, folder));
+  if (!model) return tl::unexpected(model.error());
+  for (auto& region : view_of(*model, azimuth_deg)) {
+    region.outline_m = placed(region.outline_m, 1, {x_m, -y_m});
+    scene.regions.push_back(std::move(region));
+  }
+  return {};
+}
+
+Result<void> add_plate(TomlReader table, const std::filesystem::path& folder, FieldScene& scene) {
+  if (!table.present()) return {};
+  const std::string reference = table.text("plate", "");
+  const double delta_t_k = table.number("delta_t_k", NumberRange::between(-1000, 1000), std::nullopt);
+  if (reference.empty()) {
+    table.reject("plate", "expected the name or the file of a plate");
+    return {};
+  }
+  auto plate = load_plate(absolute_reference(reference, folder));
+  if (!plate) return tl::unexpected(plate.error());
+  for (auto& region : scene_of_plate(*plate, delta_t_k, scene.background_k).regions)
+    scene.regions.push_back(std::move(region));
+  return {};
+}
+
+Result<void> add_picture(TomlReader table, const std::filesystem::path& folder, const PictureReader& read,
+                         FieldScene& scene) {
+  if (!table.present()) return {};
+  const std::string file = table.text("file", ""), mask = table.text("mask", "");
+  ScenePicture picture;
+  picture.pixel_mrad = table.number("pixel_mrad", NumberRange::above_to(0, 1000), std::nullopt);
+  picture.range_m = table.number("range_m", NumberRange::above_to(0, 1e6), std::nullopt);
+  const auto kelvin_per_count = table.optional_number("kelvin_per_count", NumberRange::above_to(0, 1000));
+  const auto offset_k = table.optional_number("offset_k", NumberRange::between(-1000, 99999));
+  if (file.empty()) {
+    table.reject("file", "expected a TIFF file");
+    return {};
+  }
+  const auto path_of = [&](const std::string& name) {
+    return (std::filesystem::path(name).is_absolute() ? std::filesystem::path(name) : folder / name).string();
+  };
+  auto stored = read(path_of(file));
+  if (!stored) return tl::unexpected(stored.error());
+  if (stored->kind == StoredPicture::Kind::counts && (!kelvin_per_count || !offset_k)) {
+    return fail(ErrorCode::invalid_input, path_of(file) +
+                                              ": a picture of whole counts has no scale without kelvin_per_count "
+                                              "and offset_k");
+  }
+  picture.kelvin = stored->values * kelvin_per_count.value_or(1) + offset_k.value_or(0);
+  if (!mask.empty()) {
+    auto marked = read(path_of(mask));
+    if (!marked) return tl::unexpected(marked.error());
+    picture.target = marked->values != 0;
+  }
+  scene.picture = std::move(picture);
+  return {};
+}
+
+template <typename T>
+Result<T> checked_scene(const TomlReader& reader, const Resource& resource, T value) {
+  if (const Result<void> read = reader.finish(); !read) return tl::unexpected(read.error());
+  if (const Result<void> possible = validate(value); !possible) return fail(resource.origin, possible.error());
+  return value;
+}
+
+}  // namespace
+
+Result<FieldScene> load_scene(std::string_view reference, const PictureReader& read_picture) {
+  const auto resource = find_resource(ResourceKind::scene, reference);
+  if (!resource) return tl::unexpected(resource.error());
+  Result<TomlReader> reader = TomlReader::parse(resource->text, resource->origin);
+  if (!reader) return tl::unexpected(reader.error());
+  FieldScene scene;
+  scene.name = reader->text("name", std::nullopt);
+  scene.description = reader->text("description", "");
+  scene.background_k = reader->number("background_k", kelvin_range, std::nullopt);
+  scene.background_emissivity = reader->number("background_emissivity", share_range, scene.background_emissivity);
+  scene.surround_k = reader->number("surround_k", kelvin_range, scene.background_k);
+  const auto folder = folder_of(*resource);
+  auto regions = reader->sections("region");
+  for (std::size_t i = 0; i < regions.size(); ++i) scene.regions.push_back(read_region(regions[i], i + 1));
+  auto targets = reader->sections("target");
+  for (TomlReader& table : targets) {
+    if (auto added = add_target(table, folder, scene); !added) return fail(resource->origin, added.error());
+  }
+  // Behind the regions of the scene in the file, in front of them in the picture.
+  auto plate = add_plate(reader->section("plate"), folder, scene);
+  if (!plate) return fail(resource->origin, plate.error());
+  auto picture = add_picture(reader->section("picture"), folder, read_picture, scene);
+  if (!picture) return fail(resource->origin, picture.error());
+  return checked_scene(*reader, *resource, std::move(scene));
+}
+
+Result<TargetModel> load_target(std::string_view reference) {
+  const auto resource = find_resource(ResourceKind::target, reference);
+  if (!resource) return tl::unexpected(resource.error());
+  return parse_target(*resource);
+}
+
+Result<TargetSet> load_target_set(std::string_view reference) {
+  const auto resource = find_resource(ResourceKind::target_set, reference);
+  if (!resource) return tl::unexpected(resource.error());
+  Result<TomlReader> reader = TomlReader::parse(resource->text, resource->origin);
+  if (!reader) return tl::unexpected(reader.error());
+  TargetSet set;
+  set.name = reader->text("name", std::nullopt);
+  set.description = reader->text("description", "");
+  const auto names = reader->texts("targets", std::nullopt);
+  set.azimuths_deg = reader->numbers("azimuths_deg", NumberRange::between(-360, 360), std::nullopt);
+  set.background_k = reader->number("background_k", kelvin_range, std::nullopt);
+  set.background_emissivity = reader->number("background_emissivity", share_range, set.background_emissivity);
+  set.surround_k = reader->number("surround_k", kelvin_range, set.background_k);
+  if (names.size() < 2 || names.size() > 64) reader->reject("targets", "expected 2 to 64 targets");
+  if (set.azimuths_deg.empty() || set.azimuths_deg.size() > 16)
+    reader->reject("azimuths_deg", "expected 1 to 16 aspects");
+  if (const Result<void> read = reader->finish(); !read) return tl::unexpected(read.error());
+  std::set<std::string> known;
+  for (const auto& name : names) {
+    auto model = load_target(absolute_reference(name, folder_of(*resource)));
+    if (!model) return fail(resource->origin, model.error());
+    if (!known.insert(model->name).second)
+      return fail(ErrorCode::invalid_input, resource->origin + ": target '" + model->name + "' is named twice");
+    set.targets.push_back(*std::move(model));
+  }
+  return set;
+}
+
+FieldScene scene_of(const TargetSet& set, std::size_t target, double azimuth_deg) {
+  FieldScene scene;
+  scene.name = set.targets[target].name;
+  scene.background_k = set.background_k;
+  scene.background_emissivity = set.background_emissivity;
+  scene.surround_k = set.surround_k;
+  scene.regions = view_of(set.targets[target], azimuth_deg);
+  cv::Point2d low(1e300, 1e300), high(-1e300, -1e300);
+  for (const auto& region : scene.regions) {
+    for (const auto& v : region.outline_m) {
+      low = {std::min(low.x, v.x), std::min(low.y, v.y)};
+      high = {std::max(high.x, v.x), std::max(high.y, v.y)};
+    }
+  }
+  for (auto& region : scene.regions) region.outline_m = placed(region.outline_m, 1, -(low + high) / 2);
+  return scene;
+}
+
+}  // namespace todbench

@@ -1,0 +1,213 @@
+#include "bench/studies/scene_pictures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "sim_devices/atmosphere/radiative_path.h"
+#include "sim_devices/sensor/effect_quantisation.h"
+#include "sim_devices/sensor/sensor_model.h"
+#include "tod/plate/test_pattern.h"
+
+namespace todbench {
+namespace {
+
+constexpr int display_factor = 8;
+
+SensorPlan with(SensorPlan plan, Effect effect, Decision decision) {
+  for (auto& d : plan.decisions) {
+    if (d.effect == effect) d.decision = decision;
+  }
+  return plan;
+}
+
+/// Side of the shown square in pitches, even.
+int field_of(const ScenePicturesTask& task, const SensorSpec& spec) {
+  const int most = std::min(spec.width, spec.height) / 2 * 2;
+  if (task.field_pitch > 0) return std::min(task.field_pitch + task.field_pitch % 2, most);
+  FieldScene targets = task.scene;
+  const auto none = [](const SceneRegion& region) { return !region.target; };
+  targets.regions.erase(std::remove_if(targets.regions.begin(), targets.regions.end(), none), targets.regions.end());
+  const bool any = !targets.regions.empty();
+  const cv::Size2d extent = extent_m(any ? targets : task.scene);
+  const double pitches = 1.5 * std::max(extent.width, extent.height) * 1e3 / (task.view.range_m * spec.ifov_mrad()) + 6;
+  return std::clamp(2 * static_cast<int>(std::ceil(pitches / 2)), 16, most);
+}
+
+/// The middle `field` pitches of a picture of all detectors.
+cv::Rect field_rect(const SensorSpec& spec, int field, int per_pitch) {
+  return {(spec.width - field) / 2 * per_pitch, (spec.height - field) / 2 * per_pitch, field * per_pitch,
+          field * per_pitch};
+}
+
+/// The scene alone on a fine grid: polygons as means over its cells, pictures by the nearest element.
+cv::Mat1d bare_scene(const ScenePicturesTask& task, const SensorSpec& fine, const RadianceScale& scale,
+                     const SceneView& view, cv::Size size) {
+  if (!task.scene.picture) return SceneImager::means(edges_in_samples(task.scene, scale, fine, view, size), size);
+  const cv::Mat1d levels = picture_levels_k(task.scene, scale);
+  const double samples_per_element = task.scene.picture->pixel_mrad * task.scene.picture->range_m /
+                                     (view.range_m * fine.ifov_mrad()) * fine.samples_per_pitch();
+  cv::Mat1d out(size, 0.0);
+  for (int j = 0; j < size.height; ++j) {
+    for (int i = 0; i < size.width; ++i) {
+      const double n = fine.samples_per_pitch();
+      const int x = static_cast<int>(std::lround(
+          (i - (size.width - 1) / 2.0 - view.centre_pitch.x * n) / samples_per_element + (levels.cols - 1) / 2.0));
+      const int y = static_cast<int>(std::lround(
+          (j - (size.height - 1) / 2.0 - view.centre_pitch.y * n) / samples_per_element + (levels.rows - 1) / 2.0));
+      if (x >= 0 && y >= 0 && x < levels.cols && y < levels.rows) out(j, i) = levels(y, x);
+    }
+  }
+  return out;
+}
+
+cv::Mat1f as_float(const cv::Mat1d& picture, double factor) {
+  cv::Mat1f out;
+  picture.convertTo(out, CV_32F, factor);
+  return out;
+}
+
+/// Largest contrast that matters: that of the target, or the largest of the scene.
+double contrast_of(const std::optional<TargetSignature>& signature, const cv::Mat1d& signal) {
+  if (signature && signature->dt_rss_k() > 0) return signature->dt_rss_k();
+  double low = 0, high = 0;
+  cv::minMaxLoc(signal, &low, &high);
+  return std::max(std::abs(low), std::abs(high));
+}
+
+EffectPlan planned(const ScenePicturesTask& task, double contrast_k) {
+  TemplateObserver observer(task.observer, triangle_alternatives());
+  if (contrast_k > 0) {
+    auto plan = plan_effects(task.sensor, observer, {.delta_t_k = {contrast_k}, .motion = {}}, task.effects);
+    if (plan) return *std::move(plan);
+  }
+  EffectPlan all;
+  all.plan = full_plan(task.sensor, task.effects.skip, task.effects.force);
+  all.warnings.push_back(
+      fmt::format("at {:.3g} K no size of triangle has a threshold: every effect is simulated", contrast_k));
+  return all;
+}
+
+std::vector<AirDecision> air_decisions(const ScenePicturesTask& task, const ScenePictures& out, double level_shift_k) {
+  std::vector<AirDecision> decisions;
+  const double lost_percent = 100 * (1 - out.transmittance);
+  const bool thin = lost_percent == 0;
+  decisions.push_back(
+      {"transmittance", thin ? Decision::skip : Decision::simulate,
+       thin ? "the air takes nothing of the contrast"
+            : fmt::format("{:.3g} % of the contrast is lost over {:g} m", lost_percent, task.view.range_m)});
+  const bool clipped = reaches_an_end(task.sensor, out.apparent_dt_k, out.background_k);
+  decisions.push_back(
+      {"path_radiance", level_shift_k != 0 || clipped ? Decision::simulate : Decision::skip,
+       level_shift_k != 0
+           ? fmt::format("moves scene and background alike by {:.3g} K, which places them among the counts{}",
+                         level_shift_k, clipped ? "; the contrast reaches an end of them" : "")
+           : "the path adds what it takes of the background: it drops out of the contrast"});
+  return decisions;
+}
+
+}  // namespace
+
+Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
+  const RadianceScale scale{{task.sensor.wavelength_min_um, task.sensor.wavelength_max_um},
+                            task.sensor.scene_temperature_k};
+  if (auto fine = validate(task.scene); !fine) return tl::unexpected(fine.error());
+  if (!(task.view.range_m > 0)) return fail(ErrorCode::invalid_input, "a range is above 0 m");
+  const auto tau = task.air.air.at(task.view.range_m);
+  if (!tau) {
+    return fail(ErrorCode::invalid_input, fmt::format("the air's table ends at {:g} m: nothing is known of {:g} m",
+                                                      task.air.air.end_m(), task.view.range_m));
+  }
+  ScenePictures out;
+  out.transmittance = *tau;
+  out.signature = target_signature(task.scene, scale);
+  const auto radiance = background_radiance(task.scene, scale.band);
+  const double air_k = task.air.air_k.value_or(task.scene.background_k);
+  const double seen = *tau * radiance + path_radiance(scale.band, air_k, *tau);
+  out.background_k = scale.calibration_k + scale.kelvin(seen - band_radiance(scale.band, scale.calibration_k));
+
+  // At the contrast that is left; the scene is imaged with every effect that the plan keeps.
+  cv::Mat1d levels;
+  if (task.scene.picture) {
+    levels = picture_levels_k(task.scene, scale);
+  } else {
+    for (const auto& p : levels_k(task.scene, scale)) levels.push_back(p.level);
+  }
+  out.apparent_dt_k = *tau * contrast_of(out.signature, levels);
+  out.effects = planned(task, out.apparent_dt_k);
+  out.air = air_decisions(task, out, scale.kelvin(seen - radiance));
+  const SensorPlan& plan = out.effects.plan;
+  const SensorModel model(task.sensor, plan, task.accuracy, task.seed);
+  const SensorSpec& spec = model.spec();
+
+  const SceneImager imager(spec, plan, task.accuracy);
+  auto signal = scene_signal_k(imager, spec, task.scene, scale, task.view, model.size());
+  if (!signal) return tl::unexpected(signal.error());
+  const cv::Mat1f unit = as_float(*signal, *tau);
+
+  const int field = field_of(task, spec);
+  const int n = spec.samples_per_pitch();
+  const cv::Rect samples = field_rect(spec, field, n);
+  // The same place on a fine grid: cells of an even number to a pitch.
+  const int fine_per_pitch = std::clamp(1024 / field / 2 * 2, 2, 16);
+  SensorSpec fine = spec;
+  fine.microscan = fine_per_pitch;
+  fine.super_resolution_frames = 0;
+  const cv::Size fine_size(field * fine_per_pitch, field * fine_per_pitch);
+  SceneView fine_view = task.view;
+  // The middle of the shown field against that of the frame.
+  fine_view.centre_pitch += cv::Point2d((spec.width - field) % 2, (spec.height - field) % 2) / 2;
+  const auto filtered_scene = [&](const SensorPlan& filters) {
+    return scene_signal_k(SceneImager(fine, filters, task.accuracy), fine, task.scene, scale, fine_view, fine_size);
+  };
+  const auto behind_optics = filtered_scene(with(plan, Effect::detector, Decision::skip));
+  if (!behind_optics) return tl::unexpected(behind_optics.error());
+  const auto behind_detector = filtered_scene(plan);
+  if (!behind_detector) return tl::unexpected(behind_detector.error());
+
+  const SensorModel undisplayed(task.sensor,
+                                with(with(plan, Effect::display, Decision::skip), Effect::quantisation, Decision::skip),
+                                task.accuracy, task.seed);
+  const cv::Mat1f noisy = undisplayed.picture(unit, 1, out.background_k, 0);
+  out.frame = model.picture(unit, 1, out.background_k, 0);
+  cv::Mat1f shown, seen_by_observer;
+  cv::resize(out.frame(samples), shown, {}, display_factor, display_factor, cv::INTER_NEAREST);
+  cv::GaussianBlur(shown, seen_by_observer, {}, task.observer.blur_sigma_samples * display_factor, 0,
+                   cv::BORDER_REFLECT_101);
+  const std::string air_note = fmt::format("behind {:g} m of air, transmittance {:.3f}", task.view.range_m, *tau);
+  out.stages = {
+      {"1-scene", "At the sensor", air_note, as_float(bare_scene(task, fine, scale, fine_view, fine_size), *tau),
+       static_cast<double>(fine_per_pitch)},
+      {"2-optics", "Behind the optics", "diffraction, and aberration where it matters", as_float(*behind_optics, *tau),
+       static_cast<double>(fine_per_pitch)},
+      {"3-detector", "On the detectors", "the mean over the sensitive area round every place",
+       as_float(*behind_detector, *tau), static_cast<double>(fine_per_pitch)},
+      {"4-sampled", "Sampled", fmt::format("{} samples a pitch and axis", n), unit(samples).clone(),
+       static_cast<double>(n)},
+      {"5-noise", "With noise",
+       fmt::format("temporal noise {:.3g} K a sample, and what else the sensor has", spec.netd_k),
+       noisy(samples).clone(), static_cast<double>(n)},
+      {"6-display", "On the display", "in whole counts, as the display makes a picture of samples", shown,
+       static_cast<double>(n * display_factor)},
+      {"7-observer", "As the observer's filter sees it",
+       fmt::format("blur of display and eye, sigma {:g} samples", task.observer.blur_sigma_samples), seen_by_observer,
+       static_cast<double>(n * display_factor)}};
+  double low = 0, high = 0;
+  cv::minMaxLoc(noisy(samples), &low, &high);
+  out.grey_low_k = low;
+  out.grey_high_k = high > low ? high : low + 1;
+  return out;
+}
+
+cv::Mat1b grey_picture(const cv::Mat1f& kelvin, double low_k, double high_k, int least_px) {
+  cv::Mat1b grey;
+  kelvin.convertTo(grey, CV_8U, 255 / (high_k - low_k), -255 * low_k / (high_k - low_k));
+  const int factor = std::max(1, (least_px + std::max(grey.rows, grey.cols) - 1) / std::max(grey.rows, grey.cols));
+  cv::Mat1b larger;
+  cv::resize(grey, larger, {}, factor, factor, cv::INTER_NEAREST);
+  return larger;
+}
+
+}  // namespace todbench

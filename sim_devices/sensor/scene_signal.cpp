@@ -1,0 +1,57 @@
+#include "sim_devices/sensor/scene_signal.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace todbench {
+namespace {
+
+Result<void> check_view(const SensorSpec& spec, const FieldScene& scene, const SceneView& view) {
+  if (!(view.range_m > 0)) return fail(ErrorCode::invalid_input, "a range is above 0 m");
+  const double pitch_m = view.range_m * spec.ifov_mrad() * 1e-3;
+  const cv::Size2d extent = extent_m(scene);
+  if (std::max(extent.width, extent.height) < pitch_m) {
+    return fail(ErrorCode::invalid_input,
+                fmt::format("the scene, {:.3g} m large, is smaller than a pixel of {:.3g} m at {:g} m",
+                            std::max(extent.width, extent.height), pitch_m, view.range_m));
+  }
+  if (!scene.picture) return {};
+  const double element_m = scene.picture->pixel_mrad * 1e-3 * scene.picture->range_m;
+  if (element_m > 0.25 * pitch_m * (1 + 1e-9)) {
+    return fail(ErrorCode::invalid_input,
+                fmt::format("elements of the picture, {:.3g} m, are larger than a quarter of a pixel, {:.3g} m at {:g} "
+                            "m: what is lost in it decides aliasing",
+                            element_m, pitch_m, view.range_m));
+  }
+  if (view.rotation_deg != 0) return fail(ErrorCode::invalid_input, "a picture cannot be turned, only polygons can");
+  return {};
+}
+
+cv::Point2d middle_of(const SensorSpec& spec, const SceneView& view, cv::Size size) {
+  return cv::Point2d((size.width - 1) / 2.0, (size.height - 1) / 2.0) + view.centre_pitch * spec.samples_per_pitch();
+}
+
+double samples_per_metre(const SensorSpec& spec, const SceneView& view) {
+  return 1e3 / (view.range_m * spec.ifov_mrad()) * spec.samples_per_pitch();
+}
+
+}  // namespace
+
+std::vector<StepEdge> edges_in_samples(const FieldScene& scene, const RadianceScale& scale, const SensorSpec& spec,
+                                       const SceneView& view, cv::Size size) {
+  return placed(visible_edges(levels_k(scene, scale)), samples_per_metre(spec, view), view.rotation_deg,
+                middle_of(spec, view, size));
+}
+
+Result<cv::Mat1d> scene_signal_k(const SceneImager& imager, const SensorSpec& spec, const FieldScene& scene,
+                                 const RadianceScale& scale, const SceneView& view, cv::Size size) {
+  if (auto fine = check_view(spec, scene, view); !fine) return tl::unexpected(fine.error());
+  if (!scene.picture) return imager.image(edges_in_samples(scene, scale, spec, view, size), size);
+  const cv::Mat1d levels = picture_levels_k(scene, scale);
+  const double element = scene.picture->pixel_mrad * 1e-3 * scene.picture->range_m * samples_per_metre(spec, view);
+  const cv::Point2d first = middle_of(spec, view, size) - cv::Point2d(levels.cols - 1, levels.rows - 1) * (element / 2);
+  return imager.image(levels, element, first, size);
+}
+
+}  // namespace todbench
