@@ -124,9 +124,6 @@ int main(int argc, char** argv) {
   if (pictures) return todbench::take_screenshots(window, options.value("screenshots").toStdString());
   window.show();
   window.bench().rescan();
-  if (!shown.empty()) {
-    window.show_view(todbench::View::report);
-    window.sessions().open(shown);
-  }
+  if (!shown.empty()) window.open_path(shown);
   return QApplication::exec();
 }

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <functional>
 
+#include "bench/gui/views/page_check.h"
+
 namespace todbench {
 namespace {
 
@@ -23,13 +25,16 @@ bool wait_until(const std::function<bool()>& so) {
   return so();
 }
 
+/// False with a sentence on standard error for every fault of the page.
 bool save(MainWindow& window, const std::filesystem::path& folder, const char* name) {
   QApplication::processEvents();
   QApplication::processEvents();
+  const QStringList faults = faults_of(window);
+  for (const QString& fault : faults) std::fprintf(stderr, "todbench-gui: page %s: %s\n", name, qPrintable(fault));
   const auto file = folder / (std::string(name) + ".png");
   const bool saved = window.grab().save(QString::fromStdString(file.string()));
   if (saved) std::printf("%s\n", file.string().c_str());
-  return saved;
+  return saved && faults.isEmpty();
 }
 
 /// Half of the answers of a contrast, so that curves have something to show.
@@ -62,6 +67,9 @@ int take_screenshots(MainWindow& window, const std::filesystem::path& folder) {
   window.bench().set_plan(short_plan(window.bench().plan()));
   window.show();
   bool good = true;
+  window.show_view(View::start);
+  good &= save(window, folder, "start");
+  window.show_view(View::look);
   window.look().start();
   good &= wait_until([&] { return window.look().latest() && window.look().latest()->counters.good > 60; });
   good &= save(window, folder, "look");
@@ -78,6 +86,7 @@ int take_screenshots(MainWindow& window, const std::filesystem::path& folder) {
   good &= wait_until([&] { return window.measure().twin() && window.measure().twin()->points.size() > 1; });
   good &= save(window, folder, "measure");
   good &= wait_until([&] { return window.measure().state() == RunState::idle; });
+  good &= save(window, folder, "measured");
   good &= wait_until([&] { return window.sessions().current().has_value(); });
   window.show_view(View::human);
   good &= answer_as_a_person(window, folder);
@@ -87,7 +96,7 @@ int take_screenshots(MainWindow& window, const std::filesystem::path& folder) {
   window.show_view(View::report);
   good &= wait_until([&] { return window.sessions().current() && !window.sessions().sessions().empty(); });
   good &= save(window, folder, "report");
-  if (!good) std::fprintf(stderr, "todbench-gui: not every view came to what its picture shows\n");
+  if (!good) std::fprintf(stderr, "todbench-gui: not every page is as it has to be\n");
   return good ? 0 : 7;
 }
 

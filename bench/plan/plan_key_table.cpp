@@ -119,16 +119,19 @@ PlanSection target_section() {
           {.name = "kind",
            .type = ChoiceKey{names_of(all_target_kinds)},
            .sentence = "instruments on the network, an operator who is prompted, or the scene of a simulated camera",
-           .place = of(&TargetPlan::kind)},
+           .place = of(&TargetPlan::kind),
+           .form = {"Target", "planTarget"}},
           {.name = "black_body",
            .type = TextKey{},
            .sentence = "HOST:PORT of the black body; needed for kind scpi",
            .place = of(&TargetPlan::black_body),
+           .form = {"Black body", "planBlackBody"},
            .check = check_black_body},
           {.name = "stage",
            .type = TextKey{},
            .sentence = "HOST:PORT of the stage that moves the plate; needed for kind scpi",
            .place = of(&TargetPlan::stage),
+           .form = {"Stage", "planStage"},
            .check = check_stage},
           // A distance that was not stated would silently scale every result: a file has to say it.
           {.name = "distance_m",
@@ -247,12 +250,14 @@ PlanSection schedule_section() {
           .keys = {{.name = "kind",
                     .type = ChoiceKey{names_of(all_schedule_kinds)},
                     .sentence = "every combination, or what the answers so far leave open",
-                    .place = of(&SchedulePlan::kind)},
+                    .place = of(&SchedulePlan::kind),
+                    .form = {"Schedule", "planSchedule"}},
                    {.name = "half_width_percent",
                     .type = NumberKey{NumberRange::above_to(0, 100)},
                     .unit = "%",
                     .sentence = "adaptive: wanted half-width of the 95 % interval of S75",
-                    .place = of(&SchedulePlan::half_width_percent)},
+                    .place = of(&SchedulePlan::half_width_percent),
+                    .form = {"Adaptive: half width", "planHalfWidth"}},
                    {.name = "max_presentations",
                     .type = WholeKey{1, 1000000},
                     .sentence = "adaptive: hard cap over all contrasts",
@@ -356,7 +361,8 @@ PlanSection measures_section() {
           .keys = {{.name = "noise",
                     .type = FlagKey{},
                     .sentence = "temporal noise, NETD and 3-D noise of the first plate at a contrast of 0",
-                    .place = of(&MeasuresPlan::noise)},
+                    .place = of(&MeasuresPlan::noise),
+                    .form = {"Measure noise and NETD", "planNoise"}},
                    {.name = "noise_frames",
                     .type = WholeKey{5, 10000},
                     .sentence = "of the cube that the noise is measured in",
@@ -364,12 +370,14 @@ PlanSection measures_section() {
                    {.name = "transfer",
                     .type = FlagKey{},
                     .sentence = "signal transfer: the contrast seen over the contrast shown",
-                    .place = of(&MeasuresPlan::transfer)},
+                    .place = of(&MeasuresPlan::transfer),
+                    .form = {"Measure the signal transfer", "planTransfer"}},
                    {.name = "transfer_steps_k",
                     .type = NumbersKey{NumberRange::between(-50, 50), "step"},
                     .unit = "K",
                     .sentence = "contrasts of the signal transfer; the largest also shows where the plate is",
                     .place = of(&MeasuresPlan::transfer_steps_k),
+                    .form = {"Steps of the transfer", "planTransferSteps"},
                     .check = check_transfer_steps}}};
 }
 
@@ -381,7 +389,7 @@ PlanSection limits_section() {
                     .unit = "%",
                     .sentence = "demanded agreement with the twin; without it none is demanded",
                     .place = in(&Plan::limits, &LimitsPlan::equivalence_margin_percent),
-                    .form = {"Equivalence margin, empty: none", "planMargin"}}}};
+                    .form = {"Equivalence margin", "planMargin"}}}};
 }
 
 PlanSection acuity_limits_section() {
@@ -404,7 +412,7 @@ PlanSection acuity_limits_section() {
                     .place = in_row(rows, &AcuityLimit::least_acuity_per_mrad),
                     .required = Required::always}},
           .rows = rows_of(rows),
-          .form = {"Limits, ΔT (K): least acuity (1/mrad)", "planLimits"}};
+          .form = {"Least acuity", "planLimits", "target.delta_t_k"}};
 }
 
 PlanSection uncertainty_section() {

@@ -19,6 +19,9 @@ namespace todbench {
 struct FormLine {
   std::string_view label{};        ///< without the unit
   std::string_view object_name{};  ///< of the part of the window
+  /// Of a repeated section: path of the list of numbers whose elements its first key repeats. Its other keys are
+  /// columns beside that list.
+  std::string_view beside{};
 };
 
 /// The commands that take an option in place of a key.
@@ -80,7 +83,7 @@ struct PlanSection {
   std::string_view sentence;
   std::vector<PlanKey> keys;
   SectionRows rows{};                           ///< without functions: the section is there once
-  FormLine form{};                              ///< of a repeated section: its rows as "VALUE: VALUE, ..."
+  FormLine form{};                              ///< of a repeated section: its rows
   std::vector<std::string_view> other_names{};  ///< of a repeated section, in place of the last part of `name`
 
   [[nodiscard]] bool repeated() const { return rows.count != nullptr; }

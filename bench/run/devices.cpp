@@ -75,7 +75,8 @@ class RemappedTarget final : public Target {
   std::map<double, double> shown_;
 };
 
-Result<std::unique_ptr<Target>> open_target(const Plan& plan, std::stop_token stop, const AskOperator& ask_operator) {
+Result<std::unique_ptr<Target>> open_target(const Plan& plan, std::stop_token stop, const AskOperator& ask_operator,
+                                            const OnTargetWait& on_wait) {
   if (plan.target.kind == TargetKind::prompt)
     return prompt_target(ask_operator ? ask_operator : operator_at_terminal(std::cerr, descriptor_lines(0)));
   ScpiTargetOptions options;
@@ -83,6 +84,7 @@ Result<std::unique_ptr<Target>> open_target(const Plan& plan, std::stop_token st
   options.stage = plan.target.stage;
   options.settle_timeout = std::chrono::milliseconds(static_cast<long>(plan.target.settle_timeout_s * 1000));
   options.poll_interval = std::chrono::milliseconds(10);
+  options.on_wait = on_wait;
   return open_scpi_target(options, stop);
 }
 
@@ -136,7 +138,8 @@ OpenedBench simulated_bench(std::shared_ptr<const SensorModel> model, const std:
 }
 
 Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>& plates, std::stop_token stop,
-                               const ExperimentHost& host, const SayProgress& on_progress) {
+                               const ExperimentHost& host, const SayProgress& on_progress,
+                               const OnTargetWait& on_wait) {
   BenchHostOptions hosting{.pause = host.pause};
   if (plan.target.kind == TargetKind::scene) {
     const auto sensor = camera_name(plan.camera.id, camera_scheme::sim);
@@ -171,7 +174,7 @@ Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>&
     bench.camera = std::move(returning);
   }
   bench.host = bench_host(hosting);
-  auto target = open_target(plan, stop, host.ask_operator);
+  auto target = open_target(plan, stop, host.ask_operator, on_wait);
   if (!target) return fail("opening the target", target.error());
   bench.target = std::move(*target);
   return bench;

@@ -14,6 +14,7 @@
 #include "sim_devices/sensor/simulated_camera.h"
 #include "tod/measurement/measurement_host.h"
 #include "tod/presentation/target.h"
+#include "tod/presentation/target_wait.h"
 
 namespace todbench {
 
@@ -35,10 +36,10 @@ struct OpenedBench {
 
 /// Opens what the plan names and writes its settings into the camera. Errors: `not_found`, `invalid_input` (a target
 /// that cannot work with this camera, a setting that is refused), `interrupted`.
-/// `host` commands what is measured with it.
+/// `host` commands what is measured with it; `on_wait` is told while the target takes its time.
 [[nodiscard]] Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>& plates,
                                              std::stop_token stop, const ExperimentHost& host = {},
-                                             const SayProgress& on_progress = {});
+                                             const SayProgress& on_progress = {}, const OnTargetWait& on_wait = {});
 
 /// A simulated sensor behind a scene. `shown_delta_t_k`: set-point -> contrast really shown, so that a twin shows what
 /// a camera saw; set-points that are not in it are shown as they are.

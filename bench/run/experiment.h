@@ -30,6 +30,8 @@ struct ExperimentListener {
   std::function<void(std::string_view sentence)> on_note{};
   /// The camera was lost and is waited for, `patience` at most; also said as a note. A replay waits for nothing: 0.
   std::function<void(const SourceInfo& camera, std::chrono::milliseconds patience)> on_lost{};
+  /// The target takes its time, or does no longer (nothing).
+  OnTargetWait on_wait{};
   /// The folder exists and holds the plan.
   std::function<void(const std::filesystem::path& folder)> on_session{};
   std::function<void(const SourceInfo&)> on_open{};

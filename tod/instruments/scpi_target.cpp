@@ -141,11 +141,13 @@ class ScpiTarget final : public Target {
   [[nodiscard]] std::optional<std::string> black_body_lacks(const Reading& reading, const TargetState& asked) const;
   [[nodiscard]] std::optional<std::string> stage_lacks(const Reading& reading, const TargetState& asked) const;
   Result<PresentedTarget> wait_until_reached(const TargetState& asked, const std::stop_token& stop);
+  Result<PresentedTarget> poll_until_reached(const TargetState& asked, const std::stop_token& stop);
 
   ScpiTargetOptions options_;
   Instrument black_body_, stage_;
   Limits limits_;
   TargetCapabilities capabilities_;
+  bool wait_reported_ = false;
 };
 
 Result<void> ScpiTarget::open(const std::stop_token& stop) {
@@ -282,7 +284,14 @@ std::optional<std::string> ScpiTarget::stage_lacks(const Reading& reading, const
 }
 
 Result<PresentedTarget> ScpiTarget::wait_until_reached(const TargetState& asked, const std::stop_token& stop) {
+  auto reached = poll_until_reached(asked, stop);
+  if (std::exchange(wait_reported_, false)) options_.on_wait(std::nullopt);
+  return reached;
+}
+
+Result<PresentedTarget> ScpiTarget::poll_until_reached(const TargetState& asked, const std::stop_token& stop) {
   const auto start = options_.now();
+  auto reported = start;
   std::mutex mutex;
   std::condition_variable_any wake;
   for (;;) {
@@ -299,6 +308,16 @@ Result<PresentedTarget> ScpiTarget::wait_until_reached(const TargetState& asked,
       const std::string after = " after " + decimal(std::chrono::duration<double>(waited).count(), 1) + " s";
       return fail(ErrorCode::timeout,
                   black_body.value_or("") + (black_body && stage ? "; " : "") + stage.value_or("") + after);
+    }
+    if (options_.on_wait && options_.now() - reported >= options_.report_interval) {
+      reported = options_.now();
+      wait_reported_ = true;
+      options_.on_wait(TargetWait{.asked = asked,
+                                  .reached = reading->target.state,
+                                  .contrast_there = !black_body,
+                                  .plate_there = !stage,
+                                  .waited_s = std::chrono::duration<double>(waited).count(),
+                                  .timeout_s = std::chrono::duration<double>(options_.settle_timeout).count()});
     }
     std::unique_lock lock(mutex);
     wake.wait_for(lock, stop, options_.poll_interval, [] { return false; });

@@ -18,6 +18,7 @@
 
 #include "tod/instruments/scpi_client.h"
 #include "tod/presentation/target.h"
+#include "tod/presentation/target_wait.h"
 
 namespace todbench {
 
@@ -29,6 +30,8 @@ struct ScpiTargetOptions {
   double shift_tolerance_mm = 0.005;
   std::chrono::milliseconds settle_timeout{600'000};  ///< for one present(), by `now`
   std::chrono::milliseconds poll_interval{100};
+  std::chrono::milliseconds report_interval{500};  ///< of on_wait, by `now`; the first after as long
+  OnTargetWait on_wait{};
   ScpiClientOptions connection;
   /// Time base of settle_timeout and settling_s.
   std::function<std::chrono::steady_clock::time_point()> now = [] { return std::chrono::steady_clock::now(); };

@@ -79,6 +79,12 @@ ExperimentListener MeasurePresenter::listener() {
     }
     bench_.post([this, camera, patience] { camera_lost(camera, patience); });
   };
+  out.on_wait = [this](const std::optional<TargetWait>& wait) {
+    bench_.post([this, text = wait ? QString::fromStdString(sentence(*wait)) : QString()] {
+      waiting_ = text;
+      emit updated();
+    });
+  };
   out.on_progress = [this](std::size_t done, std::size_t planned) {
     const std::lock_guard lock(inbox_.mutex);
     inbox_.progress = {done, planned};
@@ -100,6 +106,7 @@ ExperimentHost MeasurePresenter::host() {
     bench_.post([this, request] {
       request_ = request;
       emit updated();
+      emit operator_needed();
     });
     auto answer = desk_->wait(stop);
     bench_.post([this] {
@@ -117,6 +124,7 @@ void MeasurePresenter::begin(const Plan& plan) {
   phase_ = "starting";
   notes_.clear();
   request_.reset();
+  waiting_.clear();
   done_ = planned_ = 0;
   folder_.clear();
   trials_.clear();
@@ -304,6 +312,7 @@ void MeasurePresenter::conclude(const Result<ExperimentOutcome>& outcome) {
   timer_.stop();
   away_.reset();
   request_.reset();
+  waiting_.clear();
   if (outcome) {
     outcome_ = *outcome;
     folder_ = outcome->folder;
@@ -321,6 +330,28 @@ void MeasurePresenter::conclude(const Result<ExperimentOutcome>& outcome) {
   set_state(RunState::idle);
   emit updated();
   if (outcome_) emit finished(QString::fromStdString(folder_.string()));
+}
+
+QString MeasurePresenter::next_step() const {
+  if (request_) {
+    QStringList steps;
+    for (const auto& step : request_->steps) {
+      const QString words = QString::fromStdString(sentence(step));
+      steps << words.left(1).toUpper() + words.mid(1);
+    }
+    return steps.join('\n');
+  }
+  switch (state_) {
+    case RunState::paused:
+      return "Paused: press Resume to go on";
+    case RunState::stopping:
+      return "Stopping";
+    case RunState::running:
+      return waiting_.isEmpty() ? QString() : "Nothing to do: the bench waits for its target";
+    case RunState::idle:
+      break;
+  }
+  return outcome_ || !phase_.isEmpty() ? QString() : "Press Start: the bench measures by itself from there";
 }
 
 QString MeasurePresenter::time_left() const {

@@ -59,6 +59,10 @@ class MeasurePresenter final : public QObject {
   [[nodiscard]] QString time_left() const;
   /// What the run waits for the operator to do; nothing: it does not wait.
   [[nodiscard]] const std::optional<OperatorRequest>& operator_request() const { return request_; }
+  /// What the target is being waited for, with what was asked and what is reached; empty: it is not.
+  [[nodiscard]] const QString& waiting() const { return waiting_; }
+  /// What the operator does next, in a few words: the request's own, or that there is nothing to do.
+  [[nodiscard]] QString next_step() const;
   /// While a lost camera is waited for: what happened, how long it is still waited for; empty otherwise.
   [[nodiscard]] QString camera_away() const;
   [[nodiscard]] const QStringList& notes() const { return notes_; }
@@ -86,6 +90,8 @@ class MeasurePresenter final : public QObject {
   /// Something that is shown has changed; at most ten times a second.
   void updated();
   void state_changed();
+  /// The run waits for the operator from now on.
+  void operator_needed();
   /// The session is whole and closed.
   void finished(const QString& folder);
 
@@ -119,7 +125,7 @@ class MeasurePresenter final : public QObject {
   Plan plan_;
   std::vector<double> sizes_mrad_;  ///< of the plates of the plan
   RunState state_ = RunState::idle;
-  QString phase_;
+  QString phase_, waiting_;
   std::optional<OperatorRequest> request_;
   QStringList notes_;
   std::size_t done_ = 0, planned_ = 0, done_at_start_ = 0;

@@ -1,8 +1,13 @@
 #include "bench/gui/presenters/plan_fields.h"
 
-#include <QStringList>
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
 
 #include "bench/plan/plan_keys.h"
+#include "tod/psychometric/tod_curve.h"
 
 namespace todbench {
 namespace {
@@ -11,8 +16,14 @@ QString text_of(std::string_view text) {
   return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
 }
 
-QString label_of(const FormLine& form, std::string_view unit) {
-  return text_of(form.label) + (unit.empty() ? QString() : " (" + text_of(unit) + ")");
+QString with_unit(const QString& words, std::string_view unit) {
+  return words + (unit.empty() ? QString() : " (" + text_of(unit) + ")");
+}
+
+QStringList list_of(const std::vector<std::string>& words) {
+  QStringList out;
+  for (const std::string& word : words) out << QString::fromStdString(word);
+  return out;
 }
 
 QString tool_tip_of(const KeyAt& at) {
@@ -29,55 +40,146 @@ QString enter(const KeyAt& at, Plan& plan, const QString& text) {
   return {};
 }
 
+QString shown_value(const KeyAt& at, const Plan& plan) {
+  return QString::fromStdString(plain_text(at.key->type, at.key->place.get(plan, at.row)));
+}
+
+/// What the type of a key asks for.
+struct AskFor {
+  PlanField& field;
+  const PlanKey& key;
+
+  void operator()(const TextKey&) const { field.kind = FieldKind::text; }
+  void operator()(const FlagKey&) const { field.kind = FieldKind::yes_no; }
+  void operator()(const NumberKey&) const { field.kind = FieldKind::number; }
+  void operator()(const OptionalNumberKey&) const {
+    field.kind = FieldKind::number;
+    field.when_empty = "none";
+  }
+  void operator()(const NumberOrWordKey& type) const {
+    field.kind = FieldKind::name;
+    field.words = {text_of(type.word)};
+  }
+  void operator()(const WholeKey& type) const {
+    field.kind = FieldKind::whole;
+    field.low = static_cast<int>(type.low);
+    field.high = static_cast<int>(std::min<std::int64_t>(type.high, std::numeric_limits<int>::max()));
+  }
+  void operator()(const ChoiceKey& type) const {
+    field.kind = FieldKind::choice;
+    field.words = list_of(type.words);
+  }
+  void operator()(const NumbersKey& type) const {
+    // As many as there have to be are written in one line; otherwise there are rows to add and remove.
+    if (type.count) return;
+    field.kind = FieldKind::rows;
+    const QString noun = text_of(type.noun);
+    field.columns = {{with_unit(noun.left(1).toUpper() + noun.mid(1), key.unit), {}}};
+  }
+  void operator()(const ChoicesKey& type) const {
+    field.kind = FieldKind::boxes;
+    field.words = list_of(type.words);
+  }
+  void operator()(const ResourceKey& type) const {
+    field.kind = FieldKind::name;
+    field.words = list_of(resource_names(type.kind));
+  }
+  void operator()(const ResourcesKey& type) const {
+    field.kind = FieldKind::rows;
+    field.columns = {{"Name or file", list_of(resource_names(type.kind))}};
+  }
+  void operator()(const FreeTableKey&) const { field.kind = FieldKind::text; }
+};
+
 PlanField field_of(const KeyAt& at) {
-  return {.label = label_of(at.key->form, at.key->unit),
-          .tool_tip = tool_tip_of(at),
-          .object_name = text_of(at.key->form.object_name),
-          .shown =
-              [at](const Plan& plan) {
-                return QString::fromStdString(plain_text(at.key->type, at.key->place.get(plan, at.row)));
-              },
-          .entered = [at](Plan& plan, const QString& text) { return enter(at, plan, text); }};
+  PlanField field{.label = with_unit(text_of(at.key->form.label), at.key->unit),
+                  .tool_tip = tool_tip_of(at),
+                  .object_name = text_of(at.key->form.object_name)};
+  std::visit(AskFor{field, *at.key}, at.key->type);
+  field.paths = {path_of(*at.section, *at.key)};
+  field.shown = [at](const Plan& plan) { return shown_value(at, plan); };
+  field.entered = [at](Plan& plan, const QString& text) { return enter(at, plan, text); };
+  return field;
 }
 
-/// The values of a row, joined as the form shows them.
-QString row_text(const PlanSection& section, const Plan& plan, std::size_t row) {
-  QStringList values;
-  for (const PlanKey& key : section.keys)
-    values << QString::fromStdString(plain_text(key.type, key.place.get(plan, row)));
-  return values.join(": ");
+/// The section whose rows stand beside the elements of a key, if there is one.
+const PlanSection* section_beside(std::string_view path) {
+  for (const PlanSection& section : plan_sections()) {
+    if (section.form.beside == path) return &section;
+  }
+  return nullptr;
 }
 
-QString rows_text(const PlanSection& section, const Plan& plan) {
+double first_of(const PlanSection& section, const Plan& plan, std::size_t row) {
+  return std::get<double>(section.keys.front().place.get(plan, row));
+}
+
+std::optional<std::size_t> row_at(const PlanSection& section, const Plan& plan, double element) {
+  for (std::size_t row = 0; row < section.count(plan); ++row) {
+    if (same_contrast(first_of(section, plan, row), element)) return row;
+  }
+  return std::nullopt;
+}
+
+QString rows_shown(const KeyAt& list, const PlanSection& section, const Plan& plan) {
   QStringList rows;
-  for (std::size_t row = 0; row < section.count(plan); ++row) rows << row_text(section, plan, row);
+  const KeyValue value = list.key->place.get(plan, 0);
+  const QStringList elements = shown_value(list, plan).split(", ", Qt::SkipEmptyParts);
+  const auto& numbers = std::get<std::vector<double>>(value);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    QStringList values{elements.value(static_cast<qsizetype>(i))};
+    const auto row = row_at(section, plan, numbers[i]);
+    for (std::size_t k = 1; k < section.keys.size(); ++k)
+      values << (row ? shown_value({&section, &section.keys[k], *row}, plan) : QString());
+    rows << values.join(": ");
+  }
   return rows.join(", ");
 }
 
-QString enter_rows(const PlanSection& section, Plan& plan, const QString& text) {
+/// The rows of the section that belong to elements that have values; those of no element go with it.
+QString enter_rows(const KeyAt& list, const PlanSection& section, Plan& plan, const QString& text) {
   Plan changed = plan;
-  const QStringList rows = text.split(',', Qt::SkipEmptyParts);
+  QStringList elements;
+  std::vector<QStringList> rows;
+  for (const QString& row : text.split(',', Qt::SkipEmptyParts)) {
+    QStringList values;
+    for (const QString& value : row.split(':')) values << value.trimmed();
+    if (values.size() > static_cast<qsizetype>(section.keys.size()))
+      return "'" + row.trimmed() + "': more values than columns";
+    elements << values.front();
+    rows.push_back(std::move(values));
+  }
+  if (const QString wrong = enter(list, changed, elements.join(", ")); !wrong.isEmpty()) return wrong;
+  const KeyValue value = list.key->place.get(changed, 0);
+  const auto& numbers = std::get<std::vector<double>>(value);
   section.rows.resize(changed, 0);
-  section.rows.resize(changed, static_cast<std::size_t>(rows.size()));
-  for (qsizetype row = 0; row < rows.size(); ++row) {
-    const QStringList values = rows[row].split(':');
-    if (values.size() != static_cast<qsizetype>(section.keys.size()))
-      return "'" + rows[row].trimmed() + "' is not '" + text_of(section.form.label) + "'";
-    for (qsizetype i = 0; i < values.size(); ++i) {
-      const KeyAt at{&section, &section.keys[static_cast<std::size_t>(i)], static_cast<std::size_t>(row)};
-      if (const QString wrong = enter(at, changed, values[i].trimmed()); !wrong.isEmpty()) return wrong;
+  for (std::size_t i = 0; i < rows.size() && i < numbers.size(); ++i) {
+    if (std::all_of(rows[i].begin() + 1, rows[i].end(), [](const QString& v) { return v.isEmpty(); })) continue;
+    const std::size_t row = section.count(changed);
+    section.rows.resize(changed, row + 1);
+    // A row that was there keeps the number that it was written with.
+    const auto before = row_at(section, plan, numbers[i]);
+    section.keys.front().place.set(changed, row, KeyValue(before ? first_of(section, plan, *before) : numbers[i]));
+    for (std::size_t k = 1; k < section.keys.size(); ++k) {
+      const KeyAt at{&section, &section.keys[k], row};
+      const QString wrong = enter(at, changed, rows[i].value(static_cast<qsizetype>(k)));
+      if (!wrong.isEmpty()) return elements[static_cast<qsizetype>(i)] + ": " + wrong;
     }
   }
   plan = changed;
   return {};
 }
 
-PlanField field_of(const PlanSection& section) {
-  return {.label = text_of(section.form.label),
-          .tool_tip = text_of(section.sentence),
-          .object_name = text_of(section.form.object_name),
-          .shown = [&section](const Plan& plan) { return rows_text(section, plan); },
-          .entered = [&section](Plan& plan, const QString& text) { return enter_rows(section, plan, text); }};
+/// A list with the section beside it as one table.
+PlanField field_of(const KeyAt& list, const PlanSection& section) {
+  PlanField field = field_of(list);
+  field.tool_tip += ". Beside it: " + text_of(section.sentence) + " Empty: none is demanded";
+  for (std::size_t k = 1; k < section.keys.size(); ++k)
+    field.columns.push_back({with_unit(text_of(section.form.label), section.keys[k].unit), {}});
+  for (const PlanKey& key : section.keys) field.paths.push_back(path_of(section, key));
+  field.shown = [list, &section](const Plan& plan) { return rows_shown(list, section, plan); };
+  field.entered = [list, &section](Plan& plan, const QString& text) { return enter_rows(list, section, plan, text); };
+  return field;
 }
 
 }  // namespace
@@ -85,9 +187,11 @@ PlanField field_of(const PlanSection& section) {
 std::vector<PlanField> plan_fields() {
   std::vector<PlanField> fields;
   for (const PlanSection& section : plan_sections()) {
-    if (!section.form.label.empty()) fields.push_back(field_of(section));
     for (const PlanKey& key : section.keys) {
-      if (!key.form.label.empty()) fields.push_back(field_of({&section, &key, 0}));
+      if (key.form.label.empty()) continue;
+      const KeyAt at{&section, &key, 0};
+      const PlanSection* beside = section_beside(path_of(section, key));
+      fields.push_back(beside != nullptr ? field_of(at, *beside) : field_of(at));
     }
   }
   return fields;

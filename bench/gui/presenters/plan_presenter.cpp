@@ -10,9 +10,14 @@ namespace todbench {
 namespace {
 
 constexpr int delay_ms = 200;
+constexpr std::size_t most_changes = 200;
 
 QString sentence(const Error& error) {
   return QString::fromStdString(error.message);
+}
+
+QString why_not(const Result<void>& done) {
+  return done ? QString() : sentence(done.error());
 }
 
 /// Whether the expected thresholds of one plan hold for the other.
@@ -64,7 +69,14 @@ PlanPresenter::PlanPresenter(Workbench& bench, QObject* parent) : QObject(parent
   delay_.setSingleShot(true);
   delay_.setInterval(delay_ms);
   connect(&delay_, &QTimer::timeout, this, &PlanPresenter::look_ahead);
+  last_ = bench_.plan();
   connect(&bench_, &Workbench::plan_changed, this, &PlanPresenter::plan_changed);
+  // A plan names its device: an older one would be for another.
+  connect(&bench_, &Workbench::device_selected, this, [this] {
+    undone_to_.clear();
+    redone_to_.clear();
+    emit updated();
+  });
   // What was put off during a measurement.
   connect(&bench_, &Workbench::activity_changed, this, [this] {
     if (bench_.activity() != Activity::idle) return;
@@ -78,24 +90,61 @@ QString PlanPresenter::toml() const {
   return QString::fromStdString(to_toml(bench_.plan()));
 }
 
-QString PlanPresenter::take(const Result<LoadedPlan>& loaded) {
-  if (!loaded) return sentence(loaded.error());
+Result<void> PlanPresenter::take(const Result<LoadedPlan>& loaded, Change change) {
+  if (!loaded) return tl::unexpected(loaded.error());
   loaded_ = *loaded;
-  if (loaded->plan() != bench_.plan()) bench_.set_plan(loaded->plan());
+  if (loaded->plan() == bench_.plan()) return {};
+  change_ = change;
+  bench_.set_plan(loaded->plan());
+  change_ = Change::single;
   return {};
 }
 
-QString PlanPresenter::apply(const Plan& plan) {
+Result<void> PlanPresenter::use(const Plan& plan) {
   Plan absolute = with_absolute_references(plan, std::filesystem::current_path());
   return take(loaded_ ? loaded_->with(std::move(absolute)) : LoadedPlan::load(std::move(absolute)));
 }
 
+QString PlanPresenter::apply(const Plan& plan) {
+  return why_not(use(plan));
+}
+
 QString PlanPresenter::apply_toml(const QString& text) {
-  return take(read_plan({"plan", text.toStdString()}, std::filesystem::current_path()));
+  return why_not(take(read_plan({"plan", text.toStdString()}, std::filesystem::current_path())));
 }
 
 QString PlanPresenter::load(const QString& reference) {
-  return take(read_plan(reference.toStdString()));
+  return why_not(take(read_plan(reference.toStdString())));
+}
+
+void PlanPresenter::keep_last() {
+  if (bench_.plan() == last_) return;
+  const bool goes_on = change_ == Change::sliding && last_change_ == Change::sliding;
+  if (change_ != Change::travel && !goes_on) {
+    undone_to_.push_back(last_);
+    if (undone_to_.size() > most_changes) undone_to_.erase(undone_to_.begin());
+    redone_to_.clear();
+  }
+  last_change_ = change_;
+  last_ = bench_.plan();
+}
+
+void PlanPresenter::travel(std::vector<Plan>& to, std::vector<Plan>& from) {
+  if (to.empty()) return;
+  const Plan plan = std::move(to.back());
+  to.pop_back();
+  from.push_back(bench_.plan());
+  change_ = Change::travel;
+  bench_.set_plan(plan);
+  change_ = Change::single;
+}
+
+void PlanPresenter::undo() {
+  travel(undone_to_, redone_to_);
+}
+
+void PlanPresenter::redo() {
+  travel(redone_to_, undone_to_);
 }
 
 QString PlanPresenter::save(const QString& file) const {
@@ -104,7 +153,8 @@ QString PlanPresenter::save(const QString& file) const {
 }
 
 QString PlanPresenter::set_tolerance_percent(double tolerance_percent) {
-  return apply(with_tolerance(bench_.plan(), forecast_ ? &*forecast_ : nullptr, tolerance_percent));
+  Plan plan = with_tolerance(bench_.plan(), forecast_ ? &*forecast_ : nullptr, tolerance_percent);
+  return why_not(take(loaded_ ? loaded_->with(std::move(plan)) : LoadedPlan::load(std::move(plan)), Change::sliding));
 }
 
 QString PlanPresenter::choose(Effect effect, EffectChoice choice) {
@@ -140,6 +190,7 @@ QStringList PlanPresenter::warnings() const {
 }
 
 void PlanPresenter::plan_changed() {
+  keep_last();
   if (!loaded_ || loaded_->plan() != bench_.plan()) {
     auto loaded = loaded_ ? loaded_->with(bench_.plan()) : LoadedPlan::load(bench_.plan());
     trouble_ = loaded ? QString() : sentence(loaded.error());

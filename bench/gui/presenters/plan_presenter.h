@@ -30,6 +30,8 @@ class PlanPresenter final : public QObject {
   [[nodiscard]] QString toml() const;
   /// Takes the plan, or says in one sentence what is wrong and keeps the old one.
   [[nodiscard]] QString apply(const Plan& plan);
+  /// The same with the error, which names the key.
+  [[nodiscard]] Result<void> use(const Plan& plan);
   [[nodiscard]] QString apply_toml(const QString& text);
   /// A file or the name of a shipped plan.
   [[nodiscard]] QString load(const QString& reference);
@@ -39,6 +41,12 @@ class PlanPresenter final : public QObject {
   /// Puts an effect into [simulation] force or skip, or into neither.
   [[nodiscard]] QString choose(Effect effect, EffectChoice choice);
   [[nodiscard]] EffectChoice choice(Effect effect) const;
+
+  /// Changes of the plan since the device was chosen, whoever made them; one way of the slider is one change.
+  [[nodiscard]] bool can_undo() const { return !undone_to_.empty(); }
+  [[nodiscard]] bool can_redo() const { return !redone_to_.empty(); }
+  void undo();
+  void redo();
 
   [[nodiscard]] const PlanOutlook& outlook() const { return outlook_; }
   /// False until the thresholds of the direct estimate are known.
@@ -59,7 +67,12 @@ class PlanPresenter final : public QObject {
   void updated();
 
  private:
-  QString take(const Result<LoadedPlan>& loaded);
+  /// What a change of the plan is part of.
+  enum class Change { single, sliding, travel };
+
+  Result<void> take(const Result<LoadedPlan>& loaded, Change change = Change::single);
+  void keep_last();
+  void travel(std::vector<Plan>& to, std::vector<Plan>& from);
   void plan_changed();
   void foresee();
   void look_ahead();
@@ -74,6 +87,9 @@ class PlanPresenter final : public QObject {
   std::vector<AccuracyPrice> prices_;
   QString misfit_, trouble_;
   std::optional<Plan> expected_of_, prices_of_;
+  std::vector<Plan> undone_to_, redone_to_;  ///< the last is the next
+  Plan last_;                                ///< before the change that is being made
+  Change change_ = Change::single, last_change_ = Change::single;
   EffectPlanner planner_;  // of both jobs
   JobRunner forecasts_, jobs_;
 };

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "bench/gui/presenters/pdf_report.h"
+#include "bench/judgement/verdict_record.h"
+#include "bench/plan/strict_toml.h"
 #include "bench/report/tod_figures.h"
 #include "bench/run/rebuild_report.h"
 #include "bench/run/recorded_bench.h"
@@ -23,6 +25,34 @@ QString short_name(const QString& session) {
   return QString(session).remove(stamp);
 }
 
+/// The unit under test in the words of the plan.
+QString unit_of(const std::filesystem::path& folder) {
+  const auto text = read_text_file(folder / "session.toml");
+  if (!text) return {};
+  auto reader = TomlReader::parse(*text, "session.toml");
+  return reader ? QString::fromStdString(reader->text("unit", "")) : QString();
+}
+
+/// What the list shows comes from these files; the others are checked when the session is opened.
+bool shown_files_listed(const std::filesystem::path& folder) {
+  std::error_code none;
+  for (const char* file : {"provenance.json", "session.toml", "verdict.json"}) {
+    if (std::filesystem::exists(folder / file, none) && !is_listed(folder, file).value_or(false)) return false;
+  }
+  return true;
+}
+
+QString verdict_of(const std::filesystem::path& folder) {
+  const auto text = read_text_file(folder / "verdict.json");
+  if (!text || !is_listed(folder, "verdict.json").value_or(false)) return {};
+  const Json json = Json::parse(*text, nullptr, false);
+  if (json.is_discarded()) return {};
+  const auto verdict = verdict_from(json);
+  if (!verdict) return {};
+  const auto word = to_string(verdict->decision);
+  return QString::fromUtf8(word.data(), static_cast<qsizetype>(word.size()));
+}
+
 Result<SessionEntry> entry_of(const std::filesystem::path& folder) {
   const auto text = read_text_file(folder / "provenance.json");
   if (!text) return tl::unexpected(text.error());
@@ -34,17 +64,33 @@ Result<SessionEntry> entry_of(const std::filesystem::path& folder) {
   entry.folder = folder;
   entry.name = short_name(QString::fromStdString(session_name(folder)));
   entry.when = QString::fromStdString(provenance->started_utc).replace('T', ' ').remove('Z');
-  // What the list shows comes from this one file; the others are checked when the session is opened.
-  const auto listed = is_listed(folder, "provenance.json");
   const bool cut_off = provenance->state == SessionState::running;
-  entry.state = cut_off || listed.value_or(false) ? QString::fromUtf8(to_string(provenance->state).data()) : "changed";
-  if (provenance->camera)
-    entry.unit = QString::fromStdString(provenance->camera->model + ", serial " + provenance->camera->serial);
-  if (!provenance->camera) entry.unit = "simulation";
+  entry.state =
+      cut_off || shown_files_listed(folder) ? QString::fromUtf8(to_string(provenance->state).data()) : "changed";
+  entry.unit = unit_of(folder);
+  if (provenance->camera) {
+    if (entry.unit.isEmpty()) entry.unit = QString::fromStdString(provenance->camera->model);
+    entry.serial = QString::fromStdString(provenance->camera->serial);
+  } else {
+    entry.unit = "simulation";
+  }
+  if (entry.state == "complete") entry.verdict = verdict_of(folder);
   return entry;
 }
 
 }  // namespace
+
+std::vector<SessionEntry> matching(const std::vector<SessionEntry>& sessions, const QString& filter) {
+  const QStringList words = filter.split(' ', Qt::SkipEmptyParts);
+  std::vector<SessionEntry> out;
+  for (const SessionEntry& s : sessions) {
+    const QString all = QStringList{s.serial, s.unit, s.name, s.when, s.verdict, s.state}.join(' ');
+    if (std::all_of(words.begin(), words.end(),
+                    [&](const QString& word) { return all.contains(word, Qt::CaseInsensitive); }))
+      out.push_back(s);
+  }
+  return out;
+}
 
 Result<Exported> export_reports(const OpenedSession& opened) {
   // Since it was opened the files may have been changed.

@@ -16,8 +16,14 @@ namespace todbench {
 /// A line of the browser.
 struct SessionEntry {
   std::filesystem::path folder;
-  QString name, when, state, unit;
+  QString name, when, state;
+  QString unit;     ///< in the plan's words, else the camera's model; "simulation" where there is none
+  QString serial;   ///< of the camera; empty: there is none
+  QString verdict;  ///< "pass", "fail", "inconclusive"; empty: there is none that the manifest vouches for
 };
+
+/// The sessions whose serial number, unit, name, date, verdict or state has every word of `filter` in it, in any case.
+[[nodiscard]] std::vector<SessionEntry> matching(const std::vector<SessionEntry>& sessions, const QString& filter);
 
 /// A session as values.
 struct OpenedSession {

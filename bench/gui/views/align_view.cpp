@@ -1,6 +1,7 @@
 #include "bench/gui/views/align_view.h"
 
 #include <QHBoxLayout>
+#include <algorithm>
 
 #include "bench/gui/presenters/align_presenter.h"
 #include "bench/gui/presenters/look_presenter.h"
@@ -16,6 +17,14 @@ QPolygonF polygon_of(const Polygon& points) {
   return out;
 }
 
+/// What has to be seen, with a twentieth round it; empty where nothing was found.
+QRectF with_margin(const std::vector<PictureOutline>& outlines) {
+  QRectF all;
+  for (const auto& outline : outlines) all |= outline.points.boundingRect();
+  const double margin = std::max(all.width(), all.height()) / 20;
+  return all.isEmpty() ? QRectF() : all.adjusted(-margin, -margin, margin, margin);
+}
+
 }  // namespace
 
 AlignView::AlignView(Workbench& bench, AlignPresenter& presenter, LookPresenter& live, QWidget* parent)
@@ -24,11 +33,19 @@ AlignView::AlignView(Workbench& bench, AlignPresenter& presenter, LookPresenter&
   picture_ = new PictureView;
   picture_->setObjectName("alignPicture");
   picture_->set_placeholder("Start to show the first plate of the plan at its highest contrast and find it.");
+  picture_->setAccessibleName("Plate");
   layout->addWidget(picture_, 1);
   auto* panel = new QWidget;
   panel->setFixedWidth(300);
   auto* side = new QVBoxLayout(panel);
   side->setContentsMargins(0, 0, 0, 0);
+  side->addWidget(title_label("Whole picture"));
+  whole_ = new PictureView;
+  whole_->setObjectName("wholePicture");
+  whole_->setAccessibleName("Whole picture");
+  whole_->set_placeholder("The whole picture of the camera");
+  whole_->setFixedHeight(200);
+  side->addWidget(whole_);
   side->addWidget(title_label("Registration"));
   verdict_ = new QLabel("Not aligned yet");
   verdict_->setObjectName("alignVerdict");
@@ -56,7 +73,9 @@ AlignView::AlignView(Workbench& bench, AlignPresenter& presenter, LookPresenter&
     }
   });
   connect(&live, &LookPresenter::updated, this, [this, &live] {
-    if (isVisible()) picture_->set_image(live.image());
+    if (!isVisible()) return;
+    picture_->set_image(live.image());
+    whole_->set_image(live.image());
   });
   connect(&presenter_, &AlignPresenter::updated, this, &AlignView::show_alignment);
   connect(&bench_, &Workbench::activity_changed, this, &AlignView::show_activity);
@@ -73,6 +92,8 @@ void AlignView::show_alignment() {
   if (!alignment) {
     verdict_->setText("Not aligned yet");
     picture_->set_outlines({});
+    whole_->set_outlines({});
+    picture_->set_region({});
     return;
   }
   verdict_->setText(alignment->remarks.empty() ? "✓ Ready to measure" : "✗ Not ready");
@@ -83,6 +104,9 @@ void AlignView::show_alignment() {
     const QRectF window(t.window.x - 0.5, t.window.y - 0.5, t.window.width, t.window.height);
     outlines.push_back({QPolygonF(window), QColor(230, 159, 0), Qt::DotLine});
   }
+  // The plate may cover a tenth of the picture: large here, in its place there.
+  whole_->set_outlines({outlines.front()});
+  picture_->set_region(with_margin(outlines));
   picture_->set_outlines(std::move(outlines));
 }
 

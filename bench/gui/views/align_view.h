@@ -26,7 +26,7 @@ class AlignView final : public QWidget {
 
   Workbench& bench_;
   AlignPresenter& presenter_;
-  PictureView* picture_;
+  PictureView *picture_, *whole_;
   QTableWidget* figures_;
   QLabel *verdict_, *hints_;
   QPushButton* start_;

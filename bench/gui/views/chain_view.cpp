@@ -34,6 +34,7 @@ ChainView::ChainView(ChainPresenter& presenter, QWidget* parent) : QWidget(paren
     column->addWidget(title_label(QString("%1  %2").arg(place + 1).arg(name_of(stage))));
     auto* picture = new PictureView;
     picture->setObjectName(QString("stage%1").arg(place));
+    picture->setAccessibleName(name_of(stage));
     pictures_.push_back(picture);
     column->addWidget(picture, 1);
     QLabel* note = hint_label();

@@ -44,6 +44,7 @@ HumanView::HumanView(Workbench& bench, HumanPresenter& presenter, MeasurePresent
   shown_ms_->setRange(50, 10000);
   shown_ms_->setValue(1000);
   shown_ms_->setSuffix(" ms");
+  shown_ms_->setAccessibleName("Time that a patch is shown");
   shown_ms_->setEnabled(false);
   form->addRow("Patches per size", per_size_);
   form->addRow(limited_, shown_ms_);

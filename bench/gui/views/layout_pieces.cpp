@@ -1,6 +1,7 @@
 #include "bench/gui/views/layout_pieces.h"
 
 #include <QHeaderView>
+#include <algorithm>
 
 namespace todbench {
 
@@ -32,6 +33,7 @@ QPushButton* plain_button(const QString& text, const QString& object_name) {
 QTableWidget* plain_table(const QStringList& header, const QString& object_name) {
   auto* table = new QTableWidget(0, static_cast<int>(header.size()));  // NOLINT
   table->setObjectName(object_name);
+  table->setAccessibleName(header.join(", "));
   table->setHorizontalHeaderLabels(header);
   table->verticalHeader()->hide();
   table->setEditTriggers(QAbstractItemView::NoEditTriggers);
@@ -40,7 +42,9 @@ QTableWidget* plain_table(const QStringList& header, const QString& object_name)
   table->setTabKeyNavigation(false);
   table->setWordWrap(false);
   table->horizontalHeader()->setDefaultAlignment(Qt::AlignLeft | Qt::AlignVCenter);
-  table->horizontalHeader()->setStretchLastSection(true);
+  // What is left, and never more: a stretched last section keeps its default width at least.
+  table->horizontalHeader()->setSectionResizeMode(static_cast<int>(header.size()) - 1, QHeaderView::Stretch);
+  table->horizontalHeader()->setHighlightSections(false);
   table->verticalHeader()->setDefaultSectionSize(table->fontMetrics().height() + 8);
   return table;
 }
@@ -48,6 +52,26 @@ QTableWidget* plain_table(const QStringList& header, const QString& object_name)
 void wrap_words(QTableWidget& table) {
   table.setWordWrap(true);
   table.verticalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
+}
+
+int column_widths(QTableWidget& table, const QStringList& longest) {
+  constexpr int margins = 11;
+  const QFontMetrics metrics = table.fontMetrics();
+  int total = 2 * table.frameWidth();
+  for (int column = 0; column < table.columnCount() && column < longest.size(); ++column) {
+    const QTableWidgetItem* title = table.horizontalHeaderItem(column);
+    const int heading = title == nullptr ? 0 : metrics.horizontalAdvance(title->text());
+    const int width = std::max(heading, metrics.horizontalAdvance(longest[column])) + margins;
+    table.setColumnWidth(column, width);
+    total += width;
+  }
+  return total;
+}
+
+void fit_height(QTableWidget& table, int most_rows) {
+  const int rows = std::clamp(table.rowCount(), 1, most_rows);
+  table.setFixedHeight(table.horizontalHeader()->sizeHint().height() + 2 * table.frameWidth() +
+                       rows * table.verticalHeader()->defaultSectionSize());
 }
 
 void fill_table(QTableWidget& table, const QList<QStringList>& rows) {

@@ -19,6 +19,11 @@ namespace todbench {
 [[nodiscard]] QTableWidget* plain_table(const QStringList& header, const QString& object_name);
 /// Cells too narrow for their text show it in several lines; for tables of few rows.
 void wrap_words(QTableWidget& table);
+/// Columns as wide as their headings and these texts, one for each column from the first; the last takes what is left.
+/// Returns the width of a table that these columns just fit into.
+int column_widths(QTableWidget& table, const QStringList& longest);
+/// As high as its rows, between one and so many.
+void fit_height(QTableWidget& table, int most_rows);
 /// Replaces the rows of a table.
 void fill_table(QTableWidget& table, const QList<QStringList>& rows);
 

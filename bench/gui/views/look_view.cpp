@@ -124,8 +124,12 @@ QWidget* LookView::display_panel() {
   mode_ = new QComboBox;
   mode_->setObjectName("levelMode");
   mode_->addItems({"Automatic", "Fixed"});
+  colours_->setAccessibleName("Colours");
+  mode_->setAccessibleName("Level");
   level_ = new QDoubleSpinBox;
   span_ = new QDoubleSpinBox;
+  level_->setAccessibleName("Middle of the grey levels");
+  span_->setAccessibleName("Span of the grey levels");
   for (QDoubleSpinBox* box : {level_, span_}) {
     box->setRange(0, 65535);
     box->setDecimals(0);

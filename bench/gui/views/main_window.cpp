@@ -4,15 +4,23 @@
 #include <QApplication>
 #include <QCloseEvent>
 #include <QComboBox>
+#include <QDragEnterEvent>
+#include <QDropEvent>
+#include <QFileDialog>
 #include <QFrame>
 #include <QHBoxLayout>
+#include <QHeaderView>
+#include <QLineEdit>
 #include <QListWidget>
 #include <QMenuBar>
+#include <QMimeData>
+#include <QPlainTextEdit>
 #include <QSettings>
 #include <QShortcut>
 #include <QStackedWidget>
 #include <QStatusBar>
 #include <QStyleFactory>
+#include <QTableWidget>
 #include <algorithm>
 
 #include "bench/gui/views/align_view.h"
@@ -23,6 +31,7 @@
 #include "bench/gui/views/measure_view.h"
 #include "bench/gui/views/plan_view.h"
 #include "bench/gui/views/report_view.h"
+#include "bench/gui/views/start_view.h"
 
 namespace todbench {
 
@@ -42,9 +51,20 @@ QString name_of(View view) {
       return "See the chain";
     case View::report:
       return "Compare and report";
+    case View::start:
+      return "Start page";
   }
   return {};
 }
+
+namespace {
+
+/// What is remembered of a table is for one with as many columns.
+QString columns_key(const QTableWidget& table) {
+  return QString("columns/%1-%2").arg(table.objectName()).arg(table.columnCount());
+}
+
+}  // namespace
 
 MainWindow::MainWindow(const std::filesystem::path& sessions, Memory memory, QWidget* parent)
     : QMainWindow(parent),
@@ -64,7 +84,11 @@ MainWindow::MainWindow(const std::filesystem::path& sessions, Memory memory, QWi
   resize(1280, 700);
   if (memory_ == Memory::remember) recall();
   set_theme(theme_);
-  show_view(View::look);
+  setAcceptDrops(true);
+  // A file that is dropped is for the window, not a name for the line below the mouse.
+  for (QLineEdit* edit : findChildren<QLineEdit*>()) edit->setAcceptDrops(false);
+  for (QPlainTextEdit* edit : findChildren<QPlainTextEdit*>()) edit->setAcceptDrops(false);
+  show_view(first_start_ ? View::start : View::look);
   show_state();
 }
 
@@ -90,9 +114,12 @@ void MainWindow::make_views() {
     auto* shortcut = new QShortcut(QKeySequence(QString("Ctrl+%1").arg(number)), this);
     connect(shortcut, &QShortcut::activated, this, [this, view] { show_view(view); });
   }
+  // The start page is no step of the work: the list knows it and does not show it.
+  (new QListWidgetItem(name_of(View::start), navigation_))->setHidden(true);
   views_->addWidget(new LookView(bench_, look_));
   views_->addWidget(new AlignView(bench_, align_, look_));
-  views_->addWidget(new PlanView(plan_));
+  plan_view_ = new PlanView(plan_);
+  views_->addWidget(plan_view_);
   views_->addWidget(new MeasureView(bench_, measure_));
   views_->addWidget(new HumanView(bench_, human_, measure_));
   views_->addWidget(new ChainView(chain_));
@@ -104,12 +131,14 @@ void MainWindow::make_views() {
     measure_.replay(sessions_.current()->folder, sessions_.current()->session.plan);
   });
   views_->addWidget(report);
+  views_->addWidget(start_page());
 
   message_ = new QFrame;
   message_->setObjectName("messageBar");
   auto* line = new QHBoxLayout(message_);
   message_text_ = new QLabel;
   message_text_->setObjectName("messageText");
+  message_text_->setAccessibleName("Message");
   message_text_->setWordWrap(true);
   message_text_->setTextInteractionFlags(Qt::TextSelectableByMouse);
   retry_ = primary_button("Try again", "retry");
@@ -137,10 +166,56 @@ void MainWindow::make_views() {
   });
 }
 
+QWidget* MainWindow::start_page() {
+  auto* page = new StartView;
+  connect(page, &StartView::try_without_hardware, this, [this] {
+    if (auto selected = bench_.select_device(bench_.devices().front().id); !selected)
+      show_trouble(QString::fromStdString(selected.error().message));
+    show_view(View::measure);
+  });
+  connect(page, &StartView::connect_camera, this, [this] {
+    show_view(View::look);
+    bench_.rescan();
+  });
+  connect(page, &StartView::open_session, this, &MainWindow::choose_session);
+  return page;
+}
+
+void MainWindow::choose_session() {
+  const QString folder = QFileDialog::getExistingDirectory(this, "Open a session",
+                                                           QString::fromStdString(bench_.sessions_folder().string()));
+  if (!folder.isEmpty()) open_path(folder.toStdString());
+}
+
+void MainWindow::open_path(const std::filesystem::path& path) {
+  std::error_code none;
+  if (std::filesystem::is_directory(path, none) || path.filename() == "session.toml") {
+    show_view(View::report);
+    sessions_.open(path.filename() == "session.toml" ? path.parent_path() : path);
+    return;
+  }
+  show_view(View::plan);
+  plan_view_->open_plan(QString::fromStdString(path.string()));
+}
+
+void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
+  const QList<QUrl> urls = event->mimeData()->urls();
+  if (urls.size() == 1 && urls.front().isLocalFile()) event->acceptProposedAction();
+}
+
+void MainWindow::dropEvent(QDropEvent* event) {
+  const QList<QUrl> urls = event->mimeData()->urls();
+  if (urls.size() != 1 || !urls.front().isLocalFile()) return;
+  event->acceptProposedAction();
+  open_path(urls.front().toLocalFile().toStdString());
+}
+
 void MainWindow::make_menu() {
   QMenu* bench = menuBar()->addMenu("&Bench");
   connect(bench->addAction("&Look for cameras"), &QAction::triggered, this, [this] { bench_.rescan(); });
   connect(bench->addAction("&Stop"), &QAction::triggered, this, [this] { bench_.stop(); });
+  connect(bench->addAction("&Open a session…"), &QAction::triggered, this, &MainWindow::choose_session);
+  connect(bench->addAction("S&tart page"), &QAction::triggered, this, [this] { show_view(View::start); });
   QAction* cable = bench->addAction("&Pull the emulated camera's cable");
   cable->setToolTip("Cuts the power of the emulated camera, to see what happens then");
   connect(cable, &QAction::triggered, this, [this] { bench_.switch_emulated_camera_off(); });
@@ -193,12 +268,18 @@ void MainWindow::connect_parts() {
     sessions_.refresh();
     sessions_.open(folder.toStdString());
   });
+  // Whoever runs a bench by hand looks at the plate, not at the screen.
+  connect(&measure_, &MeasurePresenter::operator_needed, this, [this] {
+    QApplication::beep();
+    QApplication::alert(this);
+  });
   connect(&human_, &HumanPresenter::finished, this,
           [this](const QString& folder) { sessions_.open(folder.toStdString()); });
 }
 
 void MainWindow::show_trouble(const QString& sentence) {
   message_text_->setText(sentence);
+  message_->setProperty("error", true);
   retry_->show();
   abandon_->hide();
   other_camera_->setVisible(last_activity_ != Activity::replaying);
@@ -211,6 +292,7 @@ void MainWindow::show_camera_away() {
   const bool stopping = measure_.state() == RunState::stopping;
   if (!sentence.isEmpty() && !stopping) {
     message_text_->setText(sentence);
+    message_->setProperty("error", true);
     retry_->hide();
     abandon_->show();
     other_camera_->show();
@@ -235,7 +317,7 @@ void MainWindow::show_view(View view) {
 }
 
 View MainWindow::view() const {
-  return all_views.at(static_cast<std::size_t>(views_->currentIndex()));
+  return static_cast<View>(views_->currentIndex());
 }
 
 void MainWindow::set_theme(Theme theme) {
@@ -252,6 +334,11 @@ void MainWindow::set_theme(Theme theme) {
 
 void MainWindow::recall() {
   const QSettings settings("todbench", "todbench-gui");
+  first_start_ = !settings.contains("geometry");
+  for (const QTableWidget* table : findChildren<QTableWidget*>()) {
+    const QByteArray columns = settings.value(columns_key(*table)).toByteArray();
+    if (!columns.isEmpty()) table->horizontalHeader()->restoreState(columns);
+  }
   restoreGeometry(settings.value("geometry").toByteArray());
   if (settings.contains("theme")) theme_ = settings.value("theme").toInt() == 1 ? Theme::dark : Theme::light;
   const QString device = settings.value("device", emulated_laboratory).toString();
@@ -266,6 +353,8 @@ void MainWindow::recall() {
 void MainWindow::remember() {
   QSettings settings("todbench", "todbench-gui");
   settings.setValue("geometry", saveGeometry());
+  for (const QTableWidget* table : findChildren<QTableWidget*>())
+    settings.setValue(columns_key(*table), table->horizontalHeader()->saveState());
   settings.setValue("theme", theme_ == Theme::dark ? 1 : 0);
   settings.setValue("device", bench_.device());
   settings.setValue("plan", plan_.toml());

@@ -1,4 +1,4 @@
-// The window: seven views, one message line, one state.
+// The window: seven views and a start page, one message line, one state.
 #pragma once
 
 #include <QMainWindow>
@@ -23,7 +23,10 @@ class QStackedWidget;
 
 namespace todbench {
 
-enum class View { look, align, plan, measure, human, chain, report };
+class PlanView;
+
+enum class View { look, align, plan, measure, human, chain, report, start };
+/// Those of the list on the left; the start page is reached by the menu.
 inline constexpr std::array all_views{View::look,  View::align, View::plan,  View::measure,
                                       View::human, View::chain, View::report};
 [[nodiscard]] QString name_of(View view);
@@ -42,6 +45,8 @@ class MainWindow final : public QMainWindow {
   void show_view(View view);
   [[nodiscard]] View view() const;
   void set_theme(Theme theme);
+  /// Opens a session (its folder or session.toml) or a plan (another TOML file), and says why where it cannot.
+  void open_path(const std::filesystem::path& path);
 
   // The parts behind the views, for tests and pictures.
   [[nodiscard]] Workbench& bench() { return bench_; }
@@ -55,11 +60,15 @@ class MainWindow final : public QMainWindow {
 
  protected:
   void closeEvent(QCloseEvent* event) override;
+  void dragEnterEvent(QDragEnterEvent* event) override;
+  void dropEvent(QDropEvent* event) override;
 
  private:
   void make_views();
+  [[nodiscard]] QWidget* start_page();
   void make_menu();
   void connect_parts();
+  void choose_session();
   void show_trouble(const QString& sentence);
   /// Message with the time left and the ways back while a lost camera is waited for.
   void show_camera_away();
@@ -77,10 +86,12 @@ class MainWindow final : public QMainWindow {
   ChainPresenter chain_;
   SessionPresenter sessions_;
   Theme theme_ = Theme::light;
-  bool away_ = false;  ///< the message says that a camera is waited for
+  bool first_start_ = false;  ///< nothing is remembered
+  bool away_ = false;         ///< the message says that a camera is waited for
   Activity last_activity_ = Activity::idle;
   QListWidget* navigation_ = nullptr;
   QStackedWidget* views_ = nullptr;
+  PlanView* plan_view_ = nullptr;
   QFrame* message_ = nullptr;
   QLabel* message_text_ = nullptr;
   QPushButton *retry_ = nullptr, *abandon_ = nullptr, *other_camera_ = nullptr;

@@ -19,12 +19,6 @@ QString text_of(std::string_view text) {
   return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
 }
 
-QString in_words(const OperatorRequest& request) {
-  QString text = "Please:";
-  for (const auto& step : request.steps) text += "\n  - " + QString::fromStdString(sentence(step));
-  return text;
-}
-
 /// Changes whenever a curve does: thresholds and numbers of trials.
 std::vector<double> key_of(const MeasurePresenter& presenter) {
   std::vector<double> key;
@@ -64,12 +58,19 @@ MeasureView::MeasureView(Workbench& bench, MeasurePresenter& presenter, QWidget*
   line->addWidget(left_);
   layout->addLayout(line);
   layout->addWidget(phase_);
+  step_ = new QLabel;
+  step_->setObjectName("nextStep");
+  step_->setProperty("role", "step");
+  step_->setWordWrap(true);
+  layout->addWidget(step_);
 
   operator_ = new QFrame;
   operator_->setObjectName("messageBar");
   auto* ask = new QHBoxLayout(operator_);
   request_ = new QLabel;
   request_->setObjectName("operatorRequest");
+  request_->setProperty("role", "step");
+  request_->setWordWrap(true);
   answer_ = primary_button("Done", "operatorDone");
   ask->addWidget(request_, 1);
   ask->addWidget(answer_);
@@ -128,16 +129,15 @@ QWidget* MeasureView::log_panel() {
   layout->setContentsMargins(0, 0, 0, 0);
   log_ = plain_table({"ΔT (K)", "S (mrad)", "Truth", "Answer", "up", "right", "down", "left", "Of"}, "trialLog");
   log_->setToolTip("Scores of the four alternatives: the observer answers with the highest");
-  const std::vector<int> widths{56, 56, 42, 58, 38, 38, 40, 38, 56};
-  for (std::size_t i = 0; i < widths.size(); ++i) log_->setColumnWidth(static_cast<int>(i), widths[i]);
+  column_widths(*log_, {"16.900", "", "right", "right ✓", "0.00", "right", "0.00", "0.00", "camera"});
   layout->addWidget(log_, 1);
   auto* side = new QVBoxLayout;
   judged_ = new PictureView;
   judged_->setObjectName("judgedPatch");
   judged_->set_placeholder("Patch");
-  judged_->setFixedSize(130, 130);
+  judged_->setFixedSize(110, 110);
   judged_text_ = hint_label("The patch of the answer that is selected, or of the last one");
-  judged_text_->setFixedWidth(130);
+  judged_text_->setFixedWidth(110);
   side->addWidget(judged_);
   side->addWidget(judged_text_);
   side->addStretch();
@@ -161,14 +161,19 @@ void MeasureView::make_plots() {
 
 void MeasureView::show_all() {
   make_plots();
-  phase_->setText(presenter_.phase().isEmpty() ? "Ready: " + QString::fromStdString(bench_.plan().name)
-                                               : presenter_.phase());
+  const QString phase =
+      presenter_.phase().isEmpty() ? "Ready: " + QString::fromStdString(bench_.plan().name) : presenter_.phase();
+  phase_->setText(presenter_.waiting().isEmpty() ? phase : phase + ": " + presenter_.waiting());
   left_->setText(presenter_.time_left());
+  progress_->setFormat(presenter_.planned() == 0 ? QString() : "%v of %m presentations");
   progress_->setRange(0, std::max(1, static_cast<int>(presenter_.planned())));
   progress_->setValue(static_cast<int>(presenter_.done()));
   const auto& request = presenter_.operator_request();
   operator_->setVisible(request.has_value());
-  request_->setText(request ? in_words(*request) : QString());
+  const QString step = presenter_.next_step();
+  request_->setText(request ? step : QString());
+  step_->setText(request ? QString() : step);
+  step_->setVisible(!step_->text().isEmpty());
   if (!isVisible()) return;
   show_curves();
   show_log();

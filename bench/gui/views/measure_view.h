@@ -40,7 +40,7 @@ class MeasureView final : public QWidget {
   MeasurePresenter& presenter_;
   QPushButton *start_, *pause_, *abort_, *answer_;
   QProgressBar* progress_;
-  QLabel *phase_, *left_, *request_, *judged_text_;
+  QLabel *phase_, *left_, *step_, *request_, *judged_text_;
   QFrame* operator_;
   QWidget* functions_;
   std::vector<PlotView*> function_plots_;

@@ -17,6 +17,7 @@ constexpr double largest_zoom = 48, least_zoom = 0.25;
 
 PictureView::PictureView(QWidget* parent) : QWidget(parent) {
   setMouseTracking(true);
+  setAccessibleName("Picture");
   setFocusPolicy(Qt::StrongFocus);
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Expanding);
   setToolTip("Wheel or + and −: zoom; drag or arrow keys: move; 0: fit");
@@ -47,6 +48,11 @@ void PictureView::set_surround(const QColor& colour) {
   update();
 }
 
+void PictureView::set_region(const QRectF& region) {
+  region_ = region;
+  update();
+}
+
 void PictureView::set_zoom(double zoom) {
   zoom_ = zoom <= 0 ? 0 : std::clamp(zoom, least_zoom, largest_zoom);
   if (zoom_ == 0) shift_ = {};
@@ -57,11 +63,14 @@ void PictureView::set_zoom(double zoom) {
 double PictureView::scale() const {
   if (zoom_ > 0) return zoom_;
   if (image_.isNull()) return 1;
+  if (!region_.isEmpty())
+    return std::clamp(std::min(width() / region_.width(), height() / region_.height()), least_zoom, largest_zoom);
   return std::min(static_cast<double>(width()) / image_.width(), static_cast<double>(height()) / image_.height());
 }
 
 QPointF PictureView::origin() const {
   const QPointF middle(width() / 2.0, height() / 2.0);
+  if (zoom_ <= 0 && !region_.isEmpty()) return middle + shift_ - (region_.center() + QPointF(0.5, 0.5)) * scale();
   return middle + shift_ - QPointF(image_.width(), image_.height()) * scale() / 2;
 }
 
@@ -117,6 +126,11 @@ void PictureView::wheelEvent(QWheelEvent* event) {
 
 void PictureView::zoom_by(double factor, const QPointF& about) {
   const double before = scale();
+  // From a region one goes on from where it is.
+  if (zoom_ <= 0 && !region_.isEmpty()) {
+    shift_ += (QPointF(image_.width(), image_.height()) / 2 - region_.center() - QPointF(0.5, 0.5)) * before;
+    zoom_ = before;
+  }
   const QPointF from_middle = about - QPointF(width() / 2.0, height() / 2.0) - shift_;
   zoom_ = std::clamp(before * factor, least_zoom, largest_zoom);
   shift_ += from_middle * (1 - zoom_ / before);

@@ -32,6 +32,9 @@ class PictureView final : public QWidget {
   /// What stands in place of a picture.
   void set_placeholder(const QString& text);
 
+  /// Shows this part of the picture (in its pixels) as large as fits, whatever the size of the widget; an empty one:
+  /// the whole picture.
+  void set_region(const QRectF& region);
   /// Screen pixels per picture pixel; 0: as large as fits.
   void set_zoom(double zoom);
   [[nodiscard]] double zoom() const { return zoom_; }
@@ -62,6 +65,7 @@ class PictureView final : public QWidget {
   std::vector<QPoint> rings_;
   QString placeholder_;
   std::optional<QColor> surround_;
+  QRectF region_;  ///< while nobody has zoomed or moved
   double zoom_ = 0;
   QPointF shift_;  ///< of the middle, in screen pixels
   QPointF dragged_from_;

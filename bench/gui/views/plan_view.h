@@ -1,57 +1,50 @@
-// Plan: the form, the TOML under it, and what it will cost.
+// Plan: the form, the TOML under it, and beside them what it will cost.
 #pragma once
 
 #include <QWidget>
 #include <vector>
 
-#include "bench/gui/presenters/plan_fields.h"
+#include "bench/gui/presenters/plan_form.h"
 
-class QComboBox;
 class QLabel;
-class QLineEdit;
+class QLayout;
 class QPlainTextEdit;
 class QPushButton;
-class QSlider;
-class QTableWidget;
 class QTabWidget;
 
 namespace todbench {
 
+class FieldEditor;
 class PlanPresenter;
-class PlotView;
 
 class PlanView final : public QWidget {
   Q_OBJECT
 
  public:
   explicit PlanView(PlanPresenter& presenter, QWidget* parent = nullptr);
+  /// A file or the name of a shipped plan; says below the form why it cannot be read.
+  void open_plan(const QString& reference);
 
  private:
-  struct Line {
-    QLineEdit* edit;
-    PlanField field;
-  };
-
   [[nodiscard]] QWidget* form_page();
   [[nodiscard]] QWidget* toml_page();
-  [[nodiscard]] QWidget* outlook_panel();
-  [[nodiscard]] QWidget* effects_table();
-  void enter(const Line& line);
+  [[nodiscard]] QLayout* buttons();
+  void undo();
+  void redo();
+  void start_afresh();
+  void enter(std::size_t line);
+  void plan_updated();
   void show_plan();
-  void show_outlook();
-  void show_effects();
-  void show_reason();
   void complain(const QString& sentence);
 
   PlanPresenter& presenter_;
-  std::vector<Line> lines_;
+  PlanForm form_;
+  Plan shown_;
+  std::vector<FieldEditor*> editors_;  ///< in the order of the form's fields
   QTabWidget* tabs_;
   QPlainTextEdit* toml_;
-  QLabel *problem_, *tolerance_text_, *cost_, *misfit_, *reason_;
-  QSlider* tolerance_;
-  QTableWidget *contrasts_, *effects_;
-  PlotView* prices_;
-  std::vector<QComboBox*> choices_;  ///< in the order of the effects
+  QLabel* problem_;
+  QPushButton *undo_, *redo_;
 };
 
 }  // namespace todbench

@@ -77,6 +77,7 @@ QCPScatterStyle scatter_of(PlotMarker marker, const QColor& colour) {
 PlotView::PlotView(QWidget* parent) : QCustomPlot(parent) {
   setInteractions(QCP::iRangeDrag | QCP::iRangeZoom);
   setFocusPolicy(Qt::StrongFocus);
+  setAccessibleName("Plot");
   connect(this, &QCustomPlot::mouseWheel, this, [this] { zoomed_ = true; });
   connect(this, &QCustomPlot::mouseMove, this, [this](QMouseEvent* event) {
     if ((event->buttons() & Qt::LeftButton) != 0) zoomed_ = true;

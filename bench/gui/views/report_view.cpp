@@ -3,10 +3,10 @@
 #include <QCheckBox>
 #include <QDesktopServices>
 #include <QHBoxLayout>
+#include <QLineEdit>
 #include <QSplitter>
 #include <QUrl>
 
-#include "bench/gui/presenters/session_presenter.h"
 #include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/plot_view.h"
 #include "bench/judgement/demand_kinds.h"
@@ -18,6 +18,8 @@ namespace {
 QString text_of(std::string_view text) {
   return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
 }
+
+constexpr int most_ratios = 5;  // in view at once
 
 QString verdict_text(ReportVerdict verdict) {
   switch (verdict) {
@@ -35,6 +37,11 @@ QString verdict_text(ReportVerdict verdict) {
       return "Not judged: no limits were asked for";
   }
   return {};
+}
+
+/// With a sign, as colour alone says nothing to some.
+QString in_a_list(const QString& verdict) {
+  return (verdict == "pass" ? "✓ " : verdict == "fail" ? "✗ " : "? ") + verdict;
 }
 
 QList<QStringList> ratio_rows(const Comparison& comparison) {
@@ -59,7 +66,7 @@ ReportView::ReportView(SessionPresenter& presenter, QWidget* parent) : QWidget(p
   splitter->addWidget(session_panel());
   splitter->setStretchFactor(0, 2);
   splitter->setStretchFactor(1, 5);
-  splitter->setSizes({400, 770});
+  splitter->setSizes({430, 740});
   layout->addWidget(splitter);
   connect(&presenter_, &SessionPresenter::listed, this, &ReportView::list_sessions);
   connect(&presenter_, &SessionPresenter::opened, this, &ReportView::show_session);
@@ -75,10 +82,16 @@ QWidget* ReportView::browser() {
   auto* layout = new QVBoxLayout(panel);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(title_label("Sessions"));
-  sessions_ = plain_table({"Started (UTC)", "Session", "State", "Unit under test"}, "sessionTable");
-  sessions_->setColumnWidth(0, 136);
-  sessions_->setColumnWidth(1, 70);
-  sessions_->setColumnWidth(2, 70);
+  filter_ = new QLineEdit;
+  filter_->setObjectName("sessionFilter");
+  filter_->setPlaceholderText("Serial number, unit, date or verdict");
+  filter_->setToolTip("Lists the sessions that have every one of these words");
+  filter_->setAccessibleName("Filter of the sessions");
+  filter_->setClearButtonEnabled(true);
+  layout->addWidget(filter_);
+  connect(filter_, &QLineEdit::textChanged, this, &ReportView::list_sessions);
+  sessions_ = plain_table({"Started (UTC)", "Verdict", "Unit, serial number", "Session"}, "sessionTable");
+  column_widths(*sessions_, {"2026-11-22", "? inconclusive", "Emulated sc2000"});
   wrap_words(*sessions_);
   layout->addWidget(sessions_, 1);
   auto* buttons = new QHBoxLayout;
@@ -88,19 +101,13 @@ QWidget* ReportView::browser() {
   buttons->addWidget(compare_);
   buttons->addStretch();
   layout->addLayout(buttons);
-  const auto selected = [this]() -> std::optional<std::filesystem::path> {
-    const int row = sessions_->currentRow();
-    if (row < 0 || row >= static_cast<int>(presenter_.sessions().size())) return std::nullopt;
-    return presenter_.sessions()[static_cast<std::size_t>(row)].folder;
+  const auto open_chosen = [this] {
+    if (const auto folder = chosen()) presenter_.open(*folder);
   };
-  connect(open, &QPushButton::clicked, this, [this, selected] {
-    if (const auto folder = selected()) presenter_.open(*folder);
-  });
-  connect(sessions_, &QTableWidget::cellActivated, this, [this, selected] {
-    if (const auto folder = selected()) presenter_.open(*folder);
-  });
-  connect(compare_, &QPushButton::clicked, this, [this, selected] {
-    if (const auto folder = selected()) presenter_.compare_with(*folder);
+  connect(open, &QPushButton::clicked, this, open_chosen);
+  connect(sessions_, &QTableWidget::cellActivated, this, open_chosen);
+  connect(compare_, &QPushButton::clicked, this, [this] {
+    if (const auto folder = chosen()) presenter_.compare_with(*folder);
   });
   return panel;
 }
@@ -120,22 +127,21 @@ QWidget* ReportView::session_panel() {
   layout->addWidget(verdict_);
   plot_ = new PlotView;
   plot_->setObjectName("comparePlot");
-  layout->addWidget(plot_, 1);
+  layout->addWidget(plot_, 2);
   log_log_ = new QCheckBox("Logarithmic acuity");
   layout->addWidget(log_log_);
   ratios_ = plain_table(
       {"Set ΔT (K)", "Acuity ratio [95 %]", "Acuity ratio [90 %]", "p different", "p equivalent", "Verdict"},
       "ratioTable");
   limits_ = plain_table({"Limit", "Result [95 %]", "Verdict", "Reason"}, "limitTable");
-  ratios_->setColumnWidth(1, 160);
-  ratios_->setColumnWidth(2, 160);
-  limits_->setColumnWidth(0, 230);
-  limits_->setColumnWidth(1, 200);
+  column_widths(*ratios_, {"", "0.9770 [0.8890, 1.0740]", "0.9770 [0.8890, 1.0740]", "", "", ""});
+  column_widths(*limits_, {"Acuity at 16.9 K at least", "0.510 [0.468, 0.556] 1/mrad", "? inconclusive"});
   wrap_words(*limits_);
-  ratios_->setMaximumHeight(132);
-  limits_->setMinimumHeight(176);
-  limits_->setMaximumHeight(220);
-  for (QTableWidget* table : {ratios_, limits_}) layout->addWidget(table);
+  fit_height(*ratios_, most_ratios);
+  limits_->setMinimumHeight(120);
+  limits_->setMaximumHeight(260);
+  layout->addWidget(ratios_);
+  layout->addWidget(limits_, 1);
   auto* buttons = new QHBoxLayout;
   export_ = primary_button("Write HTML and PDF", "exportReports");
   page_ = plain_button("Show the PDF", "showPdf");
@@ -177,9 +183,19 @@ void ReportView::showEvent(QShowEvent* event) {
   presenter_.refresh();
 }
 
+std::optional<std::filesystem::path> ReportView::chosen() const {
+  const int row = sessions_->currentRow();
+  if (row < 0 || row >= static_cast<int>(listed_.size())) return std::nullopt;
+  return listed_[static_cast<std::size_t>(row)].folder;
+}
+
 void ReportView::list_sessions() {
+  listed_ = matching(presenter_.sessions(), filter_->text());
   QList<QStringList> rows;
-  for (const auto& s : presenter_.sessions()) rows << QStringList{s.when, s.name, s.state, s.unit};
+  for (const auto& s : listed_) {
+    rows << QStringList{s.when, s.verdict.isEmpty() ? s.state : in_a_list(s.verdict),
+                        s.serial.isEmpty() ? s.unit : s.unit + ", " + s.serial, s.name};
+  }
   fill_table(*sessions_, rows);
   if (sessions_->currentRow() < 0 && !rows.isEmpty()) sessions_->selectRow(0);
 }
@@ -193,6 +209,7 @@ void ReportView::show_session() {
   verdict_->setText(verdict_text(report_verdict(opened.report)) +
                     (verdict.judged == JudgedWhen::afterwards ? ". " + text_of(remark_on(verdict.judged)) : QString()));
   fill_table(*ratios_, opened.session.comparison ? ratio_rows(*opened.session.comparison) : QList<QStringList>());
+  fit_height(*ratios_, most_ratios);
   QList<QStringList> rows;
   for (const Demand& demand : verdict.demands) {
     const QString percent = demand.interval_percent == 95 ? "" : QString(" (%1 %)").arg(demand.interval_percent);
@@ -225,6 +242,7 @@ void ReportView::show_comparison() {
                     text_of(to_string(compared.comparison.verdict)) +
                     (reasons.empty() ? QString() : ": " + QString::fromStdString(reasons)));
   fill_table(*ratios_, ratio_rows(compared.comparison));
+  fit_height(*ratios_, most_ratios);
   fill_table(*limits_, {});
   show_plot();
 }

@@ -2,17 +2,21 @@
 #pragma once
 
 #include <QWidget>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "bench/gui/presenters/session_presenter.h"
 
 class QCheckBox;
-class QComboBox;
 class QLabel;
+class QLineEdit;
 class QPushButton;
 class QTableWidget;
 
 namespace todbench {
 
 class PlotView;
-class SessionPresenter;
 
 class ReportView final : public QWidget {
   Q_OBJECT
@@ -32,12 +36,16 @@ class ReportView final : public QWidget {
  private:
   [[nodiscard]] QWidget* browser();
   [[nodiscard]] QWidget* session_panel();
+  /// The session of the row that is chosen; nothing: none is.
+  [[nodiscard]] std::optional<std::filesystem::path> chosen() const;
   void list_sessions();
   void show_session();
   void show_comparison();
   void show_plot();
 
   SessionPresenter& presenter_;
+  std::vector<SessionEntry> listed_;  ///< a row each
+  QLineEdit* filter_;
   QTableWidget *sessions_, *ratios_, *limits_;
   QLabel *title_, *verdict_, *frames_, *files_;
   QPushButton *compare_, *export_, *replay_, *again_, *page_;

@@ -80,13 +80,15 @@ QString style_sheet(Theme theme) {
     QLabel[role="title"] { font-size: 15px; font-weight: bold; }
     QLabel[role="verdict"] { font-weight: bold; }
     QLabel[role="hint"] { color: %6; }
+    QLabel[role="problem"] { color: %9; }
+    QLabel[role="step"] { font-size: 24px; font-weight: bold; }
     QPushButton[role="primary"] { background: %2; color: white; padding: 5px 14px; border: 0; border-radius: 3px; }
     QPushButton[role="primary"]:disabled { background: %7; }
     QPushButton[role="primary"]:focus { border: 2px solid %5; }
   )")
       .arg(dark ? "#232529" : "#e6e8ec", dark ? "#2d6eaa" : "#0072b2", dark ? "#4a3420" : "#fdf0dc",
            dark ? "#b5702a" : "#d55e00", dark ? "#f2e6d8" : "#402000", dark ? "#b0b3b8" : "#55585e",
-           dark ? "#55585e" : "#a8abb0", dark ? "#e6e6e6" : "#1c1c1e");
+           dark ? "#55585e" : "#a8abb0", dark ? "#e6e6e6" : "#1c1c1e", dark ? "#ff9a7a" : "#a83800");
 }
 
 }  // namespace todbench

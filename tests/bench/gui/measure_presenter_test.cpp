@@ -155,6 +155,7 @@ TEST(MeasurePresenter, AsksTheOperatorAndGoesOnWhenTheTargetIsChanged) {
   b.presenter.start();
   ASSERT_TRUE(wait_until([&] { return b.presenter.operator_request().has_value(); }));
   const OperatorRequest request = *b.presenter.operator_request();
+  EXPECT_EQ(b.presenter.next_step().count('\n') + 1, static_cast<qsizetype>(request.steps.size())) << "a line a step";
   b.presenter.abort();
 
   ASSERT_FALSE(request.steps.empty());

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <set>
 
+#include "bench/gui/presenters/plan_form.h"
+
 namespace todbench {
 namespace {
 
@@ -39,7 +41,8 @@ TEST(PlanFields, SayWhatTheyCannotReadAndLeaveThePlanAsItIs) {
                                                                            {"planContrasts", "16.9, cold"},
                                                                            {"planMountings", "upside_down"},
                                                                            {"planPhases", "4.5"},
-                                                                           {"planLimits", "16.9"},
+                                                                           {"planContrasts", "16.9: bright"},
+                                                                           {"planContrasts", "16.9: 0.4: 3"},
                                                                            {"planMargin", "ten"},
                                                                            {"planRecord", "perhaps"}}) {
     Plan entered = plan;
@@ -48,11 +51,108 @@ TEST(PlanFields, SayWhatTheyCannotReadAndLeaveThePlanAsItIs) {
   }
 }
 
+TEST(PlanFields, HaveTheKindThatTheValueAsksFor) {
+  const auto fields = plan_fields();
+
+  for (const auto& [name, kind] : std::vector<std::pair<QString, FieldKind>>{{"planName", FieldKind::text},
+                                                                             {"planDistance", FieldKind::number},
+                                                                             {"planPhases", FieldKind::whole},
+                                                                             {"planRecord", FieldKind::yes_no},
+                                                                             {"planAccuracy", FieldKind::choice},
+                                                                             {"planObserver", FieldKind::name},
+                                                                             {"planMountings", FieldKind::boxes},
+                                                                             {"planPlates", FieldKind::rows},
+                                                                             {"planTransferSteps", FieldKind::rows},
+                                                                             {"planContrasts", FieldKind::rows}})
+    EXPECT_EQ(field(fields, name).kind, kind) << name.toStdString();
+  EXPECT_EQ(field(fields, "planContrasts").columns.size(), 2u) << "contrasts and limits are one table";
+  for (const PlanField& f : fields) {
+    if (f.kind == FieldKind::choice || f.kind == FieldKind::boxes || f.kind == FieldKind::name) {
+      EXPECT_FALSE(f.words.isEmpty()) << f.label.toStdString();
+    }
+    if (f.kind == FieldKind::whole) {
+      EXPECT_LT(f.low, f.high) << f.label.toStdString();
+    }
+  }
+}
+
+TEST(PlanFields, KeepALimitAtTheContrastThatItWasWrittenWith) {
+  Plan plan = demo();
+  plan.limits.acuity = {{16.92, 0.4}};  // within the half per cent that counts as equal
+  const auto fields = plan_fields();
+  const PlanField& contrasts = field(fields, "planContrasts");
+
+  ASSERT_EQ(contrasts.shown(plan), "16.9: 0.4, 1.93: , 0.23: ");
+  ASSERT_EQ(contrasts.entered(plan, "0.23, 16.9: 0.5"), "");
+
+  ASSERT_EQ(plan.limits.acuity.size(), 1u);
+  EXPECT_EQ(plan.limits.acuity[0].delta_t_k, 16.92);
+  EXPECT_EQ(plan.limits.acuity[0].least_acuity_per_mrad, 0.5);
+  EXPECT_EQ(plan.target.delta_t_k, (std::vector<double>{0.23, 16.9}));
+}
+
+std::size_t line_named(const PlanForm& form, const QString& name) {
+  for (std::size_t i = 0; i < form.fields().size(); ++i) {
+    if (form.fields()[i].object_name == name) return i;
+  }
+  ADD_FAILURE() << "no line " << name.toStdString();
+  return 0;
+}
+
+TEST(PlanForm, TakesLinesThatNeedEachOtherOneAfterTheOther) {
+  Plan plan = demo();
+  plan.target.kind = TargetKind::prompt;
+  plan.target.black_body.clear();
+  plan.target.stage.clear();
+  PlanForm form(plan);
+  const std::size_t kind = line_named(form, "planTarget"), body = line_named(form, "planBlackBody"),
+                    stage = line_named(form, "planStage");
+  ASSERT_TRUE(form.right());
+
+  form.enter(kind, "scpi");
+  EXPECT_FALSE(form.right());
+  EXPECT_NE(form.problem(body), "");
+  EXPECT_EQ(form.problem(kind), "");
+  form.enter(body, "10.0.0.1:5025");
+  EXPECT_EQ(form.problem(body), "");
+  EXPECT_FALSE(form.right());
+  form.enter(stage, "10.0.0.1:5026");
+  EXPECT_TRUE(form.right());
+  EXPECT_EQ(form.draft().target.kind, TargetKind::scpi);
+}
+
+TEST(PlanForm, KeepsWhatCannotBeReadWhenThePlanChangesElsewhere) {
+  Plan plan = demo();
+  PlanForm form(plan);
+  const std::size_t distance = line_named(form, "planDistance");
+
+  form.enter(distance, "far");
+  plan.target.phases = 9;
+  form.rebase(plan);
+
+  EXPECT_EQ(form.text(distance), "far");
+  EXPECT_NE(form.problem(distance), "");
+  EXPECT_EQ(form.draft().target.phases, 9);
+  form.reset(plan);
+  EXPECT_EQ(form.text(distance), "2");
+  EXPECT_TRUE(form.right());
+}
+
+TEST(PlanForm, PutsTheErrorOfTheBenchBesideItsLine) {
+  PlanForm form(demo());
+  const std::size_t observer = line_named(form, "planObserver");
+
+  form.refused({ErrorCode::invalid_input, "all of it", ErrorKey{"observer.name", "no such file"}});
+  EXPECT_EQ(form.problem(observer), "no such file");
+  form.refused({ErrorCode::invalid_input, "of no line", ErrorKey{"target.settle_timeout_s", "x"}});
+  EXPECT_EQ(form.other_problems(), QStringList{"of no line"});
+}
+
 TEST(PlanFields, PutLimitsAndAnEmptyMarginIntoThePlan) {
   const auto fields = plan_fields();
   Plan plan = demo();
 
-  EXPECT_EQ(field(fields, "planLimits").entered(plan, "16.9: 0.4, 0.23: 0.2"), "");
+  EXPECT_EQ(field(fields, "planContrasts").entered(plan, "16.9: 0.4, 1.93, 0.23: 0.2"), "");
   EXPECT_EQ(field(fields, "planMargin").entered(plan, ""), "");
 
   ASSERT_EQ(plan.limits.acuity.size(), 2u);

@@ -43,6 +43,35 @@ TEST(PlanPresenter, ShowsAsTomlWhatTheFormSaysAndTheOtherWayRound) {
   EXPECT_EQ(b.presenter.plan().operator_name, "Q. Other");
 }
 
+TEST(PlanPresenter, TakesChangesBackAndMakesThemAgain) {
+  Bench b;
+  const Plan first = b.presenter.plan();
+  Plan second = first;
+  second.operator_name = "P. Example";
+  ASSERT_EQ(b.presenter.apply(second), "");
+  for (const double percent : {2.0, 3.0, 4.0}) ASSERT_EQ(b.presenter.set_tolerance_percent(percent), "");
+  const Plan third = b.presenter.plan();
+
+  b.presenter.undo();
+  EXPECT_EQ(b.presenter.plan(), second) << "one way of the slider is one change";
+  b.presenter.undo();
+  EXPECT_EQ(b.presenter.plan(), first);
+  EXPECT_FALSE(b.presenter.can_undo());
+  b.presenter.undo();
+  EXPECT_EQ(b.presenter.plan(), first);
+  b.presenter.redo();
+  b.presenter.redo();
+  EXPECT_EQ(b.presenter.plan(), third);
+  EXPECT_FALSE(b.presenter.can_redo());
+  b.presenter.undo();
+  Plan other = second;
+  other.place = "elsewhere";
+  ASSERT_EQ(b.presenter.apply(other), "");
+  EXPECT_FALSE(b.presenter.can_redo()) << "another way was taken";
+  ASSERT_TRUE(b.bench.select_device("sim:sc2000"));
+  EXPECT_FALSE(b.presenter.can_undo()) << "older plans are for another device";
+}
+
 TEST(PlanPresenter, CountsTheAnswersOfAPlan) {
   Bench b;
 

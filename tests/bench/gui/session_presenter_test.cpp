@@ -2,7 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
+
 #include "bench/gui/presenters/measure_presenter.h"
+#include "bench/text/files.h"
 #include "tests/bench/gui/gui_test_support.h"
 
 namespace todbench {
@@ -54,6 +57,38 @@ TEST(SessionPresenter, ListsOpensAndComparesWhatIsOnDisk) {
   EXPECT_NEAR(compared.comparison.points.front().ratio.value(),
               *compared.curve_b.points.front().fit.threshold / *compared.curve_a.points.front().fit.threshold, 1e-12);
   EXPECT_EQ(b.problem, "");
+}
+
+TEST(SessionPresenter, ListsVerdictAndUnitAndFindsSessionsByTheirWords) {
+  const SessionEntry a{{}, "first", "2026-01-02 10:00:00", "complete", "Camera One", "TB0001", "pass"};
+  const SessionEntry b{{}, "second", "2026-01-03 10:00:00", "complete", "Camera One", "TB0002", "fail"};
+  const auto names = [&](const char* filter) {
+    std::string found;
+    for (const SessionEntry& s : matching({a, b}, filter)) found += s.name.toStdString() + " ";
+    return found;
+  };
+  EXPECT_EQ(names(""), "first second ");
+  EXPECT_EQ(names("tb0002"), "second ");
+  EXPECT_EQ(names(" camera  2026-01-02 "), "first ");
+  EXPECT_EQ(names("TB0001 fail"), "");
+
+  SessionBench bench;
+  Plan plan = bench.bench.plan();
+  plan.unit = "unit 17";
+  bench.bench.set_plan(plan);
+  const auto folder = bench.measure(1);
+  const auto session = read_session(folder);
+  const auto listed = sessions_below(bench.folder.path());
+  ASSERT_EQ(listed.size(), 1u);
+  EXPECT_EQ(listed[0].unit, "unit 17");
+  EXPECT_EQ(listed[0].state, "complete");
+  EXPECT_FALSE(listed[0].serial.isEmpty());
+  EXPECT_THAT((std::array<QString, 3>{"pass", "fail", "inconclusive"}), ::testing::Contains(listed[0].verdict));
+  ASSERT_TRUE(write_file_atomically(folder / "verdict.json", "{\"decision\": \"pass\"}"));
+  const auto changed = sessions_below(bench.folder.path());
+  ASSERT_EQ(changed.size(), 1u);
+  EXPECT_EQ(changed[0].state, "changed");
+  EXPECT_EQ(changed[0].verdict, "") << "nobody vouches for it";
 }
 
 TEST(SessionPresenter, ComparesWhatIsStillBeingOpenedAndForgetsNothingThatWasAsked) {

@@ -7,6 +7,7 @@
 #include <future>
 #include <stdexcept>
 #include <thread>
+#include <vector>
 
 #include "sim_devices/lab/instruments/black_body.h"
 #include "sim_devices/lab/instruments/plate_stage.h"
@@ -132,6 +133,35 @@ TEST_F(FrozenBenchTest, WhatDoesNotSettleIsATimeoutThatNamesInstrumentAskedAndRe
             "settling; plate stage (todbench Emulated plate stage, serial PS-0001): asked for plate 'fine' rotated by "
             "180 degrees "
             "at 1.000,0.000 mm, reached plate 'coarse' not turned at 0.000,0.000 mm, still moving after 600.0 s");
+}
+
+TEST_F(ScpiTargetTest, TellsWhatIsWaitedForWhileItTakesItsTime) {
+  std::vector<std::optional<TargetWait>> told;
+  options_.on_wait = [&](const std::optional<TargetWait>& wait) { told.push_back(wait); };
+  const auto bench = target();
+
+  const auto presented = bench->present({"fine", Mounting::identity, 2, {0.25, 0}}, {});
+
+  ASSERT_TRUE(presented) << presented.error().message;
+  ASSERT_GE(told.size(), 3u);
+  EXPECT_FALSE(told.back()) << "the wait is over";
+  told.pop_back();
+  double before_s = 0;
+  for (const auto& wait : told) {
+    ASSERT_TRUE(wait);
+    EXPECT_EQ(wait->asked.delta_t_k, 2);
+    EXPECT_FALSE(wait->contrast_there && wait->plate_there);
+    // The interval, less one reading of the clock, which takes 10 ms, between the wait and the decision to tell of it.
+    EXPECT_GE(wait->waited_s - before_s, 0.49 - 1e-9);
+    EXPECT_EQ(wait->timeout_s, 600);
+    before_s = wait->waited_s;
+  }
+  EXPECT_LE(before_s, presented->settling_s);
+  EXPECT_LT(std::abs(told.front()->reached.delta_t_k - 0), std::abs(told.back()->reached.delta_t_k - 0));
+  EXPECT_THAT(sentence(*told.front()), HasSubstr("2.000 K"));
+  told.clear();
+  ASSERT_TRUE(bench->present({"fine", Mounting::identity, 2, {0.25, 0}}, {}));
+  EXPECT_THAT(told, IsEmpty()) << "what is there at once is not waited for";
 }
 
 TEST_F(FrozenBenchTest, AStopRequestEndsTheWaitForTheNextPoll) {

@@ -1,0 +1,303 @@
+#include "bench/gui/views/field_editor.h"
+
+#include <QApplication>
+#include <QCheckBox>
+#include <QComboBox>
+#include <QFileDialog>
+#include <QHeaderView>
+#include <QKeyEvent>
+#include <QLabel>
+#include <QLineEdit>
+#include <QMenu>
+#include <QSignalBlocker>
+#include <QSpinBox>
+#include <QVBoxLayout>
+#include <algorithm>
+#include <vector>
+
+#include "bench/gui/views/layout_pieces.h"
+
+namespace todbench {
+namespace {
+
+constexpr int most_rows_shown = 6;
+
+/// A line whose own undo has nothing to undo leaves Ctrl+Z to the plan.
+class PlanLineEdit final : public QLineEdit {
+ public:
+  bool event(QEvent* event) override {
+    if (event->type() == QEvent::ShortcutOverride) {
+      const auto* key = static_cast<QKeyEvent*>(event);
+      const bool undo = key->matches(QKeySequence::Undo) && !isUndoAvailable();
+      const bool redo = key->matches(QKeySequence::Redo) && !isRedoAvailable();
+      if (undo || redo) {
+        event->ignore();
+        return false;
+      }
+    }
+    return QLineEdit::event(event);
+  }
+};
+
+/// Rolling the form past a box does not change what is in it.
+class StillComboBox final : public QComboBox {
+ protected:
+  void wheelEvent(QWheelEvent* event) override { event->ignore(); }
+};
+class StillSpinBox final : public QSpinBox {
+ protected:
+  void wheelEvent(QWheelEvent* event) override { event->ignore(); }
+};
+
+QString words_of(const QString& word) {
+  return QString(word).replace('_', ' ');
+}
+
+QString table_text(const QTableWidget& table) {
+  QStringList rows;
+  for (int row = 0; row < table.rowCount(); ++row) {
+    QStringList values;
+    for (int column = 0; column < table.columnCount(); ++column) {
+      const QTableWidgetItem* item = table.item(row, column);
+      values << (item == nullptr ? QString() : item->text().trimmed());
+    }
+    while (!values.isEmpty() && values.back().isEmpty()) values.pop_back();
+    if (!values.isEmpty()) rows << values.join(": ");
+  }
+  return rows.join(", ");
+}
+
+bool edits_a_cell(const QTableWidget& table) {
+  const QWidget* focus = QApplication::focusWidget();
+  return focus != nullptr && table.viewport()->isAncestorOf(focus);
+}
+
+/// Says so to whoever listens to the table.
+void add_row(QTableWidget& table, const QString& text) {
+  const int row = table.rowCount();
+  table.insertRow(row);
+  fit_height(table, most_rows_shown);
+  table.setItem(row, 0, new QTableWidgetItem(text));  // NOLINT: of the table
+}
+
+/// An empty row is no value yet: what is typed into it will be.
+void edit_new_row(QTableWidget& table) {
+  const QSignalBlocker quiet(&table);
+  const int row = table.rowCount();
+  table.insertRow(row);
+  for (int column = 0; column < table.columnCount(); ++column)
+    table.setItem(row, column, new QTableWidgetItem);  // NOLINT: of the table
+  fit_height(table, most_rows_shown);
+  table.setCurrentCell(row, 0);
+  table.editItem(table.item(row, 0));
+}
+
+/// Which rows a text has; a colon separates values only where there are several columns.
+void show_rows(QTableWidget& table, const QString& text) {
+  const QSignalBlocker quiet(&table);
+  const QStringList rows = text.split(',', Qt::SkipEmptyParts);
+  table.setRowCount(static_cast<int>(rows.size()));
+  for (int row = 0; row < table.rowCount(); ++row) {
+    const QStringList values = table.columnCount() > 1 ? rows[row].split(':') : QStringList{rows[row]};
+    for (int column = 0; column < table.columnCount(); ++column)
+      table.setItem(row, column, new QTableWidgetItem(values.value(column).trimmed()));  // NOLINT: of the table
+  }
+  fit_height(table, most_rows_shown);
+}
+
+}  // namespace
+
+FieldEditor::FieldEditor(const PlanField& field, QWidget* parent) : QWidget(parent) {
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(2);
+  switch (field.kind) {
+    case FieldKind::text:
+    case FieldKind::number:
+      make_line(field);
+      break;
+    case FieldKind::whole:
+      make_whole(field);
+      break;
+    case FieldKind::yes_no:
+      make_check(field);
+      break;
+    case FieldKind::choice:
+    case FieldKind::name:
+      make_combo(field);
+      break;
+    case FieldKind::boxes:
+      make_boxes(field);
+      break;
+    case FieldKind::rows:
+      make_rows(field);
+      break;
+  }
+  problem_ = new QLabel;
+  problem_->setObjectName(field.object_name + "Problem");
+  problem_->setProperty("role", "problem");
+  problem_->setWordWrap(true);
+  problem_->hide();
+  layout->addWidget(problem_);
+}
+
+void FieldEditor::show_text(const QString& text) {
+  if (!typing_() && text_() != text) set_text_(text);
+}
+
+void FieldEditor::show_problem(const QString& sentence) {
+  problem_->setText(sentence.isEmpty() ? QString() : "✗ " + sentence);
+  problem_->setVisible(!sentence.isEmpty());
+}
+
+void FieldEditor::set_part(QWidget* part, const PlanField& field) {
+  part->setObjectName(field.object_name);
+  part->setToolTip(field.tool_tip);
+  part->setAccessibleName(field.label);
+  part->setAccessibleDescription(field.tool_tip);
+  setFocusProxy(part);
+}
+
+void FieldEditor::make_line(const PlanField& field) {
+  auto* edit = new PlanLineEdit;  // NOLINT: of the layout, as every part below
+  set_part(edit, field);
+  edit->setPlaceholderText(field.when_empty);
+  if (field.kind == FieldKind::number) edit->setMaximumWidth(fontMetrics().horizontalAdvance("0000000.000000"));
+  layout()->addWidget(edit);
+  text_ = [edit] { return edit->text(); };
+  set_text_ = [edit](const QString& text) { edit->setText(text); };
+  typing_ = [edit] { return edit->hasFocus() && edit->isModified(); };
+  connect(edit, &QLineEdit::editingFinished, this, [this, edit] {
+    if (!edit->isModified()) return;
+    edit->setModified(false);
+    emit edited();
+  });
+}
+
+void FieldEditor::make_whole(const PlanField& field) {
+  auto* box = new StillSpinBox;  // NOLINT
+  set_part(box, field);
+  box->setRange(field.low, field.high);
+  box->setKeyboardTracking(false);
+  box->setFocusPolicy(Qt::StrongFocus);
+  box->setMaximumWidth(fontMetrics().horizontalAdvance("0000000.000000"));
+  layout()->addWidget(box);
+  text_ = [box] { return QString::number(box->value()); };
+  set_text_ = [box](const QString& text) {
+    const QSignalBlocker quiet(box);
+    box->setValue(text.toInt());
+  };
+  connect(box, &QSpinBox::valueChanged, this, &FieldEditor::edited);
+}
+
+void FieldEditor::make_check(const PlanField& field) {
+  auto* box = new QCheckBox("yes");  // NOLINT
+  set_part(box, field);
+  layout()->addWidget(box);
+  text_ = [box] { return QString(box->isChecked() ? "yes" : "no"); };
+  set_text_ = [box](const QString& text) { box->setChecked(text == "yes"); };
+  connect(box, &QCheckBox::clicked, this, &FieldEditor::edited);
+}
+
+void FieldEditor::make_combo(const PlanField& field) {
+  auto* box = new StillComboBox;  // NOLINT
+  set_part(box, field);
+  box->setFocusPolicy(Qt::StrongFocus);
+  for (const QString& word : field.words) box->addItem(word);
+  layout()->addWidget(box);
+  set_text_ = [box](const QString& text) {
+    const QSignalBlocker quiet(box);
+    if (const int index = box->findText(text); index >= 0) box->setCurrentIndex(index);
+    if (box->isEditable()) box->setEditText(text);
+  };
+  text_ = [box] { return box->currentText(); };
+  connect(box, &QComboBox::activated, this, &FieldEditor::edited);
+  if (field.kind != FieldKind::name) return;
+  box->setEditable(true);
+  box->setInsertPolicy(QComboBox::NoInsert);
+  QLineEdit* edit = box->lineEdit();
+  edit->setAccessibleName(field.label);
+  typing_ = [edit] { return edit->hasFocus() && edit->isModified(); };
+  connect(edit, &QLineEdit::editingFinished, this, [this, edit] {
+    if (!edit->isModified()) return;
+    edit->setModified(false);
+    emit edited();
+  });
+}
+
+void FieldEditor::make_boxes(const PlanField& field) {
+  auto* group = new QWidget;  // NOLINT
+  auto* grid = new QVBoxLayout(group);
+  grid->setContentsMargins(0, 0, 0, 0);
+  std::vector<QCheckBox*> boxes;
+  for (const QString& word : field.words) {
+    auto* box = new QCheckBox(words_of(word));  // NOLINT
+    box->setObjectName(field.object_name + "_" + word);
+    box->setToolTip(field.tool_tip);
+    box->setAccessibleName(field.label + ": " + words_of(word));
+    grid->addWidget(box);
+    connect(box, &QCheckBox::clicked, this, &FieldEditor::edited);
+    boxes.push_back(box);
+  }
+  set_part(group, field);
+  setFocusProxy(boxes.front());
+  layout()->addWidget(group);
+  text_ = [boxes, words = field.words] {
+    QStringList chosen;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      if (boxes[i]->isChecked()) chosen << words[static_cast<qsizetype>(i)];
+    }
+    return chosen.join(", ");
+  };
+  set_text_ = [boxes, words = field.words](const QString& text) {
+    QStringList chosen;
+    for (const QString& word : text.split(',')) chosen << word.trimmed();
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      boxes[i]->setChecked(chosen.contains(words[static_cast<qsizetype>(i)]));
+  };
+}
+
+void FieldEditor::make_rows(const PlanField& field) {
+  QStringList titles;
+  for (const FieldColumn& column : field.columns) titles << column.title;
+  QTableWidget* table = plain_table(titles, field.object_name);
+  set_part(table, field);
+  table->setEditTriggers(QAbstractItemView::DoubleClicked | QAbstractItemView::EditKeyPressed |
+                         QAbstractItemView::AnyKeyPressed | QAbstractItemView::SelectedClicked);
+  table->setSelectionBehavior(QAbstractItemView::SelectItems);
+  table->setMinimumWidth(column_widths(*table, titles));
+  auto* buttons = new QHBoxLayout;  // NOLINT
+  QPushButton* add = plain_button("Add", field.object_name + "Add");
+  QPushButton* remove = plain_button("Remove", field.object_name + "Remove");
+  add->setAccessibleName("Add to " + field.label);
+  remove->setAccessibleName("Remove from " + field.label);
+  for (QPushButton* button : {add, remove}) buttons->addWidget(button);
+  buttons->addStretch();
+  layout()->addWidget(table);
+  static_cast<QVBoxLayout*>(layout())->addLayout(buttons);
+  text_ = [table] { return table_text(*table); };
+  set_text_ = [table](const QString& text) { show_rows(*table, text); };
+  typing_ = [table] { return edits_a_cell(*table); };
+  connect(table, &QTableWidget::cellChanged, this, &FieldEditor::edited);
+  connect(remove, &QPushButton::clicked, this, [this, table] {
+    const int row = table->currentRow() >= 0 ? table->currentRow() : table->rowCount() - 1;
+    if (row < 0) return;
+    table->removeRow(row);
+    fit_height(*table, most_rows_shown);
+    emit edited();
+  });
+  if (field.columns.front().words.isEmpty()) {
+    connect(add, &QPushButton::clicked, this, [table] { edit_new_row(*table); });
+    return;
+  }
+  auto* menu = new QMenu(add);  // NOLINT
+  for (const QString& word : field.columns.front().words)
+    connect(menu->addAction(word), &QAction::triggered, this, [table, word] { add_row(*table, word); });
+  connect(menu->addAction("From a file…"), &QAction::triggered, this, [this, table] {
+    const QString file = QFileDialog::getOpenFileName(this, "Add a file", {}, "Descriptions (*.toml)");
+    if (!file.isEmpty()) add_row(*table, file);
+  });
+  add->setMenu(menu);
+}
+
+}  // namespace todbench

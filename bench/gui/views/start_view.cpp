@@ -1,0 +1,63 @@
+#include "bench/gui/views/start_view.h"
+
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QPushButton>
+#include <QVBoxLayout>
+#include <array>
+
+#include "bench/gui/views/layout_pieces.h"
+
+namespace todbench {
+namespace {
+
+struct Choice {
+  const char* object_name;
+  const char* title;
+  const char* sentence;
+  void (StartView::*chosen)();
+};
+
+constexpr std::array choices{
+    Choice{"startDemo", "Try without hardware",
+           "The emulated laboratory is a camera, a black body and a plate stage on this computer. A whole measurement "
+           "takes about a minute, from the plan to the report.",
+           &StartView::try_without_hardware},
+    Choice{
+        "startCamera", "Connect a camera",
+        "Looks for cameras on the network, on USB and behind the kernel's drivers, and shows the live picture of the "
+        "one that is chosen.",
+        &StartView::connect_camera},
+    Choice{"startSession", "Open a session",
+           "Shows the curves, the ratios and the verdict of a measurement on disk. A session or a plan can also be "
+           "dropped onto this window.",
+           &StartView::open_session},
+};
+
+}  // namespace
+
+StartView::StartView(QWidget* parent) : QWidget(parent) {
+  auto* layout = new QVBoxLayout(this);
+  layout->addStretch(1);
+  auto* line = new QHBoxLayout;
+  auto* lines = new QVBoxLayout;
+  auto* title = new QLabel("What would you like to do?");
+  title->setProperty("role", "step");
+  lines->addWidget(title);
+  for (const Choice& choice : choices) {
+    QPushButton* button = primary_button(choice.title, choice.object_name);
+    button->setMinimumHeight(44);
+    button->setAccessibleDescription(choice.sentence);
+    lines->addSpacing(14);
+    lines->addWidget(button);
+    lines->addWidget(hint_label(choice.sentence));
+    connect(button, &QPushButton::clicked, this, choice.chosen);
+  }
+  line->addStretch(1);
+  line->addLayout(lines, 3);
+  line->addStretch(1);
+  layout->addLayout(line);
+  layout->addStretch(2);
+}
+
+}  // namespace todbench
