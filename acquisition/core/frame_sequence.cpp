@@ -235,7 +235,8 @@ FramePlace FrameSequence::keep(const FrameStamp& stamp, std::uint64_t sequence, 
                    .sequence = sequence,
                    .device_time_ns = stamp.device_time_ns,
                    .host_time_ns = stamp.host_time_ns};
-  last_ = sequence;
+  // Frames without number may have been given places up to a later one.
+  last_ = std::max(last_, sequence);
   return {sequence, numbering};
 }
 

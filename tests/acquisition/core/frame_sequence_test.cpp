@@ -129,6 +129,24 @@ TEST(FrameSequence, FindsTheTruePlaceAgainAfterAFrameWithoutIdInsideAGap) {
   EXPECT_EQ(camera.send(105, 4), counted(5));
 }
 
+TEST(FrameSequence, RestartsBehindThePlacesThatFramesWithoutIdWereGiven) {
+  FrameSequence sequence(FrameNumberKind::wide, rate_hz);
+  std::int64_t now_ns = power_up_ns;
+  const auto send = [&](std::optional<std::uint64_t> number) {
+    now_ns += 1'000'000;
+    return sequence.next({.number = number, .host_time_ns = now_ns});
+  };
+  EXPECT_EQ(send(500), counted(0));
+  // Packets without a leader, which were parts of one frame.
+  for (std::uint64_t i = 1; i <= 3; ++i) EXPECT_EQ(send(std::nullopt), counted(i));
+  EXPECT_EQ(send(501), counted(1));
+
+  const FramePlace restarted = send(0);
+
+  EXPECT_EQ(restarted.numbering, Numbering::restarted);
+  EXPECT_EQ(restarted.sequence, 4u);
+}
+
 TEST(FrameSequence, GivesAnOlderFrameItsOlderPlaceAndARepeatedOneItsOwn) {
   for (const Clock clock : {Clock::none, Clock::goes_on}) {
     Camera camera(FrameNumberKind::gvsp16, clock);
