@@ -11,7 +11,7 @@
 namespace todbench {
 namespace {
 
-struct Choice {
+struct StartChoice {
   const char* object_name;
   const char* title;
   const char* sentence;
@@ -19,16 +19,16 @@ struct Choice {
 };
 
 constexpr std::array choices{
-    Choice{"startDemo", "Try without hardware",
+    StartChoice{"startDemo", "Try without hardware",
            "The emulated laboratory is a camera, a black body and a plate stage on this computer. A whole measurement "
            "takes about a minute, from the plan to the report.",
            &StartView::try_without_hardware},
-    Choice{
+    StartChoice{
         "startCamera", "Connect a camera",
         "Looks for cameras on the network, on USB and behind the kernel's drivers, and shows the live picture of the "
         "one that is chosen.",
         &StartView::connect_camera},
-    Choice{"startSession", "Open a session",
+    StartChoice{"startSession", "Open a session",
            "Shows the curves, the ratios and the verdict of a measurement on disk. A session or a plan can also be "
            "dropped onto this window.",
            &StartView::open_session},
@@ -44,7 +44,7 @@ StartView::StartView(QWidget* parent) : QWidget(parent) {
   auto* title = new QLabel("What would you like to do?");
   title->setProperty("role", "step");
   lines->addWidget(title);
-  for (const Choice& choice : choices) {
+  for (const StartChoice& choice : choices) {
     QPushButton* button = primary_button(choice.title, choice.object_name);
     button->setMinimumHeight(44);
     button->setAccessibleDescription(choice.sentence);
