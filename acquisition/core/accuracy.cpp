@@ -14,8 +14,8 @@ Accuracy Accuracy::for_tolerance(double acuity_tolerance_percent) {
           .band_tolerance = std::clamp(1e-4 * t, 1e-6, 1e-3),
           .wavelengths = t >= 5 ? 1 : (t >= 0.5 ? 4 : 16),
           .phases_per_axis = t >= 4 ? 4 : 8,
-          // A start: the standard error over 5 sizes is near 0.35 / sqrt(5 draws) / 1.2.
-          .noise_draws = static_cast<int>(std::clamp(600 / (t * t), 64.0, 600.0)),
+          // A start: the standard error is near 5.7 % / sqrt(draws) at high contrasts and twice that at low ones.
+          .noise_draws = static_cast<int>(std::clamp(100 / (t * t), 40.0, 600.0)),
           .standard_error_percent = t / 2};
 }
 

@@ -139,7 +139,7 @@ Counts counts_of(const Plan& plan, const ExperimentInputs& inputs, int phases) {
 
 double needed_draws(const Accuracy& accuracy, double q_eff) {
   if (!(accuracy.standard_error_percent > 0)) return accuracy.noise_draws;
-  const double needed = std::pow((0.08 + 0.5 * q_eff) / (accuracy.standard_error_percent / 100), 2);
+  const double needed = std::pow((0.046 + 0.285 * q_eff) / (accuracy.standard_error_percent / 100), 2);
   return std::max<double>(accuracy.noise_draws, needed);
 }
 

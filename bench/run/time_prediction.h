@@ -21,7 +21,7 @@ struct TimePrediction {
                                                   std::stop_token stop = {});
 
 /// Draws per size with which the direct estimate will meet the demanded standard error: it is near
-/// (0.08 + 0.5 q) / sqrt(draws) of S75. Not capped.
+/// (0.046 + 0.285 q) / sqrt(draws) of S75. Not capped.
 [[nodiscard]] double needed_draws(const Accuracy& accuracy, double q_eff);
 
 }  // namespace todbench

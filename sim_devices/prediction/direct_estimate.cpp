@@ -23,44 +23,65 @@ namespace {
 constexpr double size_step = 1.08;   ///< sizes are powers of it, so that contrasts share banks and noise
 constexpr int smallest_index = -20;  ///< 0.21 pitch
 constexpr int largest_index = 48;    ///< 40 pitches
-constexpr int scout_draws = 64;
+constexpr int scout_draws = 16;
 
 double size_of(int index) {
   return std::pow(size_step, index);
 }
 
-/// ln((P - 0.25) / (1 - P)): nearly linear in ln size near the threshold, ln 2 at 75 %.
-double transformed(double p, double resolution) {
-  const double inside = std::clamp(p, 0.25 + resolution, 1 - resolution);
-  return std::log((inside - 0.25) / (1 - inside));
-}
-
-double transformed_slope(double p, double resolution) {
-  const double inside = std::clamp(p, 0.25 + resolution, 1 - resolution);
-  return 1 / (inside - 0.25) + 1 / (1 - inside);
-}
-
-/// Where the local quadratic through the points meets ln 2, with its standard error; in ln size relative to `centre`.
+/// Where the local quadratic in ln((P - 0.25) / (1 - P)), which is nearly straight in ln size, meets ln 2; with its
+/// standard error; in ln size relative to the centre.
 struct Crossing {
   double x = 0, standard_error = 0;
 };
 
-std::optional<Crossing> crossing(const std::vector<double>& xs, const std::vector<Proportion>& ps, double resolution) {
-  const auto n = static_cast<Eigen::Index>(xs.size());
-  Eigen::MatrixXd a(n, 3);
-  Eigen::VectorXd y(n), variance(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    a.row(i) << 1, xs[k], xs[k] * xs[k];
-    y(i) = transformed(ps[k].mean, resolution);
-    variance(i) = std::max(ps[k].variance, 1e-8) * std::pow(transformed_slope(ps[k].mean, resolution), 2);
+/// P and its slope where the transform of P is `eta`.
+struct OfTransform {
+  explicit OfTransform(double eta) {
+    const double odds = std::exp(std::clamp(eta, -12.0, 12.0));
+    p = (0.25 + odds) / (1 + odds);
+    slope = 0.75 * odds / ((1 + odds) * (1 + odds));
   }
-  const Eigen::VectorXd weight = variance.cwiseInverse();
-  const Eigen::Matrix3d normal = a.transpose() * weight.asDiagonal() * a;
-  const Eigen::Matrix3d covariance = normal.inverse();
-  const Eigen::Vector3d c = covariance * (a.transpose() * weight.asDiagonal() * y);
-  // Newton from the middle; the curve is increasing and nearly straight there.
-  double x = 0;
+  double p = 0, slope = 0;
+};
+
+/// The coefficients of the quadratic, and what each proportion has to do with them.
+struct LocalFit {
+  Eigen::Vector3d c{std::numbers::ln2, 5, 0};
+  Eigen::MatrixXd influence;  ///< of every proportion on the coefficients
+};
+
+/// Quasi-likelihood with the variance p (1 - p) of the fitted P for weights (McCullagh and Nelder 1989): weights do not
+/// follow what the draws happened to give, and P of 1 is no special case. `kernel` are further weights. Starts at
+/// `fit`.
+std::optional<LocalFit> local_fit(LocalFit fit, const std::vector<double>& xs, const std::vector<Proportion>& ps,
+                                  const std::vector<double>& kernel) {
+  fit.influence.resize(3, static_cast<Eigen::Index>(xs.size()));
+  for (int iteration = 0; iteration < 60; ++iteration) {
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d score = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < xs.size(); ++i) {
+      const Eigen::Vector3d row(1, xs[i], xs[i] * xs[i]);
+      const OfTransform at(row.dot(fit.c));
+      const Eigen::Vector3d weighted = kernel[i] * at.slope / (at.p * (1 - at.p)) * row;
+      information += at.slope * weighted * row.transpose();
+      score += (ps[i].mean - at.p) * weighted;
+      fit.influence.col(static_cast<Eigen::Index>(i)) = weighted;
+    }
+    const Eigen::LDLT<Eigen::Matrix3d> solver(information);
+    Eigen::Vector3d step = solver.solve(score);
+    fit.influence = solver.solve(fit.influence).eval();
+    if (!step.allFinite()) return std::nullopt;
+    // Damped: far from the answer a step may leave the range in which P says anything.
+    step *= std::min(1.0, 2 / step.cwiseAbs().cwiseProduct(Eigen::Vector3d(1, 0.1, 0.01)).maxCoeff());
+    fit.c += step;
+    if (step.cwiseAbs().maxCoeff() < 1e-10) break;
+  }
+  return fit;
+}
+
+/// Where a rising quadratic meets ln 2, by Newton's method from `x`: it is nearly straight there.
+std::optional<double> root(const Eigen::Vector3d& c, double x) {
   for (int iteration = 0; iteration < 50; ++iteration) {
     const double slope = c(1) + 2 * c(2) * x;
     if (!(slope > 0)) return std::nullopt;
@@ -69,9 +90,43 @@ std::optional<Crossing> crossing(const std::vector<double>& xs, const std::vecto
     if (std::abs(x) > 0.5) return std::nullopt;
     if (std::abs(step) < 1e-13) break;
   }
-  const Eigen::Vector3d at(1, x, x * x);
-  const double spread = std::sqrt(at.dot(covariance * at));
-  return Crossing{x, spread / (c(1) + 2 * c(2) * x)};
+  return x;
+}
+
+/// The fit in which sizes count the less the farther they are from `middle`, and three steps away nothing.
+std::optional<LocalFit> fit_around(double middle, const LocalFit& start, const std::vector<double>& xs,
+                                   const std::vector<Proportion>& ps) {
+  const double reach = 3 * std::log(size_step);
+  std::vector<double> kernel;
+  // Beyond the sizes at hand the farthest ones still hold the quadratic.
+  for (const double at : xs) kernel.push_back(std::max(1e-3, 1 - std::pow((at - middle) / reach, 2)));
+  return local_fit(start, xs, ps, kernel);
+}
+
+/// The crossing of the fit around the crossing: which sizes are at hand does not move it. The standard error is that of
+/// the variances between draws, by how the fit follows them and how the crossing follows the middle of the fit.
+std::optional<Crossing> crossing(const std::vector<double>& xs, const std::vector<Proportion>& ps) {
+  double x = (xs.front() + xs.back()) / 2;
+  LocalFit fit;
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    const auto found = fit_around(x, fit, xs, ps);
+    if (!found) return std::nullopt;
+    fit = *found;
+    const auto moved = root(fit.c, x);
+    if (!moved) return std::nullopt;
+    const bool settled = std::abs(*moved - x) < 1e-7;
+    x = *moved;
+    if (settled) break;
+  }
+  const Eigen::VectorXd on_value = fit.influence.transpose() * Eigen::Vector3d(1, x, x * x);
+  double variance = 0;
+  for (std::size_t i = 0; i < ps.size(); ++i)
+    variance += std::pow(on_value(static_cast<Eigen::Index>(i)), 2) * std::max(ps[i].variance, 1e-8);
+  const double aside = 0.25 * std::log(size_step);
+  const auto lower = fit_around(x - aside, fit, xs, ps), upper = fit_around(x + aside, fit, xs, ps);
+  const auto from = lower ? root(lower->c, x) : std::nullopt, to = upper ? root(upper->c, x) : std::nullopt;
+  const double follows = from && to ? std::clamp((*to - *from) / (2 * aside), -0.5, 0.5) : 0.0;
+  return Crossing{x, std::sqrt(variance) / (fit.c(1) + 2 * fit.c(2) * x) / (1 - follows)};
 }
 
 /// How a contrast is judged.
@@ -137,40 +192,39 @@ Result<int> bracket(SizeLadder& ladder, const AskedContrast& asked) {
               "even the smallest target is judged correctly: there is no threshold above 0.2 pitch");
 }
 
-/// One pass at a number of draws: five sizes around the threshold, moved until it is in their middle.
+/// One pass at a number of draws: six sizes around the threshold, moved until it is between the two in their middle.
 struct Pass {
   DirectPoint point;
-  int centre = 0;
+  int below = 0;  ///< index of the size next below the threshold
 };
 
-Result<Pass> one_pass(SizeLadder& ladder, const AskedContrast& asked, const Accuracy& accuracy, int centre, int draws) {
-  const double resolution = 0.25 / (draws * accuracy.phases_per_axis);
+Result<Pass> one_pass(SizeLadder& ladder, const AskedContrast& asked, int below, int draws) {
   for (int attempt = 0; attempt < 4; ++attempt) {
-    centre = std::clamp(centre, smallest_index + 2, largest_index - 2);
+    below = std::clamp(below, smallest_index + 2, largest_index - 3);
     DirectPoint point;
     point.delta_t_k = asked.delta_t_k;
     point.seen_delta_t_k = asked.pixels ? asked.pixels->seen_k : asked.delta_t_k;
     point.noise_draws = draws;
     std::vector<double> xs;
     std::vector<Proportion> ps;
-    for (int k = centre - 2; k <= centre + 2; ++k) {
+    for (int k = below - 2; k <= below + 3; ++k) {
       const auto p = ladder.proportion(k, asked, draws);
       if (!p) return tl::unexpected(p.error());
-      xs.push_back((k - centre) * std::log(size_step));
+      xs.push_back((k - below) * std::log(size_step));
       ps.push_back(*p);
       point.sizes_pitch.push_back(size_of(k));
       point.proportion_correct.push_back(p->mean);
     }
-    const auto found = crossing(xs, ps, resolution);
+    const auto found = crossing(xs, ps);
     if (!found) break;
-    const int move = static_cast<int>(std::lround(found->x / std::log(size_step)));
+    const int move = static_cast<int>(std::floor(found->x / std::log(size_step)));
     if (move != 0 && attempt < 3) {
-      centre += std::clamp(move, -3, 3);
+      below += std::clamp(move, -3, 3);
       continue;
     }
-    point.s75_pitch = size_of(centre) * std::exp(found->x);
+    point.s75_pitch = size_of(below) * std::exp(found->x);
     point.standard_error_pitch = point.s75_pitch * found->standard_error;
-    return Pass{std::move(point), centre};
+    return Pass{std::move(point), below};
   }
   return fail(ErrorCode::invalid_input,
               "the proportion correct does not rise with size near 75 %: the contrast has no threshold");
@@ -187,11 +241,11 @@ std::string out_of_reach(double contrast, double asked_percent, double needed_dr
 
 Result<DirectPoint> estimate_contrast(SizeLadder& ladder, const AskedContrast& asked_contrast, const Accuracy& accuracy,
                                       const std::function<double(double)>& seconds_at) {
-  const auto below = bracket(ladder, asked_contrast);
-  if (!below) return tl::unexpected(below.error());
-  int centre = *below, draws = accuracy.noise_draws;
+  const auto bracketed = bracket(ladder, asked_contrast);
+  if (!bracketed) return tl::unexpected(bracketed.error());
+  int below = *bracketed, draws = accuracy.noise_draws;
   for (;;) {
-    auto pass = one_pass(ladder, asked_contrast, accuracy, centre, draws);
+    auto pass = one_pass(ladder, asked_contrast, below, draws);
     if (!pass) return tl::unexpected(pass.error());
     const double reached = 100 * pass->point.standard_error_pitch / pass->point.s75_pitch;
     const double asked = accuracy.standard_error_percent;
@@ -203,7 +257,7 @@ Result<DirectPoint> estimate_contrast(SizeLadder& ladder, const AskedContrast& a
       return fail(ErrorCode::invalid_input,
                   out_of_reach(asked_contrast.delta_t_k, asked, needed, reachable, seconds_at(pass->point.s75_pitch)));
     }
-    centre = pass->centre;
+    below = pass->below;
     draws = std::min(static_cast<int>(needed) + 1, Accuracy::max_noise_draws);
   }
 }

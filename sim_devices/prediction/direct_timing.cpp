@@ -14,7 +14,7 @@ namespace todbench {
 namespace {
 
 constexpr int timed_draws = 24;
-constexpr int scout_draws = 64;  // of direct_estimate()
+constexpr int scout_draws = 16;  // of direct_estimate()
 constexpr int final_sizes = 5;
 
 /// Sizes beyond the final ones that the search looks at: from 2 pitches upwards in steps of four, then down one by one.

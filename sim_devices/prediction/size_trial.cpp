@@ -42,6 +42,18 @@ RandomStream named(const RandomStream& stream, std::uint64_t draw, std::string_v
   return {stream.sub((std::uint64_t{1} << 41) + draw).stream(), name};
 }
 
+/// The map as the noise of way `turn` (of turns_) has it: T(turned) . w is T . (w turned back).
+cv::Mat1b dead_turned_back(const cv::Mat1b& map, std::size_t turn) {
+  cv::Mat1b back = map;
+  if (turn >= 4) cv::flip(map, back, 1);
+  for (std::size_t k = 0; k < turn % 4; ++k) {
+    cv::Mat1b next;
+    cv::rotate(back, next, cv::ROTATE_90_COUNTERCLOCKWISE);
+    back = next;
+  }
+  return back;
+}
+
 }  // namespace
 
 SizeTrial::SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank> bank, double size_pitch,
@@ -74,6 +86,53 @@ SizeTrial::SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank
       }
     }
   }
+  int groups_per_axis = std::min(per_axis, 4);
+  while (per_axis % groups_per_axis != 0) --groups_per_axis;
+  for (std::size_t k = 0; k < responses_.size(); ++k) {
+    const int phase = static_cast<int>(k) % (per_axis * per_axis);
+    const int group = phase / per_axis % groups_per_axis * groups_per_axis + phase % per_axis % groups_per_axis;
+    phase_group_.push_back(static_cast<std::size_t>(group));
+  }
+  phase_groups_ = static_cast<std::size_t>(groups_per_axis * groups_per_axis);
+  find_turns();
+}
+
+/// Template (o, p) turned by a quarter is (o + 1, p turned about the middle); mirrored, right and left are exchanged.
+/// Where the bank is not so (it always is for the four triangles) only the identity is left.
+void SizeTrial::find_turns() {
+  const auto templates = static_cast<std::uint32_t>(bank_->templates());
+  std::vector<std::uint32_t> identity(bank_->padded_templates());
+  for (std::uint32_t t = 0; t < identity.size(); ++t) identity[t] = t;
+  turns_ = {identity};
+  const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(bank_->places())));
+  if (bank_->alternatives() != 4 || side * side != static_cast<std::uint32_t>(bank_->places())) return;
+  std::vector<std::uint32_t> quarter = identity, mirror = identity;
+  for (std::uint32_t t = 0; t < templates; ++t) {
+    const std::uint32_t o = t / (side * side), row = t / side % side, column = t % side;
+    quarter[t] = ((o + 1) % 4 * side + column) * side + (side - 1 - row);
+    mirror[t] = ((o % 2 == 0 ? o : 4 - o) * side + row) * side + (side - 1 - column);
+  }
+  const int window = bank_->window_samples();
+  const auto is_symmetry = [&](const std::vector<std::uint32_t>& turn, auto change) {
+    cv::Mat1f values(window, window), changed, expected(window, window);
+    for (std::uint32_t t = 0; t < templates; t += 1 + templates / 32) {
+      bank_->copy_template(t, std::span(values.ptr<float>(), values.total()));
+      bank_->copy_template(turn[t], std::span(expected.ptr<float>(), expected.total()));
+      change(values, changed);
+      if (cv::norm(changed, expected, cv::NORM_INF) > 1e-4) return false;
+    }
+    return true;
+  };
+  if (!is_symmetry(quarter, [](const cv::Mat1f& a, cv::Mat1f& b) { cv::rotate(a, b, cv::ROTATE_90_CLOCKWISE); }) ||
+      !is_symmetry(mirror, [](const cv::Mat1f& a, cv::Mat1f& b) { cv::flip(a, b, 1); }))
+    return;
+  const auto after = [&](const std::vector<std::uint32_t>& first, const std::vector<std::uint32_t>& second) {
+    std::vector<std::uint32_t> both(identity);
+    for (std::uint32_t t = 0; t < templates; ++t) both[t] = second[first[t]];
+    return both;
+  };
+  for (int k = 1; k < 4; ++k) turns_.push_back(after(turns_.back(), quarter));
+  for (int k = 0; k < 4; ++k) turns_.push_back(after(turns_[static_cast<std::size_t>(k)], mirror));
 }
 
 /// Without noise a rounded picture changes in steps of the phase: twice as many.
@@ -229,21 +288,41 @@ Proportion SizeTrial::proportion(const WhiteNoise& white, double contrast_k, int
   const auto ratio = static_cast<float>(1 / (contrast_k * static_cast<double>(scale)));
   const float own = total > 0 ? 1.0F : 0.0F;
   double sum = 0, squares = 0;
-  std::vector<float> mixed(bank_->padded_templates());
   for (std::size_t d = 0; d < static_cast<std::size_t>(draws); ++d) {
-    std::span<const float> noise(noise_[d]);
-    const bool has_coloured = !coloured_stages_.empty();
-    if (has_coloured || total == 0) {
-      for (std::size_t t = 0; t < mixed.size(); ++t)
-        mixed[t] = own * noise_[d][t] + (has_coloured ? ratio * coloured_[d][t] : 0.0F);
-      noise = mixed;
-    }
-    const double p = correct_share(noise, scale, dead(d, bank_->window_samples()));
+    const double p = share_in_all_ways(d, own, scale, ratio);
     sum += p;
     squares += p * p;
   }
   const double mean = sum / draws;
   return {mean, std::max(0.0, squares / draws - mean * mean) / std::max(1, draws - 1)};
+}
+
+double SizeTrial::share_in_all_ways(std::size_t draw, float own, float scale, float ratio) {
+  turned_.resize(bank_->padded_templates());
+  const cv::Mat1b defects = dead(draw, bank_->window_samples());
+  const bool has_coloured = !coloured_stages_.empty();
+  // Coloured noise has a direction, and where detectors are dead it was replaced where they are.
+  const std::size_t turns = has_coloured && !defects.empty() ? 1 : turns_.size();
+  double all = 0;
+  std::size_t seen = 0, way = draw;  // another draw sees the phases in other ways
+  for (std::size_t turn = 0; turn < turns; ++turn) {
+    for (std::size_t t = 0; t < turned_.size(); ++t) {
+      turned_[t] = own * noise_[draw][turns_[turn][t]];
+      if (has_coloured) turned_[t] += ratio * coloured_[draw][t];
+    }
+    const cv::Mat1b map = defects.empty() ? defects : dead_turned_back(defects, turn);
+    for (const float sign : {1.0F, -1.0F}) {
+      for (std::size_t k = 0; k < responses_.size(); ++k) {
+        if (turns > 1 && phase_group_[k] != way % phase_groups_) continue;
+        const Response& response = responses_[k];
+        all += map.empty() ? correct(response.truth, response.scores, turned_, sign * scale)
+                           : correct(response.truth, with_defects(response, map), turned_, sign * scale);
+        ++seen;
+      }
+      ++way;
+    }
+  }
+  return all / static_cast<double>(seen);
 }
 
 double SizeTrial::pixel_trial(const Response& response, const PixelContrast& contrast, std::uint64_t index) const {
@@ -306,31 +385,26 @@ Proportion SizeTrial::pixel_proportion(const PixelContrast& contrast, int draws)
   return {mean, std::max(0.0, squares / draws - mean * mean) / std::max(1, draws - 1)};
 }
 
-double SizeTrial::correct_share(std::span<const float> noise, float scale, const cv::Mat1b& defects) const {
+double SizeTrial::correct(int truth, std::span<const float> signal, std::span<const float> noise, float scale) const {
   float maxima[Choice::max_alternatives];
   const std::span<float> tops(maxima, static_cast<std::size_t>(bank_->alternatives()));
+  score_maxima(signal, noise, scale, bank_->places(), tops);
+  const float best = *std::max_element(tops.begin(), tops.end());
+  if (tops[static_cast<std::size_t>(truth)] != best) return 0;
+  return 1.0 / static_cast<double>(std::count(tops.begin(), tops.end(), best));
+}
+
+std::vector<float> SizeTrial::with_defects(const Response& response, const cv::Mat1b& defects) const {
   const int window = bank_->window_samples();
-  double correct = 0;
-  std::vector<float> changed;
-  for (const auto& response : responses_) {
-    std::span<const float> signal(response.scores);
-    if (!defects.empty()) {
-      cv::Mat1f patch(window, window);
-      std::copy(response.patch.begin(), response.patch.end(), patch.begin());
-      replace_dead(patch, defects, conditions_.samples_per_pitch);
-      changed = response.scores;
-      for (std::size_t s = 0; s < response.patch.size(); ++s) {
-        const float amount = patch(static_cast<int>(s) / window, static_cast<int>(s) % window) - response.patch[s];
-        if (amount != 0) bank_->add_sample(s, amount, changed);
-      }
-      signal = changed;
-    }
-    score_maxima(signal, noise, scale, bank_->places(), tops);
-    const float best = *std::max_element(tops.begin(), tops.end());
-    if (tops[static_cast<std::size_t>(response.truth)] == best)
-      correct += 1.0 / static_cast<double>(std::count(tops.begin(), tops.end(), best));
+  cv::Mat1f patch(window, window);
+  std::copy(response.patch.begin(), response.patch.end(), patch.begin());
+  replace_dead(patch, defects, conditions_.samples_per_pitch);
+  std::vector<float> scores = response.scores;
+  for (std::size_t s = 0; s < response.patch.size(); ++s) {
+    const float amount = patch(static_cast<int>(s) / window, static_cast<int>(s) % window) - response.patch[s];
+    if (amount != 0) bank_->add_sample(s, amount, scores);
   }
-  return correct / static_cast<double>(responses_.size());
+  return scores;
 }
 
 }  // namespace todbench

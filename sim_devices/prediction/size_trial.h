@@ -1,6 +1,7 @@
 // One target size before a simulated sensor and a searching observer: proportion correct without frames.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <span>
@@ -51,7 +52,9 @@ struct WhiteNoise {
 };
 
 /// Responses to the signal for every sampling phase, and projected noise, each formed once and shared by contrasts.
-/// Every kind of noise has numbers of its own, so that leaving one out never changes another. One thread at a time.
+/// Every kind of noise has numbers of its own, so that leaving one out never changes another. White noise is as
+/// probable turned, mirrored or with the other sign, and so are its scores with templates exchanged accordingly: a draw
+/// is seen in all sixteen ways, each in a sixteenth of the phases. One thread at a time.
 class SizeTrial {
  public:
   SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank> bank, double size_pitch,
@@ -90,19 +93,30 @@ class SizeTrial {
   [[nodiscard]] cv::Mat1b dead(std::uint64_t index, int window) const;
   [[nodiscard]] std::vector<float> projected(const cv::Mat1f& samples) const;
   void shape_white(const WhiteNoise& white);
-  /// Share of the phases at which the true alternative wins; a tie counts its fair part.
-  [[nodiscard]] double correct_share(std::span<const float> noise, float scale, const cv::Mat1b& dead) const;
+  /// 1 where the true alternative wins, the fair part of a tie.
+  [[nodiscard]] double correct(int truth, std::span<const float> signal, std::span<const float> noise,
+                               float scale) const;
+  /// Share of the phases and of the ways in which a draw can be seen. White noise counts `own` times, `coloured` noise
+  /// `ratio` times.
+  [[nodiscard]] double share_in_all_ways(std::size_t draw, float own, float scale, float ratio);
+  /// The scores of a response whose picture has `defects` replaced.
+  [[nodiscard]] std::vector<float> with_defects(const Response& response, const cv::Mat1b& defects) const;
+  void find_turns();
 
   std::shared_ptr<const TemplateBank> bank_;
   TrialConditions conditions_;
   RandomStream stream_;
   std::vector<const stage::Noise*> coloured_stages_;  ///< what this sensor has of noise that is not white
   std::vector<double> display_taps_;                  ///< empty for sample and hold
-  std::vector<double> white_taps_;            ///< of sensor's and internal noise together; empty without display
-  double white_ratio_ = -1;                   ///< for which white_taps_ are
-  std::vector<Response> responses_;           ///< per orientation that counts and phase
-  std::vector<std::vector<float>> noise_;     ///< per draw, unit white noise projected
-  std::vector<std::vector<float>> coloured_;  ///< per draw, noise that is not white, in kelvin projected
+  std::vector<double> white_taps_;                 ///< of sensor's and internal noise together; empty without display
+  double white_ratio_ = -1;                        ///< for which white_taps_ are
+  std::vector<Response> responses_;                ///< per orientation that counts and phase
+  std::vector<std::vector<std::uint32_t>> turns_;  ///< which template's score each template gets; the identity first
+  std::vector<std::size_t> phase_group_;           ///< per response: phases of one group lie evenly in the pixel
+  std::size_t phase_groups_ = 1;
+  std::vector<float> turned_;                          ///< scratch
+  std::vector<std::vector<float>> noise_;              ///< per draw, unit white noise projected
+  std::vector<std::vector<float>> coloured_;           ///< per draw, noise that is not white, in kelvin projected
   std::map<double, std::vector<double>> pixel_draws_;  ///< by contrast of the scene, proportion of each draw
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <ctime>
 
+#include "tests/sim_devices/prediction/direct_scatter.h"
 #include "tests/sim_devices/reference.h"
 #include "tod/plate/test_pattern.h"
 
@@ -56,25 +57,13 @@ TEST(DirectEstimate, ReproducesTheUniversalCurveForNormalAndMicroscanSampling) {
 }
 
 TEST(DirectEstimate, StandardErrorIsTheSpreadOverSeeds) {
-  const SensorSpec spec = test::sc2000();
-  TemplateObserver observer({}, triangle_alternatives());
-  double sum = 0, squares = 0, variance = 0;
-  const int runs = 24;
+  constexpr int runs = 50;
 
-  for (int seed = 1; seed <= runs; ++seed) {
-    const auto point = direct_estimate(spec, full_plan(spec, {}, {}), observer, {0.23},
-                                       {.accuracy = Accuracy::draft(), .seed = static_cast<std::uint64_t>(seed)});
-    ASSERT_TRUE(point.has_value());
-    const double x = std::log((*point)[0].s75_pitch);
-    sum += x;
-    squares += x * x;
-    variance += std::pow((*point)[0].standard_error_pitch / (*point)[0].s75_pitch, 2) / runs;
+  for (const auto& s : testing::direct_scatter(test::sc2000(), {16.9, 0.23}, Accuracy::draft(), runs, 1)) {
+    // sqrt of chi-square with 49 degrees of freedom over 49 lies in [0.71, 1.31] with probability 0.998.
+    EXPECT_GT(s.ratio(), 0.71) << s.delta_t_k;
+    EXPECT_LT(s.ratio(), 1.31) << s.delta_t_k;
   }
-
-  const double spread = (squares - sum * sum / runs) / (runs - 1);
-  // chi-square with 23 degrees of freedom over 23 lies in [0.35, 2.15] with probability 0.998.
-  EXPECT_GT(spread / variance, 0.35);
-  EXPECT_LT(spread / variance, 2.15);
 }
 
 TEST(DirectEstimate, AddsDrawsUntilTheDemandedStandardErrorIsMet) {
@@ -105,8 +94,8 @@ TEST(DirectEstimate, SaysWhatIsReachableWhenAToleranceIsNot) {
   ASSERT_FALSE(refused.has_value());
   EXPECT_EQ(refused.error().code, ErrorCode::invalid_input);
   EXPECT_THAT(refused.error().message,
-              testing::HasSubstr("a tolerance of 0.05 % cannot be met at a contrast of 0.23 K"));
-  EXPECT_THAT(refused.error().message, testing::HasSubstr("the best that is reachable is"));
+              ::testing::HasSubstr("a tolerance of 0.05 % cannot be met at a contrast of 0.23 K"));
+  EXPECT_THAT(refused.error().message, ::testing::HasSubstr("the best that is reachable is"));
 }
 
 TEST(DirectEstimate, RefusesAContrastWithoutThreshold) {
