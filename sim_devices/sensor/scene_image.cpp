@@ -17,8 +17,8 @@ namespace {
 using FloatRows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr int margin_pitches = 48;
-constexpr int reach = 6;  ///< samples beyond a cell to which its coefficients count
-constexpr int side = 2 * reach + 1;
+constexpr int cell_reach = 6;  ///< samples beyond a cell to which its coefficients count
+constexpr int response_side = 2 * cell_reach + 1;
 constexpr int table_period = 32;  ///< samples; responses of coefficients have fallen by (26 / 6)^-4 where they wrap
 constexpr int largest_degree = 24;
 constexpr int radial_nodes = 8192;
@@ -97,7 +97,7 @@ class SampleTransfer {
   std::vector<double> optics_;
 };
 
-double sinc(double x) {
+double cell_sinc(double x) {
   return x == 0 ? 1 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x);
 }
 
@@ -132,7 +132,7 @@ FloatRows coefficient_responses(const SampleTransfer& transfer, const std::vecto
     }
   }
   const auto bin = [](int m) { return ((m % table_period) + table_period) % table_period; };
-  FloatRows out(static_cast<Eigen::Index>(pairs.size()), side * side);
+  FloatRows out(static_cast<Eigen::Index>(pairs.size()), response_side * response_side);
   // Along x first, folded: shared by all b of an a.
   for (std::size_t first = 0; first < pairs.size();) {
     const int a = pairs[first].first;
@@ -155,9 +155,9 @@ FloatRows coefficient_responses(const SampleTransfer& transfer, const std::vecto
       }
       cv::Mat2d image;
       cv::dft(folded, image, cv::DFT_INVERSE);
-      for (int j = -reach; j <= reach; ++j) {
-        for (int i = -reach; i <= reach; ++i) {
-          out(static_cast<Eigen::Index>(first), (j + reach) * side + i + reach) =
+      for (int j = -cell_reach; j <= cell_reach; ++j) {
+        for (int i = -cell_reach; i <= cell_reach; ++i) {
+          out(static_cast<Eigen::Index>(first), (j + cell_reach) * response_side + i + cell_reach) =
               static_cast<float>(image(bin(j), bin(i))[0] / (table_period * table_period));
         }
       }
@@ -180,7 +180,7 @@ cv::Mat2d unit_cell(const SampleTransfer& transfer, cv::Size size) {
       for (int m = -aliases; m <= aliases; ++m) {
         const double f = base + m;
         out.f.push_back(f);
-        out.factor.push_back(std::abs(f) > band ? 0 : transfer.footprint(f) * sinc(f));
+        out.factor.push_back(std::abs(f) > band ? 0 : transfer.footprint(f) * cell_sinc(f));
       }
     }
     return out;
@@ -437,10 +437,11 @@ cv::Mat1d SceneImager::imaged(const Cells& cells, cv::Size size) const {
     const FloatRows added = own * tables_->responses;
     for (std::size_t c = 0; c < count; ++c) {
       const cv::Point place = cells.places[first + c] - cv::Point(tables_->margin, tables_->margin);
-      const float* values = added.data() + static_cast<std::ptrdiff_t>(c) * side * side;
-      for (int j = std::max(-reach, -place.y); j <= reach && place.y + j < size.height; ++j) {
-        for (int i = std::max(-reach, -place.x); i <= reach && place.x + i < size.width; ++i)
-          out(place.y + j, place.x + i) += static_cast<double>(values[(j + reach) * side + i + reach]);
+      const float* values = added.data() + static_cast<std::ptrdiff_t>(c) * response_side * response_side;
+      for (int j = std::max(-cell_reach, -place.y); j <= cell_reach && place.y + j < size.height; ++j) {
+        for (int i = std::max(-cell_reach, -place.x); i <= cell_reach && place.x + i < size.width; ++i)
+          out(place.y + j, place.x + i) +=
+              static_cast<double>(values[(j + cell_reach) * response_side + i + cell_reach]);
       }
     }
   }
@@ -494,8 +495,8 @@ cv::Mat1d SceneImager::image(const cv::Mat1d& picture, double pixel_samples, cv:
       }
       cells.inside(row, column) = sums[0];
       // What is further from the frame than its responses reach does not count.
-      const bool near = row >= tables_->margin - reach && row < tables_->margin + size.height + reach &&
-                        column >= tables_->margin - reach && column < tables_->margin + size.width + reach;
+      const bool near = row >= tables_->margin - cell_reach && row < tables_->margin + size.height + cell_reach &&
+                        column >= tables_->margin - cell_reach && column < tables_->margin + size.width + cell_reach;
       if (!near) continue;
       float* own = cells.of(column, row);
       for (std::size_t k = 0; k < tables_->pairs.size(); ++k) {
