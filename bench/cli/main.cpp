@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/cli/command_identify.h"
 #include "bench/cli/command_line.h"
 #include "bench/cli/command_module.h"
 #include "bench/cli/command_picture.h"
@@ -163,6 +164,7 @@ int run(int argc, char** argv) {
   add_noise_command(app, program);
   add_pattern_command(app, program);
   add_picture_command(app, program);
+  add_identify_command(app, program);
   add_sfr_command(app, program);
   add_sitf_command(app, program);
   add_conformity_command(app, program);

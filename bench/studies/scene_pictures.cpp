@@ -16,7 +16,7 @@ namespace {
 
 constexpr int display_factor = 8;
 
-SensorPlan with(SensorPlan plan, Effect effect, Decision decision) {
+SensorPlan with_decision(SensorPlan plan, Effect effect, Decision decision) {
   for (auto& d : plan.decisions) {
     if (d.effect == effect) d.decision = decision;
   }
@@ -25,7 +25,7 @@ SensorPlan with(SensorPlan plan, Effect effect, Decision decision) {
 
 /// Side of the shown square in pitches, even.
 int field_of(const ScenePicturesTask& task, const SensorSpec& spec) {
-  const int most = std::min(spec.width, spec.height) / 2 * 2;
+  const int most = std::max(2, std::min(spec.width, spec.height) / 2 * 2);
   if (task.field_pitch > 0) return std::min(task.field_pitch + task.field_pitch % 2, most);
   FieldScene targets = task.scene;
   const auto none = [](const SceneRegion& region) { return !region.target; };
@@ -33,7 +33,7 @@ int field_of(const ScenePicturesTask& task, const SensorSpec& spec) {
   const bool any = !targets.regions.empty();
   const cv::Size2d extent = extent_m(any ? targets : task.scene);
   const double pitches = 1.5 * std::max(extent.width, extent.height) * 1e3 / (task.view.range_m * spec.ifov_mrad()) + 6;
-  return std::clamp(2 * static_cast<int>(std::ceil(pitches / 2)), 16, most);
+  return std::min(2 * static_cast<int>(std::ceil(std::clamp(pitches, 16.0, 1e6) / 2)), most);
 }
 
 /// The middle `field` pitches of a picture of all detectors.
@@ -162,14 +162,15 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   const auto filtered_scene = [&](const SensorPlan& filters) {
     return scene_signal_k(SceneImager(fine, filters, task.accuracy), fine, task.scene, scale, fine_view, fine_size);
   };
-  const auto behind_optics = filtered_scene(with(plan, Effect::detector, Decision::skip));
+  const auto behind_optics = filtered_scene(with_decision(plan, Effect::detector, Decision::skip));
   if (!behind_optics) return tl::unexpected(behind_optics.error());
   const auto behind_detector = filtered_scene(plan);
   if (!behind_detector) return tl::unexpected(behind_detector.error());
 
-  const SensorModel undisplayed(task.sensor,
-                                with(with(plan, Effect::display, Decision::skip), Effect::quantisation, Decision::skip),
-                                task.accuracy, task.seed);
+  const SensorModel undisplayed(
+      task.sensor,
+      with_decision(with_decision(plan, Effect::display, Decision::skip), Effect::quantisation, Decision::skip),
+      task.accuracy, task.seed);
   const cv::Mat1f noisy = undisplayed.picture(unit, 1, out.background_k, 0);
   out.frame = model.picture(unit, 1, out.background_k, 0);
   cv::Mat1f shown, seen_by_observer;

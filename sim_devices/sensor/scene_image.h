@@ -21,7 +21,7 @@ namespace todbench {
 /// A scene is split into its means over the cells of the sampling grid, exact, and what is left in the cells that an
 /// edge passes. The means are filtered with the response to a unit cell, all frequencies that sampling folds included.
 /// What is left has mean 0 and is expanded in Legendre polynomials over the cell, their coefficients exact by Gauss and
-/// Green; each has its own response, which falls as r^-4 and is kept for `reach` samples. The degree is what the band
+/// Green; each has its own response, which falls as r^-4 and is kept for 6 samples. The degree is what the band
 /// asks for: to 3e-5 of a contrast equal to ImageChain (test SceneImager.EqualsTheImageOfThePolygonAlone).
 ///
 /// The plane outside the frame and a margin of 48 pitches is taken as level 0. The frame is periodic with that margin:

@@ -216,6 +216,49 @@ TEST(PictureCommand, RefusesScenesAndRangesThatCannotBe) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "p"));
 }
 
+TEST(IdentifyCommand, SaysWhereASetIsToldApartAndWhatTheTodCurveWouldHaveSaid) {
+  const TemporaryFolder folder;
+  folder.write("set.toml",
+               "name = \"three\"\ntargets = [\"craft-01\", \"craft-07\", \"craft-12\"]\nazimuths_deg = [90]\n"
+               "background_k = 288\n");
+  folder.write("twins.toml",
+               "name = \"t\"\ntargets = [\"craft-01\", \"craft-01\"]\nazimuths_deg = [90]\nbackground_k = 288\n");
+  const auto identify = [&](const std::string& set, const std::string& ranges) {
+    return todbench({"identify", set, "--sensor", "sc2000", "--ranges", ranges, "--decisions", "64", "--accuracy",
+                     "draft", "--extinction-per-km", "0.1", "--json"},
+                    {.folder = folder.path()});
+  };
+
+  const Ended ended = identify("./set.toml", "800,2500,8000");
+  const Ended again = identify("./set.toml", "800,2500,8000");
+
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_EQ(ended.out, again.out);
+  const Json json = one_object(ended);
+  ASSERT_EQ(json["ranges"].size(), 3u);
+  EXPECT_GT(json["ranges"][0]["proportion_correct"].get<double>(), 0.9);
+  for (const auto& range : json["ranges"]) {
+    double right = 0;
+    for (std::size_t shown = 0; shown < 3; ++shown) {
+      int all = 0;
+      for (const auto& answers : range["confusion"][shown]) all += answers.get<int>();
+      EXPECT_EQ(all, 64);
+      right += range["confusion"][shown][shown].get<double>() / (3 * 64);
+    }
+    EXPECT_NEAR(range["proportion_correct"].get<double>(), right, 1e-9);
+  }
+  const double r75_m = json["r75_m"];
+  EXPECT_GT(r75_m, 800);
+  EXPECT_LT(r75_m, 8000);
+  EXPECT_LE(json["r75_ci95_m"][0].get<double>(), r75_m);
+  EXPECT_NEAR(json["v50"]["value"].get<double>(), json["m75"]["value"].get<double>() / 0.6, 1e-9);
+  EXPECT_TRUE(json["predicted"]["r75_m"].is_number());
+  EXPECT_EQ(identify("./set.toml", "500,800").code, 3);  // always right: 75 % lies beyond
+  expect_refused(identify("./twins.toml", "500,800"), 2, "named twice");
+  expect_refused(identify("./set.toml", "800,500"), 2, "increase");
+  expect_refused(identify("no-such-set", "500,800"), 2, "small-craft");
+}
+
 TEST(SweepCommand, PrintsTaskListsAndRefusesInASentence) {
   const TemporaryFolder folder;
   folder.write("s.toml", "[grid]\nnetd_k = [0.03, 0.05]\n[repeat]\nseeds = 2\n");

@@ -1,0 +1,180 @@
+#include "bench/cli/command_identify.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "bench/judgement/verdict.h"
+#include "bench/plan/descriptions.h"
+#include "bench/studies/identification_study.h"
+
+namespace todbench {
+namespace {
+
+struct IdentifyArguments {
+  std::string set, sensor, observer = "hvs-1", atmosphere = "clear", haze = "rural-23km", accuracy = "normal";
+  std::vector<double> ranges_m;
+  double extinction_per_km = 0, m75 = 5.1;
+  int decisions = 2000, microscan = 0;
+};
+
+Result<IdentificationStudyTask> identification_task(const IdentifyArguments& a, const Program& program) {
+  IdentificationStudyTask task;
+  auto set = load_target_set(a.set);
+  if (!set) return tl::unexpected(set.error());
+  auto sensor = load_sensor(a.sensor);
+  if (!sensor) return tl::unexpected(sensor.error());
+  if (a.microscan > 0) sensor->microscan = a.microscan;
+  auto observer = load_observer(a.observer);
+  if (!observer) return tl::unexpected(observer.error());
+  const auto accuracy = Accuracy::named(a.accuracy);
+  if (!accuracy) return tl::unexpected(accuracy.error());
+  const bool beer = a.extinction_per_km > 0 && a.atmosphere == "clear";
+  auto air = load_atmosphere(beer ? "beer-lambert" : a.atmosphere,
+                             {.band = {sensor->wavelength_min_um, sensor->wavelength_max_um},
+                              .haze = a.haze,
+                              .weight_temperature_k = sensor->scene_temperature_k,
+                              .extinction_per_km = a.extinction_per_km});
+  if (!air) return tl::unexpected(air.error());
+  task.set = *std::move(set);
+  task.sensor = *std::move(sensor);
+  task.observer = *std::move(observer);
+  task.air = *std::move(air);
+  task.accuracy = *accuracy;
+  task.ranges_m = a.ranges_m;
+  task.decisions = a.decisions;
+  task.m75 = a.m75;
+  task.seed = program.common.seed;
+  task.stop = program.stop->token();
+  return task;
+}
+
+Json criterion_json_of(const SetCriterion& criterion) {
+  return {{"value", json_number(criterion.value)}, {"ci95", json_interval(criterion.ci95)}};
+}
+
+Interval interval_of(const IdentificationPoint& point) {
+  const double p = point.proportion(), reach = 1.96 * point.standard_error();
+  return {std::max(0.0, p - reach), std::min(1.0, p + reach)};
+}
+
+Json identification_json(const IdentificationStudyTask& task, const IdentificationStudy& study) {
+  Json ranges = Json::array(), names = Json::array(), tod = Json::array();
+  for (const auto& target : task.set.targets) names.push_back(target.name);
+  for (const auto& point : study.points) {
+    ranges.push_back({{"range_m", json_number(point.range_m)},
+                      {"transmittance", json_number(point.transmittance)},
+                      {"proportion_correct", json_number(point.proportion())},
+                      {"ci95", json_interval(interval_of(point))},
+                      {"draws", point.by_draw.size()},
+                      {"confusion", point.answers}});
+  }
+  for (const auto& t : study.tod) {
+    tod.push_back({{"delta_t_k", json_number(t.delta_t_k)},
+                   {"s75_mrad", json_number(t.s75_mrad)},
+                   {"s75_ci95_mrad", json_interval(t.s75_ci95_mrad)}});
+  }
+  Json predicted;
+  if (study.predicted) {
+    predicted = {{"m75", task.m75},
+                 {"r75_m", json_number(study.predicted->r75_m)},
+                 {"r75_ci95_m", json_interval(study.predicted->r75_ci95_m)},
+                 {"reason", study.predicted->reason.empty() ? Json() : Json(study.predicted->reason)}};
+  }
+  const bool both = study.predicted && study.predicted->r75_m && study.r75_m.value;
+  return {{"set", task.set.name},
+          {"sensor", task.sensor.name},
+          {"samples_per_pitch", task.sensor.samples_per_pitch()},
+          {"observer", task.observer.name},
+          {"atmosphere", {{"name", task.air.name}, {"source", task.air.source}}},
+          {"targets", names},
+          {"azimuths_deg", task.set.azimuths_deg},
+          {"chance", study.chance},
+          {"size_m", json_number(study.size_m)},
+          {"dt_rss_k", json_number(study.dt_rss_k)},
+          {"ranges", ranges},
+          {"r75_m", json_number(study.r75_m.value)},
+          {"r75_ci95_m", json_interval(study.r75_m.ci95)},
+          {"m75", criterion_json_of(study.m75)},
+          {"v50", criterion_json_of(study.v50)},
+          {"tod", tod},
+          {"predicted", predicted},
+          {"measured_over_predicted", both ? Json(*study.r75_m.value / *study.predicted->r75_m) : Json()},
+          {"notes", study.notes}};
+}
+
+void print_identification(Console& console, const IdentificationStudyTask& task, const IdentificationStudy& study) {
+  console.text(fmt::format("{} targets of {} before {}, observer {}; mean size {:.3g} m, mean dT_RSS {:.3g} K",
+                           task.set.targets.size(), task.set.name, task.sensor.name, task.observer.name, study.size_m,
+                           study.dt_rss_k));
+  std::vector<TableRow> rows;
+  for (const auto& point : study.points) {
+    rows.push_back({fixed(point.range_m, 0), fixed(point.transmittance, 3), fixed(point.proportion(), 3),
+                    range(interval_of(point), 3)});
+  }
+  console.table({"range [m]", "transmittance", "P correct", "95 %"}, rows);
+  console.text("");
+  console.text("75 % correct at " + fixed(study.r75_m.value, 1) + " m, 95 %: " + range(study.r75_m.ci95, 1) + " m");
+  console.text("of the set: M75 " + fixed(study.m75.value, 2) + " (" + range(study.m75.ci95, 2) + "), V50 " +
+               fixed(study.v50.value, 2) + " (" + range(study.v50.ci95, 2) + ")");
+  if (study.predicted) {
+    console.text(fmt::format("predicted by the TOD curve with M75 {:g}: ", task.m75) +
+                 fixed(study.predicted->r75_m, 1) + " m" +
+                 (study.predicted->reason.empty() ? "" : "; " + study.predicted->reason));
+  }
+}
+
+int run_identify(Console& console, const IdentifyArguments& a, const Program& program) {
+  const auto task = identification_task(a, program);
+  if (!task) return report_error(console, task.error());
+  for (const auto& sentence : task->air.notes) console.note(sentence);
+  console.phase("identifying");
+  const auto study = study_identification(*task);
+  console.end_progress();
+  if (!study) return report_error(console, study.error());
+  for (const auto& sentence : study->notes) console.note(sentence);
+  if (console.json()) {
+    console.object(identification_json(*task, *study));
+  } else {
+    print_identification(console, *task, *study);
+  }
+  return exit_code(study->r75_m.value ? VerdictKind::pass : VerdictKind::inconclusive);
+}
+
+}  // namespace
+
+void add_identify_command(CLI::App& app, Program& program) {
+  auto* command =
+      app.add_subcommand("identify", "an observer tells the targets of a set apart: right answers by range, M75, V50");
+  auto a = std::make_shared<IdentifyArguments>();
+  command->add_option("SET.toml", a->set, "name or file")->required();
+  command->add_option("--sensor", a->sensor, "name or file")->required();
+  command->add_option("--ranges", a->ranges_m, "in m, increasing, separated by commas")
+      ->required()
+      ->delimiter(',')
+      ->check(number_in(1e-3, 1e6));
+  command
+      ->add_option(
+          "--atmosphere", a->atmosphere,
+          "clear, us-standard, midlatitude-summer, midlatitude-winter, subarctic-winter, tropical, beer-lambert "
+          "(with --extinction-per-km); or FILE.csv, or a MODTRAN tape7")
+      ->capture_default_str();
+  command->add_option("--haze", a->haze, "aerosol of the shipped tables")->capture_default_str();
+  command->add_option("--extinction-per-km", a->extinction_per_km, "of the contrast")
+      ->check(number_in(0, 1e4))
+      ->capture_default_str();
+  command->add_option("--observer", a->observer, "name or file")->capture_default_str();
+  command->add_option("--microscan", a->microscan, "in place of the sensor's")->check(whole_number(1, 4));
+  command->add_option("--decisions", a->decisions, "for every target at every range")
+      ->check(whole_number(16, 1000000))
+      ->capture_default_str();
+  command->add_option("--m75", a->m75, "of the range that the TOD curve predicts")
+      ->check(number_in(1e-6, 1e6))
+      ->capture_default_str();
+  command->add_option("--accuracy", a->accuracy, "draft, normal or reference")
+      ->check(CLI::IsMember({"draft", "normal", "reference"}))
+      ->capture_default_str();
+  finish_command(*command, program, [a, &program](Console& console) { return run_identify(console, *a, program); });
+}
+
+}  // namespace todbench

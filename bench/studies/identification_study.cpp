@@ -1,0 +1,185 @@
+#include "bench/studies/identification_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim_devices/prediction/direct_estimate.h"
+#include "sim_devices/sensor/sensor_plan.h"
+#include "tod/plate/test_pattern.h"
+
+namespace todbench {
+namespace {
+
+constexpr double wanted = 0.75;
+constexpr int resamples = 1000;
+
+/// Not increasing any more: neighbours out of order become their mean (pool adjacent violators).
+std::vector<double> not_increasing(const std::vector<double>& values) {
+  struct Pool {
+    double sum = 0;
+    std::size_t count = 0;
+    [[nodiscard]] double mean() const { return sum / static_cast<double>(count); }
+  };
+  std::vector<Pool> pools;
+  for (const double value : values) {
+    pools.push_back({value, 1});
+    while (pools.size() > 1 && pools[pools.size() - 2].mean() < pools.back().mean()) {
+      pools[pools.size() - 2].sum += pools.back().sum;
+      pools[pools.size() - 2].count += pools.back().count;
+      pools.pop_back();
+    }
+  }
+  std::vector<double> out;
+  for (const auto& pool : pools) out.insert(out.end(), pool.count, pool.mean());
+  return out;
+}
+
+/// The range of 75 %; beyond either end of the ranges: nothing, with the side.
+struct Crossing {
+  std::optional<double> range_m;
+  bool beyond_last = false;
+};
+Crossing crossing_of(const std::vector<double>& ranges_m, const std::vector<double>& proportions) {
+  const auto p = not_increasing(proportions);
+  if (p.front() < wanted) return {};
+  for (std::size_t i = 0; i + 1 < p.size(); ++i) {
+    if (p[i + 1] >= wanted) continue;
+    const double share = (p[i] - wanted) / (p[i] - p[i + 1]);
+    return {ranges_m[i] * std::pow(ranges_m[i + 1] / ranges_m[i], share), false};
+  }
+  return {std::nullopt, true};
+}
+
+SetCriterion range_of_75_percent(const IdentificationStudyTask& task, const std::vector<IdentificationPoint>& points) {
+  const auto proportions = [&](const std::vector<std::size_t>& draws) {
+    std::vector<double> out;
+    for (const auto& point : points) {
+      double sum = 0;
+      for (const std::size_t d : draws) sum += point.by_draw[d];
+      out.push_back(sum / static_cast<double>(draws.size()));
+    }
+    return out;
+  };
+  std::vector<std::size_t> draws(points.front().by_draw.size());
+  for (std::size_t d = 0; d < draws.size(); ++d) draws[d] = d;
+  SetCriterion out;
+  out.value = crossing_of(task.ranges_m, proportions(draws)).range_m;
+  // Draws are what is independent: targets, sides and ranges share them.
+  std::vector<double> found;
+  const RandomStream numbers(task.seed, "identification.resample");
+  for (std::uint64_t r = 0; r < resamples; ++r) {
+    std::vector<std::size_t> drawn;
+    for (std::uint64_t d = 0; d < draws.size(); ++d) drawn.push_back(numbers.sub(r).below(draws.size(), d));
+    const Crossing crossing = crossing_of(task.ranges_m, proportions(drawn));
+    found.push_back(crossing.range_m ? *crossing.range_m : crossing.beyond_last ? 1e300 : 0);
+  }
+  std::sort(found.begin(), found.end());
+  const auto side = [&](std::size_t at) -> std::optional<double> {
+    if (found[at] <= 0 || found[at] >= 1e300) return std::nullopt;
+    return found[at];
+  };
+  out.ci95 = {side(resamples / 40), side(resamples - 1 - resamples / 40)};
+  return out;
+}
+
+/// The curve between the contrasts that the set shows at its nearest and at its farthest range.
+Result<std::vector<TodThreshold>> tod_curve_for(const IdentificationStudyTask& task, double dt_k, double least_tau,
+                                                std::vector<std::string>& notes) {
+  TemplateObserver observer(task.observer, triangle_alternatives());
+  const SensorPlan plan = full_plan(task.sensor, {}, {});
+  const double least = dt_k * least_tau / 1.1;
+  std::vector<TodThreshold> curve;
+  for (const double contrast_k : {least, std::sqrt(least * 1.1 * dt_k), 1.1 * dt_k}) {
+    const auto points = direct_estimate(task.sensor, plan, observer, {contrast_k},
+                                        {.accuracy = task.accuracy, .seed = task.seed, .stop = task.stop});
+    if (!points) {
+      if (points.error().code == ErrorCode::interrupted) return tl::unexpected(points.error());
+      notes.push_back(fmt::format("TOD at {:.3g} K: {}", contrast_k, points.error().message));
+      continue;
+    }
+    const double s75 = points->front().s75_pitch * task.sensor.ifov_mrad();
+    const double reach = 1.96 * points->front().standard_error_pitch / points->front().s75_pitch;
+    curve.push_back({contrast_k, s75, {s75 * std::exp(-reach), s75 * std::exp(reach)}});
+  }
+  return curve;
+}
+
+/// M of the set at a range.
+std::optional<double> m_at(const IdentificationStudyTask& task, const IdentificationStudy& study,
+                           std::optional<double> range_m) {
+  if (!range_m || study.tod.empty()) return std::nullopt;
+  const auto tau = task.air.air.at(*range_m);
+  if (!tau) return std::nullopt;
+  const auto acuity = interpolated_acuity_per_mrad(study.tod, study.dt_rss_k * *tau);
+  if (!acuity) return std::nullopt;
+  return 1e3 * study.size_m / *range_m * *acuity;
+}
+
+Result<void> check_ranges(const IdentificationStudyTask& task) {
+  if (task.ranges_m.size() < 2) return fail(ErrorCode::invalid_input, "identification needs at least two ranges");
+  for (std::size_t i = 0; i < task.ranges_m.size(); ++i) {
+    const double range_m = task.ranges_m[i];
+    if (!(range_m > 0) || (i > 0 && range_m <= task.ranges_m[i - 1]))
+      return fail(ErrorCode::invalid_input, "ranges are above 0 m and increase");
+    if (!task.air.air.at(range_m)) {
+      return fail(ErrorCode::invalid_input, fmt::format("the air's table ends at {:g} m: nothing is known of {:g} m",
+                                                        task.air.air.end_m(), range_m));
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<IdentificationStudy> study_identification(const IdentificationStudyTask& task) {
+  if (auto fine = check_ranges(task); !fine) return tl::unexpected(fine.error());
+  const RadianceScale scale{{task.sensor.wavelength_min_um, task.sensor.wavelength_max_um},
+                            task.sensor.scene_temperature_k};
+  IdentificationTask experiment;
+  experiment.sensor = task.sensor;
+  experiment.plan = full_plan(task.sensor, {}, {});
+  experiment.observer = task.observer;
+  experiment.accuracy = task.accuracy;
+  experiment.decisions = task.decisions;
+  experiment.seed = task.seed;
+  experiment.stop = task.stop;
+  IdentificationStudy study;
+  double views = 0;
+  for (std::size_t t = 0; t < task.set.targets.size(); ++t) {
+    IdentificationTarget target{task.set.targets[t].name, {}};
+    for (const double azimuth_deg : task.set.azimuths_deg) {
+      target.aspects.push_back(scene_of(task.set, t, azimuth_deg));
+      if (const auto signature = target_signature(target.aspects.back(), scale)) {
+        study.size_m += signature->size_m();
+        study.dt_rss_k += signature->dt_rss_k();
+      }
+      views += 1;
+    }
+    experiment.targets.push_back(std::move(target));
+  }
+  study.size_m /= views;
+  study.dt_rss_k /= views;
+  study.chance = 1 / static_cast<double>(task.set.targets.size());
+  for (const double range_m : task.ranges_m) experiment.ranges.push_back({range_m, *task.air.air.at(range_m)});
+  auto points = identify(experiment);
+  if (!points) return tl::unexpected(points.error());
+  study.points = *std::move(points);
+  study.r75_m = range_of_75_percent(task, study.points);
+  auto curve = tod_curve_for(task, study.dt_rss_k, experiment.ranges.back().transmittance, study.notes);
+  if (!curve) return tl::unexpected(curve.error());
+  study.tod = *std::move(curve);
+  if (study.tod.empty()) return study;
+  study.m75 = {m_at(task, study, study.r75_m.value),
+               {m_at(task, study, study.r75_m.ci95.high), m_at(task, study, study.r75_m.ci95.low)}};
+  const auto v50 = [](std::optional<double> m) { return m ? std::optional(*m / m75_from_v50(1)) : std::nullopt; };
+  study.v50 = {v50(study.m75.value), {v50(study.m75.ci95.low), v50(study.m75.ci95.high)}};
+  auto predicted = predict_range(
+      study.tod, {.size_m = study.size_m, .delta_t_k = study.dt_rss_k, .m75 = task.m75, .air = task.air.air});
+  if (!predicted) return tl::unexpected(predicted.error());
+  study.predicted = *std::move(predicted);
+  return study;
+}
+
+}  // namespace todbench

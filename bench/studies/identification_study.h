@@ -1,0 +1,50 @@
+// What an identification experiment says of a set of targets, and whether the TOD curve would have said it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "bench/plan/atmospheres.h"
+#include "bench/plan/scene_descriptions.h"
+#include "sim_devices/prediction/identification.h"
+#include "tod/range/range_prediction.h"
+
+namespace todbench {
+
+struct IdentificationStudyTask {
+  TargetSet set;
+  SensorSpec sensor;
+  TemplateObserverSpec observer{};
+  Atmosphere air{};
+  Accuracy accuracy{};
+  std::vector<double> ranges_m;  ///< at least two, increasing
+  int decisions = 2000;          ///< for every target at every range
+  double m75 = 5.1;              ///< of the range that is predicted
+  std::uint64_t seed = 1;
+  std::stop_token stop{};
+};
+
+/// A number with its interval; nothing where the ranges of the experiment do not enclose 75 %.
+struct SetCriterion {
+  std::optional<double> value;
+  Interval ci95;
+};
+
+struct IdentificationStudy {
+  std::vector<IdentificationPoint> points;
+  double chance = 0;                         ///< one over the number of targets
+  double size_m = 0;                         ///< mean over targets and sides
+  double dt_rss_k = 0;                       ///< the same, before the air
+  SetCriterion r75_m;                        ///< where 75 % are right; the interval by resampling the draws of noise
+  SetCriterion m75, v50;                     ///< of the set: M at r75_m on the TOD curve; M75 / 0.6
+  std::vector<TodThreshold> tod;             ///< of the same sensor and observer
+  std::optional<RangePrediction> predicted;  ///< by the TOD curve with the m75 of the task; nothing: no curve
+  std::vector<std::string> notes;
+};
+
+/// The proportion over range is made monotone (pool adjacent violators) and taken as linear in ln range.
+/// `invalid_input`: ranges that do not increase or lie beyond the air's table, and what identify() refuses;
+/// `interrupted`.
+[[nodiscard]] Result<IdentificationStudy> study_identification(const IdentificationStudyTask& task);
+
+}  // namespace todbench

@@ -1,0 +1,58 @@
+// Templates of any shapes for an observer that tells them apart: every alternative from every side, at every place of
+// the search.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <span>
+#include <vector>
+
+#include "acquisition/core/result.h"
+#include "hvs/observer/template_observer.h"
+#include "hvs/shape/painted_shapes.h"
+
+namespace todbench {
+
+/// One alternative: its edges from every side, in displayed samples, near the origin. Levels in any unit.
+using AlternativeAspects = std::vector<std::vector<StepEdge>>;
+
+/// The template observer generalised from triangles: as there a template is the ideal picture behind display and blur
+/// of the eye, without its mean and of unit norm, at every place of the search; an alternative's score is the largest
+/// over its sides and places.
+///
+/// Templates of one picture at places next to each other are smooth functions of the place. Projections are computed at
+/// up to nine places per axis and interpolated in between (polynomials of Lagrange, nodes near those of Chebyshev and
+/// Lobatto); of a triangle of 1.6 samples that changes scores by less than 1e-4 of the contrast
+/// (IdentificationBank.ScoresTrianglesAsTheTemplateObserverDoes). Immutable, thread-safe.
+class IdentificationBank {
+ public:
+  /// `invalid_input`: fewer than two alternatives, one without sides or without edges, or templates that need over 1
+  /// GiB.
+  [[nodiscard]] static Result<IdentificationBank> build(const TemplateObserverSpec& spec,
+                                                        std::span<const AlternativeAspects> alternatives,
+                                                        int samples_per_pitch);
+
+  /// Side of the square window, in samples, even.
+  [[nodiscard]] int window_samples() const { return window_; }
+  [[nodiscard]] std::size_t alternatives() const { return first_aspect_.size() - 1; }
+  /// Length of a score vector.
+  [[nodiscard]] std::size_t scores() const { return aspects_.size() * static_cast<std::size_t>(places_ * places_); }
+  /// Scores of all templates for a patch of window_samples()^2 values whose mean is 0.
+  [[nodiscard]] std::vector<float> project(const cv::Mat1f& patch) const;
+  /// The alternative with the largest of signal + first_scale * first + second_scale * second, element by element.
+  [[nodiscard]] std::size_t best(std::span<const float> signal, std::span<const float> first, float first_scale,
+                                 std::span<const float> second, float second_scale) const;
+
+ private:
+  struct Aspect {
+    std::vector<float> inverse_norms;  ///< by place
+  };
+  IdentificationBank() = default;
+  int window_ = 0, places_ = 0;  ///< places per axis
+  cv::Mat1f weights_;            ///< [place on an axis][node]
+  std::vector<Aspect> aspects_;
+  std::vector<std::size_t> first_aspect_;  ///< of each alternative, and the end
+  std::size_t blocks_ = 0;
+  std::vector<float> nodes_;  ///< [block of templates][sample][template in block], as TemplateBank
+};
+
+}  // namespace todbench

@@ -1,0 +1,229 @@
+#include "sim_devices/prediction/identification.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <thread>
+
+#include "hvs/observer/identification_bank.h"
+#include "sim_devices/sensor/effect_display.h"
+#include "sim_devices/sensor/effect_quantisation.h"
+#include "sim_devices/sensor/effect_row.h"
+#include "sim_devices/sensor/scene_image.h"
+#include "sim_devices/sensor/sensor_model.h"
+
+namespace todbench {
+namespace {
+
+constexpr int phases_on_axis = 4;
+constexpr int phases = phases_on_axis * phases_on_axis;
+
+/// One view, independent of range: its edges in metres, and its contrast.
+struct SeenAspect {
+  std::vector<StepEdge> edges_m;
+  double dt_rss_k = 0;
+};
+using SeenTargets = std::vector<std::vector<SeenAspect>>;
+
+bool look_alike(const std::vector<SeenAspect>& a, const std::vector<SeenAspect>& b) {
+  const auto same = [](const StepEdge& p, const StepEdge& q) {
+    return cv::norm(p.a - q.a) < 1e-6 && cv::norm(p.b - q.b) < 1e-6 && std::abs(p.step - q.step) < 1e-9;
+  };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](const SeenAspect& s, const SeenAspect& t) {
+    return std::equal(s.edges_m.begin(), s.edges_m.end(), t.edges_m.begin(), t.edges_m.end(), same);
+  });
+}
+
+Result<SeenTargets> seen_targets(const IdentificationTask& task) {
+  const RadianceScale scale{{task.sensor.wavelength_min_um, task.sensor.wavelength_max_um},
+                            task.sensor.scene_temperature_k};
+  SeenTargets out;
+  for (const auto& target : task.targets) {
+    auto& own = out.emplace_back();
+    for (const auto& scene : target.aspects) {
+      if (auto fine = validate(scene); !fine) return fail("target " + target.name, fine.error());
+      const auto signature = target_signature(scene, scale);
+      if (!signature || !(signature->dt_rss_k() > 0))
+        return fail(ErrorCode::invalid_input, "target " + target.name + " has no contrast against its background");
+      own.push_back({visible_edges(levels_k(scene, scale)), signature->dt_rss_k()});
+    }
+    for (std::size_t other = 0; other + 1 < out.size(); ++other) {
+      if (look_alike(out[other], own)) {
+        return fail(ErrorCode::invalid_input, "targets " + task.targets[other].name + " and " + target.name +
+                                                  " look alike from every side: nobody can tell them apart");
+      }
+    }
+  }
+  if (out.size() < 2) return fail(ErrorCode::invalid_input, "identification needs at least two targets");
+  return out;
+}
+
+/// The observer before the camera at one range.
+class RangeTrial {
+ public:
+  static Result<RangeTrial> create(const IdentificationTask& task, const SeenTargets& targets,
+                                   IdentificationRange range, const SceneImager& imager) {
+    RangeTrial trial(task, range, imager);
+    std::vector<AlternativeAspects> alternatives;
+    for (const auto& target : targets) {
+      auto& own = alternatives.emplace_back();
+      for (const auto& aspect : target) own.push_back(placed(aspect.edges_m, trial.samples_per_metre_, 0, {0, 0}));
+    }
+    auto bank = IdentificationBank::build(task.observer, alternatives, trial.spec_.samples_per_pitch());
+    if (!bank) return tl::unexpected(bank.error());
+    trial.bank_.emplace(*std::move(bank));
+    trial.alternatives_ = std::move(alternatives);
+    return trial;
+  }
+
+  Result<IdentificationPoint> run(const SeenTargets& targets) {
+    const std::size_t aspects = targets.front().size();
+    const auto draws = static_cast<std::size_t>(
+        std::max(phases, (task_.decisions + static_cast<int>(aspects) - 1) / static_cast<int>(aspects)));
+    if (auto drawn = draw_noise(draws); !drawn) return tl::unexpected(drawn.error());
+    IdentificationPoint point{.range_m = range_.range_m,
+                              .transmittance = range_.transmittance,
+                              .answers = std::vector(targets.size(), std::vector<int>(targets.size(), 0)),
+                              .by_draw = std::vector<double>(draws, 0.0)};
+    double shown = 0;
+    for (const auto& target : targets) shown += static_cast<double>(target.size());
+    for (std::size_t t = 0; t < targets.size(); ++t) {
+      for (std::size_t a = 0; a < targets[t].size(); ++a) {
+        const double contrast_k = targets[t][a].dt_rss_k * range_.transmittance;
+        for (std::size_t phase = 0; phase < phases; ++phase) {
+          if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+          const auto signal = bank_->project(patch(alternatives_[t][a], phase));
+          // Each draw meets this view in one phase; views begin with different ones.
+          for (std::size_t d = (phase + t + 5 * a) % phases; d < draws; d += phases) {
+            const std::size_t answer = bank_->best(signal, sensor_noise_[d], 1.0F, white_[d], own_noise(contrast_k));
+            ++point.answers[t][answer];
+            if (answer == t) point.by_draw[d] += 1 / shown;
+          }
+        }
+      }
+    }
+    return point;
+  }
+
+ private:
+  RangeTrial(const IdentificationTask& task, IdentificationRange range, const SceneImager& imager)
+      : task_(task),
+        range_(range),
+        imager_(imager),
+        spec_(as_planned(task.sensor, task.plan)),
+        samples_per_metre_(1e3 / (range.range_m * spec_.ifov_mrad()) * spec_.samples_per_pitch()) {
+    if (has_display(spec_)) taps_ = taps_of([this](double f) { return display_response(spec_, f); });
+  }
+
+  /// Without its mean.
+  static cv::Mat1f centred(cv::Mat1f window) {
+    window = window.clone();
+    window -= cv::mean(window)[0];
+    return window;
+  }
+
+  [[nodiscard]] cv::Mat1f patch(const std::vector<StepEdge>& edges, std::size_t phase) const {
+    const int margin = static_cast<int>(taps_.size()) / 2, side = bank_->window_samples() + 2 * margin;
+    const auto offset = [](std::size_t k) { return (static_cast<double>(k) + 0.5) / phases_on_axis - 0.5; };
+    const cv::Point2d middle((side - 1) / 2.0 + offset(phase % phases_on_axis),
+                             (side - 1) / 2.0 + offset(phase / phases_on_axis));
+    cv::Mat1f seen;
+    imager_.image(placed(edges, 1, 0, middle), {side, side}).convertTo(seen, CV_32F, range_.transmittance);
+    if (!taps_.empty()) seen = filtered(seen, taps_);
+    return centred(seen(cv::Rect(margin, margin, bank_->window_samples(), bank_->window_samples())));
+  }
+
+  /// Of the observer, in kelvin per sample: its own, and what it sees of the sensor's beyond what there is.
+  [[nodiscard]] float own_noise(double contrast_k) const {
+    const double enlarged = task_.observer.sensor_noise_factor * task_.observer.sensor_noise_factor - 1;
+    return static_cast<float>(std::sqrt(std::pow(task_.observer.internal_noise * contrast_k, 2) +
+                                        enlarged * white_variance_k2(spec_, task_.plan, 1)));
+  }
+
+  /// The same numbers for every range but for the size of the window.
+  Result<void> draw_noise(std::size_t draws) {
+    const int margin = static_cast<int>(taps_.size()), n = spec_.samples_per_pitch();
+    const int window = bank_->window_samples();
+    SensorSpec small = spec_;
+    small.width = small.height = (window + 2 * margin) / n + 1;
+    small.dead_pixel_share = 0;
+    const RandomStream white(task_.seed, "identification.white");
+    for (std::size_t d = 0; d < draws; ++d) {
+      if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+      const SensorModel model(small, task_.plan, task_.accuracy, task_.seed + 1000003 * (d + 1));
+      const cv::Mat1f picture = model.picture(cv::Mat1f::zeros(model.size()), 1, task_.sensor.scene_temperature_k, 0);
+      sensor_noise_.push_back(bank_->project(centred(picture(cv::Rect(margin, margin, window, window)))));
+      cv::Mat1f own(window, window);
+      white.sub(d).fill_normal(std::span(own.ptr<float>(), own.total()));
+      white_.push_back(bank_->project(centred(own)));
+    }
+    return {};
+  }
+
+  const IdentificationTask& task_;
+  IdentificationRange range_;
+  const SceneImager& imager_;
+  SensorSpec spec_;
+  double samples_per_metre_;
+  std::vector<double> taps_;
+  std::optional<IdentificationBank> bank_;
+  std::vector<AlternativeAspects> alternatives_;
+  std::vector<std::vector<float>> sensor_noise_, white_;  ///< by draw
+};
+
+}  // namespace
+
+double IdentificationPoint::proportion() const {
+  return std::accumulate(by_draw.begin(), by_draw.end(), 0.0) / static_cast<double>(by_draw.size());
+}
+
+double IdentificationPoint::standard_error() const {
+  const double mean = proportion(), n = static_cast<double>(by_draw.size());
+  double squares = 0;
+  for (const double share : by_draw) squares += (share - mean) * (share - mean);
+  return n > 1 ? std::sqrt(squares / (n - 1) / n) : 1;
+}
+
+Result<std::vector<IdentificationPoint>> identify(const IdentificationTask& task) {
+  const auto targets = seen_targets(task);
+  if (!targets) return tl::unexpected(targets.error());
+  for (const auto& target : task.targets) {
+    if (target.aspects.empty() || target.aspects.size() != task.targets.front().aspects.size())
+      return fail(ErrorCode::invalid_input, "every target is seen from the same number of sides, at least one");
+  }
+  if (task.plan.simulates(Effect::quantisation) && rounds_coarsely(as_planned(task.sensor, task.plan)))
+    return fail(ErrorCode::invalid_input,
+                "the camera's counts are coarser than its noise: rounding would depend on the "
+                "targets, which this experiment leaves out");
+  const SensorSpec spec = as_planned(task.sensor, task.plan);
+  const SceneImager imager(spec, task.plan, task.accuracy);
+  std::vector<Result<IdentificationPoint>> found(task.ranges.size(), IdentificationPoint{});
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < found.size(); i = next++) {
+      auto trial = RangeTrial::create(task, *targets, task.ranges[i], imager);
+      if (trial) {
+        found[i] = trial->run(*targets);
+      } else {
+        found[i] = tl::unexpected(trial.error());
+      }
+    }
+  };
+  {
+    std::vector<std::jthread> threads;
+    const std::size_t count =
+        std::min<std::size_t>(found.size(), std::clamp(std::thread::hardware_concurrency(), 1U, 4U));
+    for (std::size_t i = 1; i < count; ++i) threads.emplace_back(work);
+    work();
+  }
+  std::vector<IdentificationPoint> points;
+  for (auto& point : found) {
+    if (!point) return tl::unexpected(point.error());
+    points.push_back(*std::move(point));
+  }
+  return points;
+}
+
+}  // namespace todbench

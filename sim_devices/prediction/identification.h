@@ -1,0 +1,58 @@
+// An identification experiment: an observer tells targets of a set apart behind a simulated camera.
+#pragma once
+
+#include <cstdint>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "acquisition/core/accuracy.h"
+#include "hvs/observer/template_observer.h"
+#include "sim_devices/scene/field_scene.h"
+#include "sim_devices/sensor/sensor_plan.h"
+#include "sim_devices/sensor/sensor_spec.h"
+
+namespace todbench {
+
+/// One alternative with its views, each before the same background, the middle of what is seen at the origin.
+struct IdentificationTarget {
+  std::string name;
+  std::vector<FieldScene> aspects;
+};
+
+struct IdentificationRange {
+  double range_m = 100;
+  double transmittance = 1;
+};
+
+struct IdentificationTask {
+  SensorSpec sensor;
+  SensorPlan plan;  ///< of the effects
+  TemplateObserverSpec observer{};
+  Accuracy accuracy{};
+  std::vector<IdentificationTarget> targets;
+  std::vector<IdentificationRange> ranges;
+  int decisions = 2000;  ///< for every target at every range, in all aspects together
+  std::uint64_t seed = 1;
+  std::stop_token stop{};
+};
+
+struct IdentificationPoint {
+  double range_m = 0, transmittance = 1;
+  std::vector<std::vector<int>> answers;  ///< [shown][answered]
+  /// Share of right answers of each draw of noise, which all targets and aspects share: what is independent.
+  std::vector<double> by_draw;
+  [[nodiscard]] double proportion() const;
+  [[nodiscard]] double standard_error() const;
+};
+
+/// One point per range, in their order. Every draw of sensor and internal noise is met by every target in every aspect,
+/// in one of 16 sampling phases that all draws take in turn; internal noise and the noise that an observer sees
+/// enlarged are those of the template observer, the contrast is dT_RSS behind the air. Ranges run on as many threads as
+/// there are processors; the result does not depend on their number. Dead detectors are left out; counts are rounded
+/// with the noise, not with the signal. `invalid_input`: fewer than two targets, targets that look alike from every
+/// side, one without contrast, counts that are too coarse for the noise, targets too large for the observer;
+/// `interrupted`.
+[[nodiscard]] Result<std::vector<IdentificationPoint>> identify(const IdentificationTask& task);
+
+}  // namespace todbench

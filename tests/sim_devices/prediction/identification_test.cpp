@@ -1,0 +1,149 @@
+// An observer that tells shapes apart: against the template observer of triangles, and the closed form of two.
+#include "sim_devices/prediction/identification.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "hvs/observer/identification_bank.h"
+#include "hvs/shape/step_image.h"
+#include "sim_devices/sensor/image_chain.h"
+#include "tests/sim_devices/reference.h"
+#include "tod/plate/test_pattern.h"
+
+namespace todbench {
+namespace {
+
+std::vector<StepEdge> edges_of(const Polygon& polygon, double level = 1) {
+  const PaintedPolygon painted{polygon, level};
+  return visible_edges(std::span(&painted, 1));
+}
+
+TEST(StepImage, IsTheSumOfTheImagesOfPolygons) {
+  const FilterTable filter({.period = 24, .band = 40},
+                           [](double u, double w) -> std::complex<double> { return std::exp(-2 * (u * u + w * w)); });
+  const Polygon a = triangle(3, Apex::up, {0.3, -0.2}), b = triangle(2, Apex::left, {-5.5, 1.1});
+  const std::vector<PaintedPolygon> painted{{a, 1.5}, {b, -0.5}};  // they do not touch
+
+  const cv::Mat1d found = fine_step_image(visible_edges(painted), filter, 4);
+  const cv::Mat1d expected = 1.5 * PolygonImage(a, filter).fine_image(4) - 0.5 * PolygonImage(b, filter).fine_image(4);
+
+  EXPECT_LT(cv::norm(found, expected, cv::NORM_INF), 1e-12);
+}
+
+TEST(IdentificationBank, ScoresTrianglesAsTheTemplateObserverDoes) {
+  const TemplateObserverSpec observer;
+  const double size = 1.6;
+  std::vector<AlternativeAspects> alternatives;
+  for (const Apex apex : all_apexes) alternatives.push_back({edges_of(triangle(size, apex))});
+  const auto bank = IdentificationBank::build(observer, alternatives, 1);
+  const auto known = TemplateBank::build(observer, triangle_alternatives(), size, 1);
+  ASSERT_TRUE(bank && known);
+  ASSERT_EQ(bank->window_samples(), known->window_samples());
+  const SensorSpec spec = test::sc2000();
+  const int side = bank->window_samples();
+  cv::Mat1f patch;
+  ImageChain(spec, full_plan(spec, {}, {}), Accuracy::draft())
+      .image(triangle(size, Apex::right, {0.21, -0.37}))
+      .sample({0.5 - side / 2.0, 0.5 - side / 2.0}, 1, {side, side})
+      .convertTo(patch, CV_32F);
+  patch -= cv::mean(patch)[0];
+
+  const auto found = bank->project(patch);
+  std::vector<float> expected(known->padded_templates());
+  known->project(std::span(patch.ptr<float>(), patch.total()), expected);
+
+  ASSERT_EQ(found.size(), static_cast<std::size_t>(known->templates()));
+  for (std::size_t t = 0; t < found.size(); ++t) ASSERT_NEAR(found[t], expected[t], 1e-4) << t;
+}
+
+FieldScene triangle_scene(Apex apex, double size_m) {
+  FieldScene scene;
+  scene.background_k = 300;
+  scene.regions = {{"triangle", triangle(size_m, apex), 300.3, 1, true}};
+  return scene;
+}
+
+IdentificationTask two_mirror_images() {
+  IdentificationTask task;
+  task.sensor = test::sc2000();
+  task.plan = full_plan(task.sensor, {}, {});
+  task.observer.search_range_samples = 0;
+  task.accuracy = Accuracy::draft();
+  task.targets = {{"up", {triangle_scene(Apex::up, 1)}}, {"down", {triangle_scene(Apex::down, 1)}}};
+  task.ranges = {{350, 1}};  // 2.18 pitches
+  task.decisions = 4000;
+  return task;
+}
+
+// With two alternatives at a known place the score difference is normal: P = Phi(<a - b, g> / (sd |a - b|)), averaged
+// over the 16 phases of the experiment and both triangles.
+TEST(Identification, OfTwoMirrorImagesIsTheClosedFormOfTwoAlternatives) {
+  const IdentificationTask task = two_mirror_images();
+  const SensorSpec& spec = task.sensor;
+  const double size_pitch = 1e3 / (350 * spec.ifov_mrad()), contrast_k = 0.3;
+  const auto bank = TemplateBank::build(task.observer, {triangle(1, Apex::up), triangle(1, Apex::down)}, size_pitch, 1);
+  ASSERT_TRUE(bank.has_value());
+  const cv::Mat1f difference = bank->image(0, 0) - bank->image(1, 0);
+  const double noise = std::sqrt(spec.netd_k * spec.netd_k + spec.kelvin_per_count * spec.kelvin_per_count / 12 +
+                                 std::pow(task.observer.internal_noise * contrast_k, 2));
+  const ImageChain chain(spec, task.plan, Accuracy::draft());
+  double expected = 0;
+  const int side = bank->window_samples();
+  for (int phase = 0; phase < 16; ++phase) {
+    const cv::Point2d at((phase % 4 + 0.5) / 4 - 0.5, (phase / 4 + 0.5) / 4 - 0.5);
+    for (const bool up : {true, false}) {
+      cv::Mat1f seen;
+      chain.image(triangle(size_pitch, up ? Apex::up : Apex::down))
+          .sample(cv::Point2d(0.5 - side / 2.0, 0.5 - side / 2.0) - at, 1, {side, side})
+          .convertTo(seen, CV_32F, contrast_k);
+      const double d = (up ? 1 : -1) * difference.dot(seen) / (noise * cv::norm(difference));
+      expected += 0.5 * std::erfc(-d / std::sqrt(2.0)) / 32;
+    }
+  }
+
+  const auto found = identify(task);
+
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_GT(expected, 0.6);
+  EXPECT_LT(expected, 0.97);
+  // Four standard errors, and 0.002 for radiance that is not straight and for periods.
+  EXPECT_NEAR(found->front().proportion(), expected, 4 * found->front().standard_error() + 0.002);
+  EXPECT_LT(found->front().standard_error(), 0.01);
+  const auto& answers = found->front().answers;
+  EXPECT_EQ(answers[0][0] + answers[0][1], 4000);
+}
+
+TEST(Identification, FallsWithRangeToChance) {
+  IdentificationTask task = two_mirror_images();
+  task.observer.search_range_samples = 0.5;
+  task.ranges = {{150, 1}, {400, 1}, {400, 0.1}, {5000, 1}};
+  task.decisions = 320;
+
+  const auto found = identify(task);
+
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_GT((*found)[0].proportion(), 0.99);
+  EXPECT_GT((*found)[1].proportion(), (*found)[2].proportion());
+  EXPECT_NEAR((*found)[3].proportion(), 0.5, 0.12);
+}
+
+TEST(Identification, RefusesWhatCannotBeToldApart) {
+  IdentificationTask alike = two_mirror_images();
+  alike.targets[1] = {"again", {triangle_scene(Apex::up, 1)}};
+  IdentificationTask cold = two_mirror_images();
+  cold.targets[1].aspects[0].regions[0].temperature_k = 300;
+  IdentificationTask alone = two_mirror_images();
+  alone.targets.resize(1);
+
+  for (const auto& task : {alike, cold, alone}) {
+    const auto found = identify(task);
+
+    ASSERT_FALSE(found);
+    EXPECT_EQ(found.error().code, ErrorCode::invalid_input);
+  }
+}
+
+}  // namespace
+}  // namespace todbench
