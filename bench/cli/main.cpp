@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/cli/command_enhance.h"
 #include "bench/cli/command_identify.h"
 #include "bench/cli/command_line.h"
 #include "bench/cli/command_module.h"
@@ -175,6 +176,7 @@ int run(int argc, char** argv) {
   add_reference_set_command(app, program);
   add_sweep_command(app, program);
   add_module_command(app, program);
+  add_enhance_command(app, program);
   add_manual_command(app, program);
   if (argc > 1 && std::string_view(argv[1]) == "complete") {
     print_completions(app, {argv + 2, argv + argc});

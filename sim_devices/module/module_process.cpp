@@ -126,6 +126,7 @@ ModuleProcess::ModuleProcess(ModuleProcess&& other) noexcept
       to_write_(std::move(other.to_write_)),
       read_(std::move(other.read_)),
       errors_(std::move(other.errors_)),
+      error_line_(std::move(other.error_line_)),
       buffer_(std::move(other.buffer_)) {}
 
 ModuleProcess::~ModuleProcess() {
@@ -144,10 +145,25 @@ void ModuleProcess::end() {
   process_ = -1;
 }
 
+void ModuleProcess::say_lines(std::string_view words) {
+  if (!options_.on_error_line) return;
+  for (const char c : words) {
+    // A line without an end is no reason to keep all of it.
+    if (c != '\n' && error_line_.size() < kept_errors) {
+      error_line_ += c;
+      continue;
+    }
+    if (!error_line_.empty()) options_.on_error_line(error_line_);
+    error_line_.clear();
+  }
+}
+
 void ModuleProcess::take_errors() {
   std::array<char, 4096> buffer{};
   for (ssize_t got = 0; (got = ::read(err_, buffer.data(), buffer.size())) > 0;) {
-    errors_.append(buffer.data(), static_cast<std::size_t>(got));
+    const std::string_view words(buffer.data(), static_cast<std::size_t>(got));
+    errors_ += words;
+    say_lines(words);
     if (errors_.size() > kept_errors) errors_.erase(0, errors_.size() - kept_errors);
     if (static_cast<std::size_t>(got) < buffer.size()) break;
   }

@@ -4,8 +4,10 @@
 #include <sys/types.h>
 
 #include <chrono>
+#include <functional>
 #include <opencv2/core.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "acquisition/core/result.h"
@@ -28,6 +30,7 @@ struct ModuleOptions {
   std::chrono::milliseconds limit{5000};  ///< for an answer, the start of the process included in the first
   std::size_t memory_limit_mib = 0;       ///< of address space, each process that it starts for itself; 0: none
   ModuleNetwork network = ModuleNetwork::cut;
+  std::function<void(std::string_view line)> on_error_line{};  ///< every line of its standard error
 };
 
 /// Picture to picture: writes one .npy array to the module's standard input and reads one of the same shape from its
@@ -50,6 +53,7 @@ class ModuleProcess {
   explicit ModuleProcess(const ModuleOptions& options) : options_(options) {}
   [[nodiscard]] Result<NpyPlace> transfer(std::chrono::steady_clock::time_point until, std::size_t most_values);
   void take_errors();
+  void say_lines(std::string_view words);
   [[nodiscard]] Error died() const;
   [[nodiscard]] Error with_last_words(Error error) const;
   void end();
@@ -57,7 +61,7 @@ class ModuleProcess {
   ModuleOptions options_;
   pid_t process_ = -1;
   int in_ = -1, out_ = -1, err_ = -1;  ///< our ends of its standard streams
-  std::string to_write_, read_, errors_;
+  std::string to_write_, read_, errors_, error_line_;
   std::vector<char> buffer_ = std::vector<char>(1 << 20);  ///< for reading
 };
 

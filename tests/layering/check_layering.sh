@@ -58,7 +58,8 @@ BEGIN {
   may["bench/studies"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
   may["bench/sweep"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
   may["bench/doctor"] = core " bench/text"
-  bench = "bench/text bench/plan bench/judgement bench/session bench/report bench/observer_fit bench/reference_set bench/run bench/studies bench/sweep"
+  may["bench/enhance"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
+  bench = "bench/text bench/plan bench/judgement bench/session bench/report bench/observer_fit bench/reference_set bench/run bench/studies bench/sweep bench/enhance"
   may["bench/cli"] = science " acquisition/recording bench/doctor " bench
   may["bench/gui/presenters"] = science " " bench
   may["bench/gui/views"] = science " " bench " bench/gui/presenters"

@@ -287,5 +287,32 @@ TEST(ModuleCommand, EndsWithFiveWhereAProgramBreaksTheContract) {
   EXPECT_EQ(one_object(silent)["ok"], false);
 }
 
+TEST(EnhanceCommand, NamesAPackageThatFailsAndKeepsTheOthers) {
+  const TemporaryFolder folder;
+  folder.write("plan.toml", small_plan(2));
+  folder.write("good.toml", "[[stage]]\nkind = \"sharpen\"\namount = 0\n");
+  folder.write("dead.toml", "[[stage]]\nkind = \"module\"\ncommand = \"echo no licence >&2\"\n");
+  const auto enhance = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), "enhance");
+    return todbench(more, {.folder = folder.path()});
+  };
+
+  const Ended ended = enhance({"plan.toml", "--packages", "dead.toml", "good.toml", "--out", "e", "--json"});
+
+  EXPECT_EQ(ended.code, 5) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr("no licence"));
+  const Json json = one_object(ended);
+  ASSERT_EQ(json["results"].size(), 3u);
+  EXPECT_TRUE(json["results"][1]["error"].is_string());
+  EXPECT_TRUE(json["results"][2]["error"].is_null());
+  EXPECT_EQ(json["results"][2]["points"][0]["acuity_per_mrad"], json["results"][0]["points"][0]["acuity_per_mrad"]);
+  EXPECT_THAT(content(folder.path() / "e/enhancement.html"), HasSubstr("</html>"));
+  EXPECT_EQ(rows_in(folder.path() / "e/trials-2.csv"), json["results"][0]["trials"].get<std::size_t>());
+  EXPECT_THAT(content(folder.path() / "e/package-1.log"), HasSubstr("no licence"));
+  expect_refused(enhance({"plan.toml", "--packages", "good.toml", "--out", "e"}), 2, "not empty");
+  expect_refused(enhance({"plan.toml", "--packages", "none.toml"}), 2, "none.toml");
+  expect_refused(enhance({"none.toml", "--packages", "good.toml"}), 2, "none.toml");
+}
+
 }  // namespace
 }  // namespace todbench::testing

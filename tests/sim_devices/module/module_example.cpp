@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
   }
   std::string stream;
   bool header_read = false;
+  int answered = 0;
   while (true) {
     const auto found = todbench::read_message(stream, 1 << 24);
     if (!found) return 1;
@@ -71,6 +72,11 @@ int main(int argc, char** argv) {
       continue;
     }
     if (mode == "hang") ::pause();
+    if (mode == "ends" && answered == std::atoi(argv[2])) {
+      std::fprintf(stderr, "that is enough\n");
+      return 3;
+    }
+    ++answered;
     if (mode == "endless") {
       while (true) write_all(std::string(65536, ' '));
     }

@@ -1,0 +1,158 @@
+#include "bench/cli/command_enhance.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <opencv2/imgcodecs.hpp>
+
+#include "bench/enhance/enhancement_page.h"
+#include "bench/judgement/verdict.h"
+#include "bench/report/html.h"
+#include "bench/session/json_output.h"
+#include "bench/session/trials_csv.h"
+#include "bench/text/files.h"
+#include "bench/text/folders.h"
+#include "bench/text/text.h"
+#include "tod/psychometric/acuity.h"
+
+namespace todbench {
+namespace {
+
+struct EnhanceArguments {
+  std::string plan, out = "enhancement";
+  std::vector<std::string> packages;
+  bool overwrite = false;
+};
+
+Json enhanced_points_json(const PackageResult& result) {
+  Json points = Json::array();
+  for (const auto& point : result.curve.points) {
+    const auto ratio = std::find_if(result.ratios.begin(), result.ratios.end(),
+                                    [&](const auto& r) { return same_contrast(r.set_delta_t_k, point.set_delta_t_k); });
+    const bool any = ratio != result.ratios.end();
+    points.push_back({{"set_delta_t_k", point.set_delta_t_k},
+                      {"acuity_per_mrad", json_number(acuity_per_mrad(point.fit))},
+                      {"acuity_ci95_per_mrad", json_interval(acuity_interval(point.fit.ci95))},
+                      {"ratio", any ? json_number(ratio->ratio) : Json()},
+                      {"ratio_ci95", any ? json_interval(ratio->ci95) : Json()}});
+  }
+  return points;
+}
+
+Json enhancement_json(const Enhancement& enhancement, const std::string& folder) {
+  Json results = Json::array();
+  for (const auto& result : enhancement.results) {
+    results.push_back({{"name", result.name},
+                       {"points", enhanced_points_json(result)},
+                       {"trials", result.trials.size()},
+                       {"frames", result.frames},
+                       {"frame_ms", json_number(result.frame_ms)},
+                       {"clipped_pixels", result.clipped_pixels},
+                       {"error", result.error ? Json(result.error->message) : Json()}});
+  }
+  return {{"settle_frames", enhancement.settle_frames}, {"results", results}, {"folder", folder}};
+}
+
+Result<void> write_folder(const std::filesystem::path& folder, const LoadedPlan& loaded,
+                          const std::vector<EnhancementPackage>& packages, const Enhancement& enhancement) {
+  const auto page = render_html(enhancement_page(loaded, packages, enhancement));
+  if (auto written = write_file_atomically(folder / "enhancement.html", page); !written) return written;
+  const auto json = to_page(enhancement_json(enhancement, folder.string()));
+  if (auto written = write_file_atomically(folder / "enhancement.json", json); !written) return written;
+  for (std::size_t i = 0; i < enhancement.results.size(); ++i) {
+    const auto& result = enhancement.results[i];
+    auto trials = TrialsWriter::create(folder / fmt::format("trials-{}.csv", i));
+    if (!trials) return tl::unexpected(trials.error());
+    for (const auto& trial : result.trials) {
+      if (auto written = trials->append(trial); !written) return written;
+    }
+    std::string log;
+    for (const auto& line : result.error_lines) log += one_line(line) + '\n';
+    if (log.empty()) continue;
+    if (auto written = write_file_atomically(folder / fmt::format("package-{}.log", i), log); !written) return written;
+  }
+  const cv::Mat1b strip = side_by_side(enhancement);
+  std::vector<unsigned char> png;
+  if (strip.empty() || !cv::imencode(".png", strip, png)) return {};
+  return write_file_atomically(folder / "pictures.png", std::string(png.begin(), png.end()));
+}
+
+/// A new or an empty folder, or one that may be overwritten.
+Result<std::filesystem::path> enhancement_folder(const EnhanceArguments& a) {
+  const std::filesystem::path folder = a.out;
+  std::error_code problem;
+  if (std::filesystem::exists(folder, problem) && !std::filesystem::is_directory(folder, problem))
+    return fail(ErrorCode::invalid_input, folder.string() + ": is not a folder");
+  if (auto made = make_folder(folder); !made) return tl::unexpected(made.error());
+  if (!a.overwrite && !std::filesystem::is_empty(folder, problem))
+    return fail(ErrorCode::invalid_input, folder.string() + ": is not empty (--force overwrites what is in it)");
+  return folder;
+}
+
+void say_enhancement(Console& console, const Enhancement& enhancement) {
+  std::vector<TableRow> rows;
+  for (const auto& result : enhancement.results) {
+    for (const auto& point : result.curve.points) {
+      std::optional<double> ratio;
+      Interval interval;
+      for (const auto& r : result.ratios) {
+        if (!same_contrast(r.set_delta_t_k, point.set_delta_t_k)) continue;
+        ratio = r.ratio;
+        interval = r.ci95;
+      }
+      rows.push_back({result.name, fmt::format("{:g}", point.set_delta_t_k), fixed(acuity_per_mrad(point.fit), 3),
+                      fixed(ratio, 3), range(interval, 3), fmt::format("{:.3g}", result.frame_ms)});
+    }
+  }
+  console.table({"package", "contrast (K)", "acuity (1/mrad)", "ratio", "95 %", "ms a frame"}, rows);
+}
+
+int run_enhance(Console& console, const EnhanceArguments& a, const Program& program) {
+  std::vector<EnhancementPackage> packages;
+  for (const auto& file : a.packages) {
+    auto package = read_package(file);
+    if (!package) return report_error(console, package.error());
+    packages.push_back(*std::move(package));
+  }
+  const auto plan = load_plan(a.plan);
+  if (!plan) return report_error(console, plan.error());
+  const auto loaded = LoadedPlan::load(*plan);
+  if (!loaded) return report_error(console, loaded.error());
+  const auto folder = enhancement_folder(a);
+  if (!folder) return report_error(console, folder.error());
+  const EnhancementOptions options{
+      .on_package = [&](const std::string& name) { console.phase("simulating with " + name); },
+      .on_progress = [&](std::size_t done, std::size_t planned) { console.progress(done, planned); }};
+  const auto found = compare_packages(*loaded, packages, options, program.stop->token());
+  console.end_progress();
+  if (!found) return report_error(console, found.error());
+  if (auto written = write_folder(*folder, *loaded, packages, *found); !written)
+    return report_error(console, written.error());
+  if (console.json()) console.object(enhancement_json(*found, folder->string()));
+  say_enhancement(console, *found);
+  console.text("page: " + (*folder / "enhancement.html").string());
+  int code = 0;
+  for (const auto& result : found->results) {
+    if (!result.error) continue;
+    console.error(fmt::format("package {}: {} ({} trials are kept)", one_line(result.name), result.error->message,
+                              result.trials.size()));
+    if (code == 0) code = exit_code(result.error->code);
+  }
+  return code;
+}
+
+}  // namespace
+
+void add_enhance_command(CLI::App& app, Program& program) {
+  auto* command = app.add_subcommand("enhance", "the same frames through enhancement packages and through none");
+  auto a = std::make_shared<EnhanceArguments>();
+  command->add_option("PLAN", a->plan, "plan whose simulated sensor is behind the packages")->required();
+  command->add_option("--packages", a->packages, "files of packages")->required()->expected(1, 16);
+  command->add_option("--out", a->out, "folder for page, numbers and pictures")->capture_default_str();
+  command->add_flag("--force", a->overwrite, "overwrite what is in the folder");
+  finish_command(*command, program, [a, &program](Console& console) { return run_enhance(console, *a, program); });
+}
+
+}  // namespace todbench

@@ -1,0 +1,10 @@
+// todbench enhance
+#pragma once
+
+#include "bench/cli/commands.h"
+
+namespace todbench {
+
+void add_enhance_command(CLI::App& app, Program& program);
+
+}  // namespace todbench

@@ -1,0 +1,237 @@
+#include "bench/enhance/enhancement.h"
+
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <stop_token>
+#include <utility>
+
+#include "bench/enhance/processed_source.h"
+#include "bench/plan/plan_options.h"
+#include "bench/run/experiment_inputs.h"
+#include "bench/run/simulated_set_up.h"
+#include "tod/plate/test_pattern.h"
+
+namespace todbench {
+namespace {
+
+constexpr std::size_t most_error_lines = 100;
+/// Within the frames that are averaged for the registration, when slow filters have settled.
+constexpr std::size_t picture_frame = 30;
+
+/// Everything is simulated: what may be left out for the sensor alone may matter behind a filter.
+Result<ExperimentInputs> full_inputs(const LoadedPlan& loaded) {
+  const Plan& plan = loaded.plan();
+  auto accuracy = accuracy_of(plan);
+  if (!accuracy) return tl::unexpected(accuracy.error());
+  ExperimentInputs inputs;
+  inputs.plates = loaded.plates();
+  inputs.observer = loaded.observer();
+  inputs.motion = plan.simulation.motion;
+  inputs.effects = full_plan(loaded.sensor(), plan.simulation.skip, plan.simulation.force, inputs.motion);
+  inputs.sensor = as_planned(loaded.sensor(), inputs.effects);
+  inputs.accuracy = *accuracy;
+  return inputs;
+}
+
+int longest_memory(const std::vector<EnhancementPackage>& packages) {
+  int longest = 0;
+  for (const auto& package : packages) {
+    int sum = 0;  // what one stage remembers the next remembers again
+    for (const auto& stage : made_stages(package, {})) sum += stage->memory_frames();
+    longest = std::max(longest, sum);
+  }
+  return longest;
+}
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Where the plate is and which contrast it has is found in the pictures of the camera itself, also when a package has
+/// a scale of its own: what is handed out changes with the target, and back when its answers are asked for.
+class WatchedTarget final : public Target {
+ public:
+  WatchedTarget(std::unique_ptr<Target> target, ProcessingRecord& record)
+      : target_(std::move(target)), record_(record) {}
+  [[nodiscard]] const TargetCapabilities& capabilities() const override { return target_->capabilities(); }
+  [[nodiscard]] Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) override {
+    record_.handed_out = false;
+    return target_->present(state, std::move(stop));
+  }
+
+ private:
+  std::unique_ptr<Target> target_;
+  ProcessingRecord& record_;
+};
+
+/// One way through the chain: into `result`, its error included.
+void run_one(const LoadedPlan& loaded, const ExperimentInputs& inputs, const EnhancementPackage* package,
+             int settle_frames, const EnhancementOptions& options, PackageResult& result, std::stop_token stop) {
+  const Plan& plan = loaded.plan();
+  auto set_up = simulated_set_up(plan, inputs, {}, stop);
+  if (!set_up) {
+    result.error = set_up.error();
+    return;
+  }
+  set_up->options.frames_after_change = settle_frames;
+  set_up->options.integrity.reject_frozen = false;
+  ProcessingRecord record;
+  std::vector<std::unique_ptr<ChainStage>> stages;
+  if (package != nullptr) {
+    stages = made_stages(*package, [&result](std::string_view line) {
+      if (result.error_lines.size() < most_error_lines) result.error_lines.emplace_back(line);
+    });
+  }
+  const auto camera = processed_source(std::move(set_up->bench.camera), std::move(stages), picture_frame, record);
+  TemplateObserver observer(inputs.observer, triangle_alternatives());
+  MeasurementListener listener;
+  listener.on_progress = options.on_progress;
+  WatchedTarget target(std::move(set_up->bench.target), record);
+  listener.on_presentation = [&](const Presentation&) { record.handed_out = true; };
+  listener.on_trial = [&](const Trial& trial) { result.trials.push_back(trial); };
+  const auto measured = measure(*camera, target, observer, *set_up->schedule, set_up->options, *set_up->bench.host,
+                                listener, std::move(stop));
+  if (!measured)
+    result.error = measured.error();
+  else
+    result.error = measured->ended_by;
+  result.frame_ms = median_of(record.frame_ms);
+  result.frames = record.frame_ms.size();
+  result.clipped_pixels = record.clipped;
+  result.picture = record.picture;
+  if (result.trials.empty()) return;
+  if (auto curve = tod_curve(result.trials, fit_options(plan))) {
+    result.curve = std::move(*curve);
+    result.curve.sensor = inputs.sensor.name;
+    result.curve.observer = inputs.observer.name;
+  } else if (!result.error) {
+    result.error = curve.error();
+  }
+}
+
+/// Counts by size of the trials at one contrast, but for one group of presentations.
+std::optional<double> ln_threshold(std::span<const Trial> trials, double set_delta_t_k,
+                                   const std::function<bool(std::int64_t presentation)>& included, FitOptions options) {
+  std::map<double, Level> levels;
+  for (const Trial& trial : trials) {
+    if (!same_contrast(trial.set_delta_t_k, set_delta_t_k) || !included(trial.presentation)) continue;
+    Level& level = levels[trial.size_mrad];
+    level.size = trial.size_mrad;
+    level.total += 1;
+    level.correct += trial.correct() ? 1 : 0;
+  }
+  std::vector<Level> list;
+  for (const auto& [size, level] : levels) list.push_back(level);
+  options.with_posterior = false;
+  options.graded = false;
+  const auto fit = fit_psychometric(list, options);
+  if (!fit || !fit->threshold || !(*fit->threshold > 0)) return std::nullopt;
+  return std::log(*fit->threshold);
+}
+
+/// Of the presentations at one contrast that both runs have: which group each belongs to, in turn.
+std::map<std::int64_t, std::size_t> groups_of(std::span<const Trial> with, std::span<const Trial> without,
+                                              double set_delta_t_k) {
+  constexpr std::size_t most_groups = 20;
+  std::set<std::int64_t> a, common;
+  for (const Trial& trial : with) {
+    if (same_contrast(trial.set_delta_t_k, set_delta_t_k)) a.insert(trial.presentation);
+  }
+  for (const Trial& trial : without) {
+    if (a.contains(trial.presentation)) common.insert(trial.presentation);
+  }
+  const std::size_t count = std::min(most_groups, common.size());
+  std::map<std::int64_t, std::size_t> groups;
+  std::size_t next = 0;
+  for (const auto presentation : common) groups[presentation] = next++ % count;
+  return groups;
+}
+
+PairedRatio ratio_at(std::span<const Trial> with, std::span<const Trial> without, double set_delta_t_k,
+                     const FitOptions& options) {
+  PairedRatio ratio{.set_delta_t_k = set_delta_t_k, .ratio = {}, .ci95 = {}};
+  const auto groups = groups_of(with, without, set_delta_t_k);
+  std::size_t count = 0;
+  for (const auto& [presentation, group] : groups) count = std::max(count, group + 1);
+  // ln of S75 without over S75 with; `left_out` beyond the last group leaves none out.
+  const auto ln_ratio = [&](std::size_t left_out) -> std::optional<double> {
+    const auto included = [&](std::int64_t presentation) {
+      const auto found = groups.find(presentation);
+      return found != groups.end() && found->second != left_out;
+    };
+    const auto a = ln_threshold(with, set_delta_t_k, included, options);
+    const auto b = ln_threshold(without, set_delta_t_k, included, options);
+    if (!a || !b) return std::nullopt;
+    return *b - *a;
+  };
+  const auto whole = ln_ratio(count);
+  if (!whole) return ratio;
+  ratio.ratio = std::exp(*whole);
+  std::vector<double> values;
+  for (std::size_t group = 0; group < count; ++group) {
+    const auto value = ln_ratio(group);
+    if (!value) return ratio;
+    values.push_back(*value);
+  }
+  if (values.size() < 4) return ratio;
+  const double n = static_cast<double>(values.size()), mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  double squares = 0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  const double half = boost::math::quantile(boost::math::students_t(n - 1), 0.975) * std::sqrt((n - 1) / n * squares);
+  ratio.ci95 = {std::exp(*whole - half), std::exp(*whole + half)};
+  return ratio;
+}
+
+}  // namespace
+
+std::vector<PairedRatio> paired_ratios(std::span<const Trial> with, std::span<const Trial> without,
+                                       const FitOptions& options) {
+  std::vector<double> contrasts;
+  for (const Trial& trial : without) {
+    const bool known = std::any_of(contrasts.begin(), contrasts.end(),
+                                   [&](double contrast) { return same_contrast(contrast, trial.set_delta_t_k); });
+    if (!known) contrasts.push_back(trial.set_delta_t_k);
+  }
+  std::sort(contrasts.begin(), contrasts.end(), std::greater<>());
+  std::vector<PairedRatio> ratios;
+  for (const double contrast : contrasts) ratios.push_back(ratio_at(with, without, contrast, options));
+  return ratios;
+}
+
+Result<Enhancement> compare_packages(const LoadedPlan& loaded, const std::vector<EnhancementPackage>& packages,
+                                     const EnhancementOptions& options, std::stop_token stop) {
+  const Plan& plan = loaded.plan();
+  if (plan.schedule.kind == ScheduleKind::adaptive)
+    return fail(ErrorCode::invalid_input,
+                "an adaptive schedule shows each package other frames: [schedule] kind must be 'constant'");
+  if (plan.fit.estimator == FitEstimator::twin_shape)
+    return fail(ErrorCode::invalid_input,
+                "the functions of the sensor are not those behind a package: [fit] estimator must be 'weibull'");
+  const auto inputs = full_inputs(loaded);
+  if (!inputs) return tl::unexpected(inputs.error());
+  if (auto fits = check_simulated_geometry(plan, *inputs); !fits) return tl::unexpected(fits.error());
+  Enhancement enhancement;
+  enhancement.settle_frames = longest_memory(packages);
+  for (std::size_t i = 0; i <= packages.size() && !stop.stop_requested(); ++i) {
+    const EnhancementPackage* package = i == 0 ? nullptr : &packages[i - 1];
+    PackageResult result;
+    result.name = package == nullptr ? "none" : package->name;
+    if (options.on_package) options.on_package(result.name);
+    run_one(loaded, *inputs, package, enhancement.settle_frames, options, result, stop);
+    if (package == nullptr && result.error) return tl::unexpected(*result.error);
+    if (package != nullptr)
+      result.ratios = paired_ratios(result.trials, enhancement.results.front().trials, fit_options(plan));
+    enhancement.results.push_back(std::move(result));
+  }
+  if (stop.stop_requested()) return fail(ErrorCode::interrupted, "interrupted");
+  return enhancement;
+}
+
+}  // namespace todbench

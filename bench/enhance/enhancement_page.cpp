@@ -1,0 +1,132 @@
+#include "bench/enhance/enhancement_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "bench/report/number_format.h"
+#include "bench/report/report_pieces.h"
+#include "bench/report/tod_figures.h"
+#include "bench/session/build_info.h"
+#include "tod/psychometric/acuity.h"
+
+namespace todbench {
+namespace {
+
+Section ratios_section(const Enhancement& enhancement) {
+  Table table{.caption = "Acuity with the package over acuity without, paired 95 % intervals",
+              .header = {"Package", "Contrast set (K)", "Acuity (1/mrad), 95 %", "Ratio, 95 %"},
+              .rows = {}};
+  for (const auto& result : enhancement.results) {
+    for (const auto& point : result.curve.points) {
+      const auto ratio = std::find_if(result.ratios.begin(), result.ratios.end(), [&](const auto& r) {
+        return same_contrast(r.set_delta_t_k, point.set_delta_t_k);
+      });
+      const bool any = ratio != result.ratios.end() && ratio->ratio;
+      table.rows.push_back(
+          {plain(result.name), plain(stated(point.set_delta_t_k)),
+           interval_or_missing(acuity_per_mrad(point.fit), acuity_interval(point.fit.ci95), "no threshold"),
+           any ? interval_or_missing(ratio->ratio, ratio->ci95, "no threshold")
+               : (result.ratios.empty() ? missing("the reference") : missing("a threshold is missing"))});
+    }
+  }
+  return {"Acuity and ratio", {std::move(table)}};
+}
+
+Section curves_section(const Enhancement& enhancement) {
+  FigurePairs figures;
+  const auto& none = enhancement.results.front();
+  for (std::size_t i = 1; i < enhancement.results.size(); ++i) {
+    const auto& result = enhancement.results[i];
+    if (result.curve.points.empty()) continue;
+    Plot plot = tod_figure({none.name, &none.curve}, {result.name, &result.curve}, {});
+    plot.id = fmt::format("curve-{}", i);
+    plot.width = 430;
+    figures.figures.push_back({drawn(plot), "none and " + result.name});
+  }
+  return {"TOD curves", {std::move(figures)}};
+}
+
+Section cost_section(const Enhancement& enhancement, double frame_rate_hz) {
+  Table table{.caption = "What the packages cost",
+              .header = {"Package", "Frames", "Bench time at the sensor's rate (s)", "Stages, median (ms a frame)",
+                         "Pixels cut off", "Ended by"},
+              .rows = {}};
+  for (const auto& result : enhancement.results) {
+    table.rows.push_back({plain(result.name), plain(std::to_string(result.frames)),
+                          frame_rate_hz > 0 ? plain(significant(static_cast<double>(result.frames) / frame_rate_hz, 3))
+                                            : missing("no frame rate"),
+                          plain(significant(result.frame_ms, 3)), plain(std::to_string(result.clipped_pixels)),
+                          result.error ? badge(result.error->message, Mood::bad) : plain("its end")});
+  }
+  return {"Time", {std::move(table)}};
+}
+
+Section record_section(const LoadedPlan& loaded, const std::vector<EnhancementPackage>& packages,
+                       const Enhancement& enhancement) {
+  ValueTable values{.caption = "Where the numbers come from", .values = {}};
+  values.values = {{"Program", plain("todbench " + std::string(build_info().version) + " (" +
+                                     std::string(build_info().commit) + ")")},
+                   {"Plan", plain(loaded.plan().name)},
+                   {"Sensor", plain(loaded.sensor().name)},
+                   {"Observer", plain(loaded.observer().name)},
+                   {"Seed", plain(std::to_string(loaded.plan().seed))},
+                   {"Exposures left out after a change", plain(std::to_string(enhancement.settle_frames))}};
+  for (const auto& package : packages) {
+    values.values.push_back({package.name, plain((package.description.empty() ? "" : package.description + "; ") +
+                                                 "file SHA-256 " + package.sha256)});
+    for (const auto& record : package.provenance) values.values.push_back({package.name, plain(record)});
+  }
+  return {"Record", {std::move(values)}};
+}
+
+/// Value below which this share of the pixels lies.
+double quantile(const cv::Mat1w& picture, double share) {
+  std::vector<std::uint16_t> values(picture.begin(), picture.end());
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+}  // namespace
+
+Document enhancement_page(const LoadedPlan& loaded, const std::vector<EnhancementPackage>& packages,
+                          const Enhancement& enhancement) {
+  Document document{.title = "Enhancement " + loaded.plan().name,
+                    .heading = "Enhancement under test",
+                    .subtitle = fmt::format("{} packages behind {}, judged by {}", packages.size(),
+                                            loaded.sensor().name, loaded.observer().name),
+                    .page_label = loaded.plan().name,
+                    .opening = {},
+                    .sections = {}};
+  document.opening.emplace_back(Paragraph{
+      plain("Every package had the same exposures of the simulated sensor. Their pictures are in pictures.png, in the "
+            "order of the tables. The place of the plate and its contrast were found in the pictures of the sensor "
+            "itself.")});
+  document.sections = {ratios_section(enhancement), curves_section(enhancement),
+                       cost_section(enhancement, loaded.sensor().frame_rate_hz),
+                       record_section(loaded, packages, enhancement)};
+  return document;
+}
+
+cv::Mat1b side_by_side(const Enhancement& enhancement) {
+  constexpr int gap = 8;
+  std::vector<cv::Mat1w> pictures;
+  for (const auto& result : enhancement.results) {
+    if (!result.picture.empty()) pictures.push_back(result.picture);
+  }
+  if (pictures.empty()) return {};
+  const int rows = pictures.front().rows, columns = pictures.front().cols, count = static_cast<int>(pictures.size());
+  cv::Mat1b strip(rows, count * columns + (count - 1) * gap, std::uint8_t{255});
+  for (int i = 0; i < count; ++i) {
+    const cv::Mat1w& picture = pictures[static_cast<std::size_t>(i)];
+    const double low = quantile(picture, 0.001), high = std::max(quantile(picture, 0.999), low + 1);
+    cv::Mat1b shown;
+    picture.convertTo(shown, CV_8U, 255 / (high - low), -low * 255 / (high - low));
+    shown.copyTo(strip(cv::Rect(i * (columns + gap), 0, columns, rows)));
+  }
+  return strip;
+}
+
+}  // namespace todbench

@@ -1,0 +1,43 @@
+// An enhancement package: stages behind the camera, one after the other, as a file states them.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "acquisition/core/result.h"
+#include "sim_devices/module/picture_stage.h"
+
+namespace todbench {
+
+/// What a stage does. The numbers are those of its kind alone.
+struct StagePlan {
+  enum class Kind { recursive, sharpen, median, clahe, plateau, module } kind = Kind::recursive;
+  double share = 0.5;           ///< recursive
+  double amount = 1;            ///< sharpen
+  int size = 3;                 ///< median
+  double clip_limit = 2;        ///< clahe
+  int tiles = 8;                ///< clahe
+  double plateau_percent = 1;   ///< plateau
+  ModuleStageOptions module{};  ///< module
+};
+struct EnhancementPackage {
+  std::string name, description;
+  std::vector<StagePlan> stages;
+  std::string sha256;                   ///< of the file
+  std::vector<std::string> provenance;  ///< of its modules: command, version, hash of the files that it names
+};
+
+/// name, description, [[stage]] kind and its numbers; kind "module" with command, version, parameters, limit_ms,
+/// memory_mib, restart_frames, network, settle_frames. Commands run in the folder of the caller. `invalid_input`
+/// "FILE:LINE: ..." in one sentence.
+[[nodiscard]] Result<EnhancementPackage> read_package(const std::filesystem::path& file);
+
+/// The stages, ready for the first picture.
+[[nodiscard]] std::vector<std::unique_ptr<ChainStage>> made_stages(
+    const EnhancementPackage& package, const std::function<void(std::string_view line)>& on_error_line);
+
+}  // namespace todbench

@@ -1,0 +1,77 @@
+#include "bench/enhance/processed_source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace todbench {
+namespace {
+
+class ProcessedSource final : public FrameSource {
+ public:
+  ProcessedSource(std::unique_ptr<FrameSource> camera, std::vector<std::unique_ptr<ChainStage>> stages,
+                  std::size_t picture_frame, ProcessingRecord& record)
+      : camera_(std::move(camera)), stages_(std::move(stages)), picture_frame_(picture_frame), record_(record) {}
+
+  [[nodiscard]] const SourceInfo& info() const override { return camera_->info(); }
+  [[nodiscard]] Result<void> start() override { return camera_->start(); }
+  [[nodiscard]] Result<Frame> next(std::chrono::milliseconds timeout) override {
+    auto frame = camera_->next(timeout);
+    if (!frame || frame->status != FrameStatus::complete) return frame;
+    auto counts = processed(*frame);
+    if (!counts) return tl::unexpected(counts.error());
+    if (record_.frame_ms.size() == picture_frame_ + 1) record_.picture = counts->clone();
+    if (record_.handed_out) frame->counts = *counts;
+    return frame;
+  }
+  void stop() override { camera_->stop(); }
+  [[nodiscard]] Result<std::string> get(const std::string& feature) override { return camera_->get(feature); }
+  [[nodiscard]] Result<void> set(const std::string& feature, const std::string& value) override {
+    return camera_->set(feature, value);
+  }
+  [[nodiscard]] Result<void> correct_nonuniformity() override { return camera_->correct_nonuniformity(); }
+
+ private:
+  Result<cv::Mat1w> processed(const Frame& frame) {
+    const auto begin = std::chrono::steady_clock::now();
+    cv::Mat1w counts = frame.counts;
+    if (!stages_.empty()) {
+      cv::Mat1f picture;
+      frame.counts.convertTo(picture, CV_32F);
+      for (const auto& stage : stages_) {
+        auto answer = stage->process(picture);
+        if (!answer) return tl::unexpected(answer.error());
+        picture = *answer;
+      }
+      counts = counts_of(picture, frame.significant_bits);
+    }
+    record_.frame_ms.push_back(
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+    return counts;
+  }
+  cv::Mat1w counts_of(const cv::Mat1f& picture, int significant_bits) {
+    const float full = static_cast<float>((1 << significant_bits) - 1);
+    cv::Mat1w counts(picture.size());
+    std::transform(picture.begin(), picture.end(), counts.begin(), [&](float value) {
+      const float rounded = std::nearbyint(value);
+      if (rounded < 0 || rounded > full) ++record_.clipped;
+      return static_cast<std::uint16_t>(std::clamp(rounded, 0.0F, full));
+    });
+    return counts;
+  }
+
+  std::unique_ptr<FrameSource> camera_;
+  std::vector<std::unique_ptr<ChainStage>> stages_;
+  std::size_t picture_frame_;
+  ProcessingRecord& record_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> processed_source(std::unique_ptr<FrameSource> camera,
+                                              std::vector<std::unique_ptr<ChainStage>> stages,
+                                              std::size_t picture_frame, ProcessingRecord& record) {
+  return std::make_unique<ProcessedSource>(std::move(camera), std::move(stages), picture_frame, record);
+}
+
+}  // namespace todbench

@@ -1,0 +1,224 @@
+// Enhancement under test: what must not change anything does not, what is known comes out.
+#include "bench/enhance/enhancement.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <cmath>
+
+#include "acquisition/core/rng.h"
+#include "bench/enhance/enhancement_page.h"
+#include "bench/plan/plan.h"
+#include "bench/report/html.h"
+#include "tests/support/source_file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace todbench {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::TemporaryFolder;
+
+LoadedPlan small_plan(const std::string& contrasts, int phases, const std::string& more = "") {
+  const std::string text =
+      "name = \"small\"\n[target]\nkind = \"scene\"\ndistance_m = 2\nplates = [\"tcat-a\"]\n"
+      "mountings = [\"identity\"]\ndelta_t_k = [" +
+      contrasts + "]\n[simulation]\nsensor = \"sc2000\"\naccuracy = \"draft\"\nphases = " + std::to_string(phases) +
+      "\n" + more;
+  const auto plan = parse_plan({.origin = "small", .text = text}, ".");
+  EXPECT_TRUE(plan) << plan.error().message;
+  auto loaded = LoadedPlan::load(*plan);
+  EXPECT_TRUE(loaded) << loaded.error().message;
+  return *loaded;
+}
+
+EnhancementPackage package_of(std::vector<StagePlan> stages, const std::string& name = "package") {
+  EnhancementPackage package;
+  package.name = name;
+  package.stages = std::move(stages);
+  return package;
+}
+
+cv::Mat1f noise(cv::Size size, std::uint64_t index) {
+  cv::Mat1f picture(size);
+  RandomStream(3, "stages").sub(index).fill_normal({picture.ptr<float>(), picture.total()});
+  return picture;
+}
+
+TEST(ChainStages, LeaveAPictureAsItIsAtTheirNeutralValues) {
+  const cv::Mat1f picture = noise({40, 30}, 1);
+  for (const auto& stage : {recursive_filter(1), sharpening(0)}) {
+    (void)stage->process(noise({40, 30}, 2)).value();
+    EXPECT_EQ(cv::norm(stage->process(picture).value(), picture, cv::NORM_INF), 0);
+    EXPECT_EQ(stage->memory_frames(), 0);
+  }
+  const cv::Mat1f flat(30, 40, 7.0F);
+  for (const auto& stage : {sharpening(2), median_filter(3), median_filter(5), clahe(2, 4), plateau_equalisation(1)})
+    EXPECT_NEAR(cv::norm(stage->process(flat).value(), flat, cv::NORM_INF), 0, 1e-5);
+}
+
+TEST(ChainStages, OfRecursionLeaveTheVarianceOfTheirClosedForm) {
+  const double share = 0.25;
+  const auto stage = recursive_filter(share);
+  cv::Mat1f answer;
+  for (int i = 0; i <= stage->memory_frames(); ++i)
+    answer = stage->process(noise({320, 240}, static_cast<std::uint64_t>(i))).value();
+
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(answer, mean, deviation);
+  // The variance of so many independent values has a relative standard error of sqrt(2 / 76800) = 0.5 %.
+  EXPECT_NEAR(deviation[0] * deviation[0] / (share / (2 - share)), 1, 0.02);
+  EXPECT_EQ(stage->memory_frames(), 25);  // 0.75^25 = 0.00075
+}
+
+TEST(ChainStages, OfEqualisationKeepOrderAndRange) {
+  const cv::Mat1f picture = 300 + noise({64, 48}, 4);
+  double low = 0, high = 0, new_low = 0, new_high = 0;
+  cv::minMaxLoc(picture, &low, &high);
+  const cv::Mat1f answer = plateau_equalisation(5)->process(picture).value();
+
+  cv::minMaxLoc(answer, &new_low, &new_high);
+  EXPECT_GE(new_low, low);
+  EXPECT_LE(new_high, high);
+  for (int i = 1; i < 500; ++i) {
+    const float a = *(picture.begin() + i), b = *(picture.begin() + i - 1);
+    const float new_a = *(answer.begin() + i), new_b = *(answer.begin() + i - 1);
+    EXPECT_TRUE(a == b || (a < b ? new_a <= new_b : new_a >= new_b));
+  }
+  // Without a limit by class the answer is uniform: half of it below the middle, within sqrt(1 / 4 / 3072) = 0.9 %.
+  const cv::Mat1f uniform = plateau_equalisation(100)->process(picture).value();
+  const double middle = (low + high) / 2;
+  EXPECT_NEAR(cv::countNonZero(uniform < middle) / 3072.0, 0.5, 0.03);
+}
+
+TEST(Enhancement, OfNeutralStagesChangesNoAnswer) {
+  const auto plan = small_plan("16.9", 2);
+  StagePlan all{.kind = StagePlan::Kind::recursive, .share = 1}, none{.kind = StagePlan::Kind::sharpen, .amount = 0};
+
+  const auto found = compare_packages(plan, {package_of({all, none})}, {}, {});
+
+  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_EQ(found->results.size(), 2u);
+  ASSERT_FALSE(found->results[1].error) << found->results[1].error->message;
+  EXPECT_GT(found->results[0].trials.size(), 10u);
+  ASSERT_EQ(found->results[0].trials.size(), found->results[1].trials.size());
+  for (std::size_t i = 0; i < found->results[0].trials.size(); ++i)
+    EXPECT_EQ(found->results[0].trials[i].scores, found->results[1].trials[i].scores);
+  for (const auto& ratio : found->results[1].ratios) {
+    EXPECT_EQ(ratio.ratio.value_or(1), 1);
+  }
+}
+
+TEST(Enhancement, ByARecursiveFilterIsThatOfLessNoise) {
+  // The noise that a share of a third leaves has the standard deviation sqrt(1/5) = 0.447.
+  const auto plan = small_plan("0.6", 8);
+  StagePlan third{.kind = StagePlan::Kind::recursive, .share = 1.0 / 3};
+
+  const auto found = compare_packages(plan, {package_of({third})}, {}, {});
+
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(found->settle_frames, 18);
+  ASSERT_EQ(found->results[1].ratios.size(), 1u);
+  const auto& ratio = found->results[1].ratios[0];
+  ASSERT_TRUE(ratio.ratio && ratio.ci95.low);
+  EXPECT_GT(*ratio.ci95.low, 1) << "less noise, better acuity";
+
+  PlanParts parts = plan.parts();
+  parts.sensor.netd_k *= std::sqrt(0.2);
+  const auto quiet = compare_packages(LoadedPlan::of(plan.plan(), parts).value(), {}, {}, {});
+  ASSERT_TRUE(quiet) << quiet.error().message;
+  const auto &filtered_fit = found->results[1].curve.points.at(0).fit,
+             &quiet_fit = quiet->results[0].curve.points.at(0).fit;
+  ASSERT_TRUE(filtered_fit.threshold && quiet_fit.threshold);
+  const double se = std::hypot(filtered_fit.se_ln_threshold.value(), quiet_fit.se_ln_threshold.value());
+  EXPECT_NEAR(std::log(*filtered_fit.threshold / *quiet_fit.threshold), 0, 4 * se);
+}
+
+TEST(Enhancement, KeepsTheTrialsOfAPackageThatFailsAndGoesOn) {
+  ::signal(SIGPIPE, SIG_IGN);
+  const auto plan = small_plan("16.9", 2);
+  // Registration takes 32 frames, the contrast 16, every presentation one: it ends with the second.
+  StagePlan module{.kind = StagePlan::Kind::module};
+  module.module.process.command = TODBENCH_MODULE_EXAMPLE " ends 49";
+  module.module.process.limit = std::chrono::seconds(60);
+  StagePlan dead{.kind = StagePlan::Kind::module};
+  dead.module.process.command = TODBENCH_MODULE_EXAMPLE " crash";
+  StagePlan restarted{.kind = StagePlan::Kind::module};
+  restarted.module.process.command = TODBENCH_MODULE_EXAMPLE " identity";
+  restarted.module.process.limit = std::chrono::seconds(60);
+  restarted.module.restart_frames = 20;
+
+  const auto found =
+      compare_packages(plan, {package_of({module}), package_of({dead}), package_of({restarted})}, {}, {});
+
+  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_EQ(found->results.size(), 4u);
+  const auto& [none, ended, crashed, whole] =
+      std::tie(found->results[0], found->results[1], found->results[2], found->results[3]);
+  ASSERT_TRUE(ended.error && crashed.error);
+  EXPECT_EQ(ended.error->code, ErrorCode::disconnected);
+  EXPECT_GT(ended.trials.size(), 0u);
+  EXPECT_LT(ended.trials.size(), none.trials.size());
+  EXPECT_EQ(crashed.error->code, ErrorCode::disconnected);
+  EXPECT_THAT(crashed.error_lines, ::testing::Contains("the licence has expired"));
+  EXPECT_FALSE(whole.error);
+  ASSERT_EQ(whole.trials.size(), none.trials.size());
+  for (std::size_t i = 0; i < none.trials.size(); ++i) EXPECT_EQ(whole.trials[i].scores, none.trials[i].scores);
+  EXPECT_THAT(render_html(enhancement_page(plan, {}, *found)), HasSubstr("the module ended"));
+  EXPECT_EQ(side_by_side(*found).rows, 240);
+}
+
+TEST(Enhancement, RefusesPlansThatShowEachPackageOtherFrames) {
+  const auto found = compare_packages(small_plan("16.9", 2, "[schedule]\nkind = \"adaptive\"\n"), {}, {}, {});
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().code, ErrorCode::invalid_input);
+}
+
+TEST(PairedRatios, OfTheSameTrialsAreOneWithoutWidth) {
+  std::vector<Trial> trials;
+  for (int presentation = 0; presentation < 12; ++presentation) {
+    for (int size = 1; size <= 6; ++size) {
+      Trial trial;
+      trial.presentation = presentation;
+      trial.set_delta_t_k = 2;
+      trial.size_mrad = size;
+      trial.answer = (presentation * 7 + size * 3) % 8 < size + 1 ? Apex::up : Apex::down;
+      trials.push_back(trial);
+    }
+  }
+  auto better = trials;
+  for (auto& trial : better) trial.size_mrad /= 1.25;
+
+  const auto same = paired_ratios(trials, trials, {}), ratio = paired_ratios(better, trials, {});
+
+  ASSERT_TRUE(same.size() == 1 && same[0].ratio && same[0].ci95.low);
+  EXPECT_EQ(*same[0].ratio, 1);
+  EXPECT_EQ(*same[0].ci95.high - *same[0].ci95.low, 0);
+  // Sizes in the same proportion at every answer: the ratio is exact and so is every group's.
+  EXPECT_NEAR(ratio[0].ratio.value(), 1.25, 1e-6);
+  EXPECT_NEAR(ratio[0].ci95.low.value(), 1.25, 1e-4);
+}
+
+TEST(PackageFile, IsRefusedInASentence) {
+  const TemporaryFolder folder;
+  const auto refusal = [&](const std::string& text) {
+    folder.write("p.toml", text);
+    const auto package = read_package(folder.path() / "p.toml");
+    return package ? std::string("taken") : package.error().message;
+  };
+  EXPECT_THAT(refusal(""), HasSubstr("no [[stage]]"));
+  EXPECT_THAT(refusal("[[stage]]\nkind = \"blur\"\n"), HasSubstr("kind"));
+  EXPECT_THAT(refusal("[[stage]]\nkind = \"recursive\"\nshare = 0\n"), HasSubstr("share"));
+  EXPECT_THAT(refusal("[[stage]]\nkind = \"median\"\nsize = 4\n"), HasSubstr("3 or 5"));
+  EXPECT_THAT(refusal("[[stage]]\nkind = \"median\"\nshare = 1\n"), HasSubstr("share"));
+  EXPECT_THAT(refusal("[[stage]]\nkind = \"module\"\n"), HasSubstr("command"));
+  EXPECT_EQ(refusal("[[stage]]\nkind = \"clahe\"\n[[stage]]\nkind = \"plateau\"\n"), "taken");
+  for (const char* name : {"recursive", "sharpen", "plateau", "module"}) {
+    const auto package = read_package(source_file(std::string("docs/examples/packages/") + name + ".toml"));
+    EXPECT_TRUE(package) << package.error().message;
+  }
+}
+
+}  // namespace
+}  // namespace todbench
