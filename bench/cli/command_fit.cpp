@@ -1,10 +1,14 @@
 // todbench fit
+#include <array>
 #include <memory>
 
 #include "bench/cli/commands.h"
 #include "bench/cli/findings.h"
 #include "bench/judgement/verdict.h"
+#include "bench/report/svg.h"
+#include "bench/report/tod_figures.h"
 #include "bench/session/trials_csv.h"
+#include "bench/text/files.h"
 #include "bench/text/text.h"
 #include "tod/adequacy/adequacy.h"
 
@@ -12,7 +16,7 @@ namespace todbench {
 namespace {
 
 struct FitArguments {
-  std::string file, lapse = "0", form = "size";
+  std::string file, lapse = "0", form = "size", svg;
 };
 
 Result<FitOptions> options_of(const FitArguments& arguments) {
@@ -46,6 +50,19 @@ void print(const Console& console, const PsychometricFit& fit) {
   console.table({"quantity", "value", ""}, rows);
 }
 
+/// Proportions and the fitted function as a file of its own.
+Result<void> write_svg(const FitArguments& arguments, const std::vector<Level>& levels, const PsychometricFit& fit,
+                       PsychometricForm form) {
+  TodPoint point;
+  point.levels = levels;
+  point.fit = fit;
+  Plot plot = psychometric_figure("fit", {"answers", &point}, {"", nullptr}, form);
+  plot.x.label = "Size";
+  const auto drawing = drawn(plot);
+  if (!drawing) return fail("--svg", drawing.error());
+  return write_file_atomically(arguments.svg, svg_document(std::array{*drawing}));
+}
+
 int run_fit(Console& console, const FitArguments& arguments) {
   auto options = options_of(arguments);
   if (!options) return report_error(console, options.error());
@@ -53,6 +70,10 @@ int run_fit(Console& console, const FitArguments& arguments) {
   if (!levels) return report_error(console, levels.error());
   auto fit = fit_psychometric(*levels, *options);
   if (!fit) return report_error(console, with_context(arguments.file, fit.error()));
+  if (!arguments.svg.empty()) {
+    if (auto written = write_svg(arguments, *levels, *fit, options->form); !written)
+      return report_error(console, written.error());
+  }
   const Adequacy found = adequacy(*levels, *fit, *options);
   if (console.json()) {
     Json json = fit_json(*fit);
@@ -79,6 +100,7 @@ void add_fit_command(CLI::App& app, Program& program) {
   command->add_option("--form", arguments->form, "Weibull in size or in acuity")
       ->check(CLI::IsMember({"size", "acuity"}))
       ->capture_default_str();
+  command->add_option("--svg", arguments->svg, "writes answers and fitted function to this file");
   finish_command(*command, program, [arguments](Console& console) { return run_fit(console, *arguments); });
 }
 

@@ -1,18 +1,25 @@
 // todbench measure, todbench simulate, todbench replay, todbench demo
 #include <algorithm>
+#include <chrono>
+#include <functional>
 #include <memory>
+#include <optional>
 
 #include "bench/cli/commands.h"
 #include "bench/cli/findings.h"
 #include "bench/cli/key_options.h"
 #include "bench/cli/session_argument.h"
+#include "bench/cli/shown_run.h"
 #include "bench/cli/simulation_plan.h"
+#include "bench/cli/watch.h"
 #include "bench/judgement/demand_kinds.h"
 #include "bench/judgement/verdict_record.h"
 #include "bench/plan/resources.h"
 #include "bench/run/emulation.h"
 #include "bench/run/experiment.h"
 #include "bench/run/replay.h"
+#include "bench/run/terminal_operator.h"
+#include "bench/serve/live_run.h"
 #include "bench/session/measures_record.h"
 #include "bench/session/provenance.h"
 #include "bench/session/uncertainty_record.h"
@@ -28,6 +35,17 @@ struct RunArguments {
   KeyOverrides keys{};
 };
 
+/// The page to watch a run from elsewhere; without an address there is none.
+struct ServeArguments {
+  std::string address;
+  bool network = false;
+};
+
+struct MeasureArguments {
+  RunArguments run{};
+  ServeArguments serve{};
+};
+
 struct SimulateArguments {
   RunArguments run;
   SimulationOverrides overrides;
@@ -37,12 +55,6 @@ ExperimentOptions folder_of(const RunArguments& arguments, const Plan& plan) {
   if (arguments.out.empty()) return {.folder = session_folder_name(plan.name), .existing = ExistingFolder::number};
   return {.folder = arguments.out,
           .existing = arguments.overwrite ? ExistingFolder::overwrite : ExistingFolder::refuse};
-}
-
-ExperimentListener listener_of(Console& console) {
-  return {.on_phase = [&console](std::string_view phase) { console.phase(phase); },
-          .on_progress = [&console](std::size_t done, std::size_t planned) { console.progress(done, planned); },
-          .on_note = [&console](std::string_view sentence) { console.note(sentence); }};
 }
 
 void print_curve(const Console& console, const TodCurve& curve) {
@@ -170,7 +182,48 @@ Result<Plan> with_options(Plan plan, const RunArguments& arguments, const Progra
   return plan;
 }
 
-int run_measure(Console& console, const RunArguments& arguments, const Program& program) {
+using Measure = std::function<Result<ExperimentOutcome>(const ExperimentOptions&, const ExperimentListener&)>;
+
+/// What the operator is asked at the terminal stands on the page meanwhile.
+AskOperator asking_on_page_too(LiveRun& live) {
+  const AskOperator at_terminal = ask_at_terminal();
+  return [&live, at_terminal](const OperatorRequest& request, const std::stop_token& stop) {
+    std::string steps;
+    for (const OperatorStep& step : request.steps) steps += (steps.empty() ? "" : "\n") + sentence(step);
+    live.ask(steps);
+    auto answer = at_terminal(request, stop);
+    live.ask("");
+    return answer;
+  };
+}
+
+/// A run that the terminal shows, and the page where one is asked for.
+Result<ExperimentOutcome> measure_shown(Console& console, const Plan& plan, ExperimentOptions options,
+                                        const ServeArguments& serve, const Measure& measure) {
+  if (serve.address.empty()) {
+    ShownRun shown(console, plan);
+    return measure(options, shown.listener());
+  }
+  const auto address = serve_address(serve.address, serve.network ? Reach::network : Reach::this_computer);
+  if (!address) return fail("--serve", address.error());
+  const auto server = LiveServer::start(*address);
+  if (!server) return fail("--serve", server.error());
+  console.warning("live page: " + (*server)->url());
+  ShownRun shown(console, plan, ShownRun::Curve::of_others_too);
+  LiveRun live(**server, *shown.curve(), plan);
+  options.host.ask_operator = asking_on_page_too(live);
+  auto outcome = measure(options, live.listening(shown.listener()));
+  const bool whole = outcome && !outcome->ended_by;
+  live.end(whole     ? "the run is over"
+           : outcome ? "ended early: " + outcome->ended_by->message
+                     : "ended: " + outcome.error().message,
+           whole ? std::optional(std::string(to_string(outcome->verdict.decision))) : std::nullopt);
+  (*server)->wait_until_seen(std::chrono::seconds(3));
+  return outcome;
+}
+
+int run_measure(Console& console, const MeasureArguments& asked, const Program& program) {
+  const RunArguments& arguments = asked.run;
   auto loaded = read_plan(arguments.plan);
   if (!loaded) return report_error(console, loaded.error());
   if (loaded->plan().camera.id.empty()) {
@@ -182,7 +235,10 @@ int run_measure(Console& console, const RunArguments& arguments, const Program& 
   if (!plan) return report_error(console, plan.error());
   loaded = loaded->with(*plan);
   if (!loaded) return report_error(console, in_terms_of_options(loaded.error()));
-  auto outcome = measure_plan(*loaded, folder_of(arguments, *plan), listener_of(console), program.stop->token());
+  auto outcome = measure_shown(console, *plan, folder_of(arguments, *plan), asked.serve,
+                               [&](const ExperimentOptions& options, const ExperimentListener& listener) {
+                                 return measure_plan(*loaded, options, listener, program.stop->token());
+                               });
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
   if (console.json()) {
@@ -208,8 +264,9 @@ int run_simulate(Console& console, SimulateArguments arguments, const Program& p
   if (program.common.seed_given) arguments.overrides.seed = program.common.seed;
   const auto loaded = simulation_plan(arguments.overrides, program.stop->token());
   if (!loaded) return report_error(console, loaded.error());
+  ShownRun shown(console, loaded->plan());
   auto outcome =
-      simulate_plan(*loaded, folder_of(arguments.run, loaded->plan()), listener_of(console), program.stop->token());
+      simulate_plan(*loaded, folder_of(arguments.run, loaded->plan()), shown.listener(), program.stop->token());
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
   if (console.json()) {
@@ -229,8 +286,9 @@ int run_simulate(Console& console, SimulateArguments arguments, const Program& p
   return finish(console, *outcome);
 }
 
-int run_demo(Console& console, const RunArguments& arguments, const std::string& camera, const Program& program) {
+int run_demo(Console& console, const MeasureArguments& asked, const std::string& camera, const Program& program) {
 #ifdef TODBENCH_WITH_ARAVIS
+  const RunArguments& arguments = asked.run;
   enter_emulation(camera);
   const auto shipped = load_plan("demo");
   if (!shipped) return report_error(console, shipped.error());
@@ -243,7 +301,10 @@ int run_demo(Console& console, const RunArguments& arguments, const std::string&
   if (!laboratory) return report_error(console, laboratory.error());
   *plan = with_laboratory(*plan, **laboratory);
   if (camera != "gige") plan->unit = "emulated " + camera + " camera";
-  auto outcome = measure_plan(*plan, folder_of(arguments, *plan), listener_of(console), program.stop->token());
+  auto outcome = measure_shown(console, *plan, folder_of(arguments, *plan), asked.serve,
+                               [&](const ExperimentOptions& options, const ExperimentListener& listener) {
+                                 return measure_plan(*plan, options, listener, program.stop->token());
+                               });
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
   if (console.json()) {
@@ -263,7 +324,7 @@ int run_demo(Console& console, const RunArguments& arguments, const std::string&
   }
   return finish(console, *outcome);
 #else
-  (void)arguments;
+  (void)asked;
   (void)camera;
   (void)program;
   return report_error(
@@ -279,6 +340,12 @@ bool names_a_plan(const std::string& word) {
 
 void add_folder_options(CLI::App& command, RunArguments& arguments) {
   command.add_option("--out", arguments.out, "session folder; default: session-TIME-NAME in the current folder");
+}
+
+void add_serve_options(CLI::App& command, ServeArguments& serve) {
+  command.add_option("--serve", serve.address,
+                     "HOST:PORT: a page to watch the run from a browser, at the address that is then printed");
+  command.add_flag("--serve-network", serve.network, "allows --serve an address that other computers reach");
 }
 
 struct ReplayArguments {
@@ -335,12 +402,24 @@ void add_replay_command(CLI::App& app, Program& program) {
 
 void add_measure_command(CLI::App& app, Program& program) {
   auto* command = app.add_subcommand("measure", "measures a TOD curve with the camera and target that the plan names");
-  auto a = std::make_shared<RunArguments>();
-  command->add_option("PLAN.toml", a->plan, "name or file")->required();
-  add_folder_options(*command, *a);
-  command->add_flag("--force", a->overwrite, "overwrite the session in an existing folder");
-  add_key_options(*command, OptionOf::measurements, a->keys);
-  finish_command(*command, program, [a, &program](Console& console) { return run_measure(console, *a, program); });
+  auto a = std::make_shared<MeasureArguments>();
+  auto* plan = command->add_option("PLAN.toml", a->run.plan, "name or file");
+  auto watched = std::make_shared<std::string>();
+  command
+      ->add_option(
+          "--watch", *watched,
+          "measures nothing: shows the curve of a session folder that another process is writing, until its end")
+      ->excludes(plan);
+  add_folder_options(*command, a->run);
+  command->add_flag("--force", a->run.overwrite, "overwrite the session in an existing folder");
+  add_serve_options(*command, a->serve);
+  add_key_options(*command, OptionOf::measurements, a->run.keys);
+  finish_command(*command, program, [a, plan, watched, &program](Console& console) {
+    if (!watched->empty()) return watch_session(console, *watched, program.stop->token());
+    if (plan->count() == 0)
+      return report_error(console, {ErrorCode::invalid_input, "measure: PLAN.toml is required (or --watch DIR)"});
+    return run_measure(console, *a, program);
+  });
 }
 
 void add_simulate_command(CLI::App& app, Program& program) {
@@ -376,11 +455,12 @@ void add_simulate_command(CLI::App& app, Program& program) {
 void add_demo_command(CLI::App& app, Program& program) {
   auto* command =
       app.add_subcommand("demo", "does the whole job on the emulated laboratory: measure, simulate, compare, report");
-  auto a = std::make_shared<RunArguments>();
+  auto a = std::make_shared<MeasureArguments>();
   auto camera = std::make_shared<std::string>(emulated_cameras().front());
-  add_folder_options(*command, *a);
-  command->add_flag("--force", a->overwrite, "overwrite the session in an existing folder");
-  add_key_options(*command, OptionOf::measurements, a->keys);
+  add_folder_options(*command, a->run);
+  command->add_flag("--force", a->run.overwrite, "overwrite the session in an existing folder");
+  add_serve_options(*command, a->serve);
+  add_key_options(*command, OptionOf::measurements, a->run.keys);
   command->add_option("--camera", *camera, "interface of the emulated camera")
       ->check(CLI::IsMember(emulated_cameras()))
       ->capture_default_str();

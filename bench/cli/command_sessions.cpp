@@ -1,19 +1,24 @@
 // todbench compare, todbench report, todbench verify
+#include <array>
 #include <memory>
 
 #include "bench/cli/commands.h"
 #include "bench/cli/findings.h"
 #include "bench/cli/session_argument.h"
 #include "bench/judgement/verdict.h"
+#include "bench/report/svg.h"
+#include "bench/report/tod_figures.h"
 #include "bench/run/comparison_forecast.h"
 #include "bench/run/rebuild_report.h"
+#include "bench/run/report_data.h"
 #include "bench/session/session_comparison.h"
+#include "bench/text/files.h"
 
 namespace todbench {
 namespace {
 
 struct CompareArguments {
-  std::string a, b;
+  std::string a, b, svg;
   double margin_percent = 0;
   Opening opening{};
 };
@@ -40,6 +45,13 @@ void print_comparison(const Console& console, const Comparison& comparison) {
                " %; verdict: " + std::string(to_string(comparison.verdict)));
 }
 
+/// Both curves in one figure, as a file of its own.
+Result<void> write_svg(const CompareArguments& arguments, const TodCurve& a, const TodCurve& b) {
+  const auto drawing = drawn(tod_figure({session_name(arguments.a), &a}, {session_name(arguments.b), &b}, {}));
+  if (!drawing) return fail("--svg", drawing.error());
+  return write_file_atomically(arguments.svg, svg_document(std::array{*drawing}));
+}
+
 int run_compare(Console& console, const CompareArguments& arguments) {
   const auto a = opened(console, arguments.a, arguments.opening);
   if (!a) return report_error(console, a.error());
@@ -48,6 +60,10 @@ int run_compare(Console& console, const CompareArguments& arguments) {
   const auto margin = arguments.margin_percent > 0 ? std::optional(arguments.margin_percent) : std::nullopt;
   const auto compared = compare_sessions(*a, *b, margin);
   if (!compared) return report_error(console, with_context(arguments.a + ", " + arguments.b, compared.error()));
+  if (!arguments.svg.empty()) {
+    if (auto written = write_svg(arguments, compared->a, compared->b); !written)
+      return report_error(console, written.error());
+  }
   const Comparison* comparison = &compared->comparison;
   const std::string outlook = comparison_forecast(compared->a, compared->b, *comparison).sentence;
   if (!outlook.empty()) console.note(outlook);
@@ -129,6 +145,7 @@ void add_compare_command(CLI::App& app, Program& program) {
       ->add_option("--margin-percent", a->margin_percent,
                    "equivalence margin; default: the smaller one of the two plans, or 10")
       ->check(number_in(0.1, 100));
+  command->add_option("--svg", a->svg, "writes both curves as a figure to this file");
   add_accept_changed(*command, a->opening.accept_changed);
   finish_command(*command, program, [a](Console& console) { return run_compare(console, *a); });
 }

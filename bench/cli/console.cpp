@@ -1,6 +1,7 @@
 #include "bench/cli/console.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -88,25 +89,68 @@ void Console::table(const TableRow& header, const std::vector<TableRow>& given) 
   for (const auto& row : rows) text(line(row));
 }
 
+void Console::waiting(std::string_view sentence) {
+  constexpr auto line_period = std::chrono::seconds(10);
+  if (options_.quiet) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (!terminal_) {
+    if (last_waiting_.time_since_epoch().count() != 0 && now - last_waiting_ < line_period) return;
+    last_waiting_ = now;
+    std::fputs((one_line(sentence) + "\n").c_str(), stderr);
+    return;
+  }
+  const std::size_t room = columns() - 1;
+  std::fputs(("\r\033[K" + one_line(sentence, room)).c_str(), stderr);
+  std::fflush(stderr);
+  bar_shown_ = true;
+}
+
+void Console::picture(const std::vector<std::string>& lines) {
+  if (audience() != Audience::terminal) return;
+  std::string text = "\r\033[K";
+  if (picture_lines_ > 0) text += fmt::format("\033[{}A", picture_lines_);
+  for (const std::string& line : lines) text += "\033[K" + valid_text(line) + "\n";
+  std::fputs(text.c_str(), stderr);
+  std::fflush(stderr);
+  picture_lines_ = lines.size();
+  bar_shown_ = false;
+  last_draw_ = {};  // the bar stood there
+}
+
+Console::Audience Console::audience() const {
+  if (options_.quiet) return Audience::nobody;
+  return terminal_ ? Audience::terminal : Audience::lines;
+}
+
+std::size_t Console::columns() const {
+  winsize size{};
+  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+  return known ? size.ws_col : 80;
+}
+
 void Console::note(std::string_view sentence) {
   if (options_.quiet) return;
   end_progress();
+  picture_lines_ = 0;
   std::fputs((one_line(sentence) + "\n").c_str(), stderr);
 }
 
 void Console::warning(std::string_view sentence) {
   end_progress();
+  picture_lines_ = 0;
   std::fputs((one_line(sentence) + "\n").c_str(), stderr);
 }
 
 void Console::error(std::string_view sentence) {
   end_progress();
+  picture_lines_ = 0;
   const std::string text = "todbench: " + one_line(sentence);
   std::fputs(((colour_ ? "\033[31m" + text + "\033[0m" : text) + "\n").c_str(), stderr);
 }
 
 void Console::phase(std::string_view name) {
   end_progress();
+  picture_lines_ = 0;
   phase_ = one_line(name);
   phase_start_ = std::chrono::steady_clock::now();
   last_draw_ = {};

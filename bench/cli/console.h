@@ -42,6 +42,15 @@ class Console {
   /// Begins a phase of work; progress() then draws a bar with the time left where standard error is a terminal.
   void phase(std::string_view name);
   void progress(std::size_t done, std::size_t planned);
+  /// What the run waits for: in place of the bar on a terminal, elsewhere a line now and again.
+  void waiting(std::string_view sentence);
+  /// Lines that are drawn over when they are shown again and nothing was said in between; terminals only.
+  void picture(const std::vector<std::string>& lines);
+  /// Notes and progress go to somebody: a terminal, or a file or pipe.
+  enum class Audience { nobody, terminal, lines };
+  [[nodiscard]] Audience audience() const;
+  /// Letters of a line of the terminal; 80 where it does not say.
+  [[nodiscard]] std::size_t columns() const;
   /// Removes the bar.
   void end_progress();
 
@@ -50,6 +59,8 @@ class Console {
   bool terminal_ = false;
   bool colour_ = false;
   bool bar_shown_ = false;
+  std::size_t picture_lines_ = 0;  ///< just above the cursor's line
+  std::chrono::steady_clock::time_point last_waiting_;
   std::string phase_;
   std::chrono::steady_clock::time_point phase_start_;
   std::chrono::steady_clock::time_point last_draw_;

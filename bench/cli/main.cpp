@@ -86,7 +86,13 @@ std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, co
   const auto all = app.get_subcommands({});
   const bool known =
       std::any_of(all.begin(), all.end(), [&](const CLI::App* command) { return command->get_name() == asked; });
-  if (words.empty()) return "no command was given (todbench --help lists them)";
+  if (words.empty()) {
+    return "no command was given. Three things to try:\n"
+           "  todbench demo             the whole job on an emulated laboratory, without hardware\n"
+           "  todbench devices          the cameras that are connected\n"
+           "  todbench simulate demo    a curve of the simulated sensor of the demonstration plan\n"
+           "todbench --help lists the commands, todbench COMMAND --help the options of one";
+  }
   if (asked.empty()) return one_line(error.what()) + " (todbench --help lists the commands)";
   if (!known) {
     return "unknown command '" + one_line(asked) + "'" + nearest_name_hint(asked, commands) +

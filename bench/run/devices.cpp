@@ -1,7 +1,5 @@
 #include "bench/run/devices.h"
 
-#include <iostream>
-
 #include "acquisition/core/camera_id.h"
 #include "acquisition/recording/recording_backend.h"
 #include "bench/plan/descriptions.h"
@@ -9,7 +7,7 @@
 #include "bench/plan/resources.h"
 #include "bench/run/bench_host.h"
 #include "bench/run/reconnecting_source.h"
-#include "tod/instruments/operator_terminal.h"
+#include "bench/run/terminal_operator.h"
 #include "tod/instruments/prompt_target.h"
 #include "tod/instruments/scpi_target.h"
 #ifdef TODBENCH_WITH_ARAVIS
@@ -77,8 +75,7 @@ class RemappedTarget final : public Target {
 
 Result<std::unique_ptr<Target>> open_target(const Plan& plan, std::stop_token stop, const AskOperator& ask_operator,
                                             const OnTargetWait& on_wait) {
-  if (plan.target.kind == TargetKind::prompt)
-    return prompt_target(ask_operator ? ask_operator : operator_at_terminal(std::cerr, descriptor_lines(0)));
+  if (plan.target.kind == TargetKind::prompt) return prompt_target(ask_operator ? ask_operator : ask_at_terminal());
   ScpiTargetOptions options;
   options.black_body = plan.target.black_body;
   options.stage = plan.target.stage;

@@ -124,7 +124,7 @@ TEST(FitJson, AColumnOfClustersWidensTheIntervalAndExplainsTheScatter) {
   folder.write("alone.csv", without);
 
   const Json clustered = one_object(todbench({"fit", "clusters.csv", "--json"}, {.folder = folder.path()}));
-  const Ended alone = todbench({"fit", "alone.csv", "--json"}, {.folder = folder.path()});
+  const Ended alone = todbench({"fit", "alone.csv", "--json", "--svg", "fit.svg"}, {.folder = folder.path()});
   const Json independent = one_object(alone);
 
   const auto width = [](const Json& json) { return json["ci95"][1].get<double>() - json["ci95"][0].get<double>(); };
@@ -132,6 +132,7 @@ TEST(FitJson, AColumnOfClustersWidensTheIntervalAndExplainsTheScatter) {
   EXPECT_THAT(clustered["adequacy"].dump(), ::testing::Not(::testing::HasSubstr("overdispersion")));
   EXPECT_THAT(independent["adequacy"].dump(), ::testing::HasSubstr("overdispersion"));
   EXPECT_EQ(alone.code, 3);
+  EXPECT_TRUE(std::filesystem::file_size(folder.path() / "fit.svg") > 0);
 }
 
 TEST(FitJson, ASlopeAtTheEndOfItsDomainIsToldAndAFunctionThatFallsIsUnfit) {

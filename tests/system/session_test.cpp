@@ -1,4 +1,6 @@
 // Sessions of simulated cameras: what is in them, that they repeat, what they pass and fail.
+#include <cmath>
+
 #include "bench/session/manifest.h"
 #include "bench/session/session_folder.h"
 #include "tests/support/source_file.h"
@@ -275,6 +277,33 @@ TEST_F(Sessions, AThresholdThatTheDataDoNotShowIsInconclusive) {
   EXPECT_TRUE(points[1]["s75_ci95_mrad"][0].is_null() || points[1]["s75_ci95_mrad"][1].is_null());
 }
 
+TEST_F(Sessions, WatchingASessionThatHasEndedShowsItsCurveAndItsVerdict) {
+  write("plan.toml", small_plan(8));
+  const Ended simulated = run({"simulate", "./plan.toml", "--out", "s", "--json"});
+  const std::string trials = content_of(at("s") / "trials.csv");
+
+  const Ended watched = run({"measure", "--watch", "s"});
+
+  EXPECT_EQ(watched.code, simulated.code);
+  // To three places, as the line shows it.
+  const double acuity = one_object(simulated)["points"][0]["acuity_per_mrad"];
+  EXPECT_THAT(watched.err, HasSubstr("16.9 K " + std::to_string(std::round(acuity * 1000) / 1000).substr(0, 5)));
+  EXPECT_THAT(watched.out, HasSubstr("verdict: pass"));
+  EXPECT_EQ(content_of(at("s") / "trials.csv"), trials);
+  EXPECT_EQ(run({"verify", "s"}).code, 0) << "nothing was changed";
+  expect_refused(run({"measure", "--watch", "none"}), 2, "none");
+  expect_refused(run({"measure", "plan.toml", "--watch", "s"}), 2, "--watch");
+  expect_refused(run({"measure"}), 2, "PLAN.toml is required");
+}
+
+TEST_F(Sessions, ThePageOfARunIsRefusedWhereOthersReachIt) {
+  for (const char* address : {"0.0.0.0:0", "127.0.0.1"}) {
+    write("plan.toml", small_plan(1));
+    expect_refused(run({"demo", "--serve", address, "--out", "s"}), 2, "--serve");
+    EXPECT_FALSE(std::filesystem::exists(at("s"))) << address;
+  }
+}
+
 TEST_F(Sessions, CompareTellsEquivalentDifferentAndUndecidedApart) {
   const std::string sensor = content_of(source_file("sim_devices/sensors/sc2000.toml"));
   std::string blurred = sensor;
@@ -285,11 +314,12 @@ TEST_F(Sessions, CompareTellsEquivalentDifferentAndUndecidedApart) {
   ASSERT_EQ(run({"simulate", "./plan.toml", "--out", "b", "--seed", "2"}).code, 0);
   ASSERT_EQ(run({"simulate", "./plan.toml", "--out", "c", "--sensor", "./blurred.toml"}).code, 0);
 
-  const Ended same = run({"compare", "a", "b", "--margin-percent", "60", "--json"});
+  const Ended same = run({"compare", "a", "b", "--margin-percent", "60", "--json", "--svg", "both.svg"});
   const Ended other = run({"compare", "a", "c", "--json"});
   const Ended open = run({"compare", "a", "b", "--margin-percent", "0.1", "--json"});
 
   EXPECT_EQ(same.code, 0) << same.out;
+  EXPECT_THAT(content_of(at("both.svg")), AllOf(HasSubstr("<svg"), HasSubstr("</svg>")));
   EXPECT_EQ(other.code, 1) << other.out;
   EXPECT_EQ(open.code, 3) << open.out;
   const Json json = one_object(other);

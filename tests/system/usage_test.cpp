@@ -33,10 +33,24 @@ TEST_P(WrongCommandLine, IsOneSentenceAndBeginsNothing) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
+TEST(Usage, WithoutACommandThreeThingsToTryAreCommandsThatThereAre) {
+  const Ended nothing = todbench({}, {});
+
+  EXPECT_EQ(nothing.code, 2);
+  EXPECT_EQ(nothing.out, "");
+  int tried = 0;
+  for (const std::string& line : lines_of(nothing.err)) {
+    if (!line.starts_with("  todbench ")) continue;
+    const std::string command = line.substr(11, line.find(' ', 11) - 11);
+    EXPECT_EQ(todbench({command, "--help"}, {}).code, 0) << command;
+    ++tried;
+  }
+  EXPECT_EQ(tried, 3);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     All, WrongCommandLine,
     ::testing::Values(
-        Misuse{"nothing", {}, "no command was given (todbench --help lists them)"},
         Misuse{"unknown_command", {"simulat"}, "unknown command 'simulat', did you mean 'simulate'?"},
         Misuse{"unknown_option", {"simulate", "--frce"}, "simulate: unknown option --frce, did you mean '--force'?"},
         Misuse{"control_characters", {"simulate", "--x\n\033[31m"}, "simulate: unknown option --x"},

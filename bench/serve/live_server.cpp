@@ -1,0 +1,152 @@
+#include "bench/serve/live_server.h"
+
+#include <fmt/format.h>
+#include <httplib.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <random>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include "bench/serve/live_page.h"
+
+namespace todbench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t server_threads = 4;
+constexpr int connection_timeout_s = 2;
+constexpr std::size_t longest_request = 1024;
+constexpr auto somebody_looks = std::chrono::seconds(5);
+
+/// Not of the experiment: nobody may guess it.
+std::string random_token() {
+  std::random_device device;
+  std::string token;
+  for (int i = 0; i < 4; ++i) token += fmt::format("{:08x}", device());
+  return token;
+}
+
+/// Nothing from elsewhere, in no frame of others, and the address with the token is not told to anybody.
+void guard(httplib::Response& response) {
+  response.set_header("Content-Security-Policy",
+                      "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
+                      "img-src 'self' data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
+  response.set_header("Referrer-Policy", "no-referrer");
+  response.set_header("X-Content-Type-Options", "nosniff");
+  response.set_header("Cache-Control", "no-store");
+}
+
+void answer(httplib::Response& response, std::string_view text, const char* type) {
+  guard(response);
+  if (text.empty()) {
+    response.status = 404;
+    return;
+  }
+  response.set_content(text.data(), text.size(), type);
+}
+
+}  // namespace
+
+struct LiveServer::Serving {
+  httplib::Server server;
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::shared_ptr<const LivePages> pages = std::make_shared<const LivePages>();
+  bool seen = false;
+  Clock::time_point last_asked{};
+  std::atomic<bool> ended = false;
+  std::thread thread;
+
+  [[nodiscard]] std::shared_ptr<const LivePages> now() {
+    const std::lock_guard lock(mutex);
+    return pages;
+  }
+  [[nodiscard]] std::shared_ptr<const LivePages> looked_at() {
+    std::shared_ptr<const LivePages> shown;
+    {
+      const std::lock_guard lock(mutex);
+      seen = true;
+      last_asked = Clock::now();
+      shown = pages;
+    }
+    changed.notify_all();
+    return shown;
+  }
+
+  void route(const std::string& token) {
+    server.new_task_queue = [] { return new httplib::ThreadPool(server_threads); };
+    server.set_read_timeout(connection_timeout_s);
+    server.set_write_timeout(connection_timeout_s);
+    server.set_keep_alive_timeout(connection_timeout_s);
+    server.set_payload_max_length(longest_request);
+    server.set_tcp_nodelay(true);
+    // Not SO_REUSEPORT, which the library sets: another program could listen on the same port.
+    server.set_socket_options([](socket_t socket) {
+      const int on = 1;
+      ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+    });
+    const auto at = [&token](const char* name) { return "/" + token + "/" + name; };
+    using Request = httplib::Request;
+    using Response = httplib::Response;
+    server.Get(at(""), [](const Request&, Response& r) { answer(r, live_html(), "text/html; charset=utf-8"); });
+    server.Get(at("live\\.css"), [](const Request&, Response& r) { answer(r, live_css(), "text/css; charset=utf-8"); });
+    server.Get(at("live\\.js"),
+               [](const Request&, Response& r) { answer(r, live_js(), "text/javascript; charset=utf-8"); });
+    server.Get(at("state\\.json"),
+               [this](const Request&, Response& r) { answer(r, looked_at()->state_json, "application/json"); });
+    server.Get(at("curve\\.svg"),
+               [this](const Request&, Response& r) { answer(r, now()->curve_svg, "image/svg+xml"); });
+    server.Get(at("picture\\.png"),
+               [this](const Request&, Response& r) { answer(r, now()->picture_png, "image/png"); });
+  }
+};
+
+LiveServer::LiveServer() : serving_(std::make_unique<Serving>()) {}
+
+Result<std::unique_ptr<LiveServer>> LiveServer::start(const ServeAddress& address) {
+  std::unique_ptr<LiveServer> out(new LiveServer);  // NOLINT: the constructor is private
+  const std::string token = random_token();
+  Serving& serving = *out->serving_;
+  serving.route(token);
+  const int port = address.port == 0 ? serving.server.bind_to_any_port(address.host)
+                   : serving.server.bind_to_port(address.host, address.port) ? address.port
+                                                                             : -1;
+  if (port <= 0) {
+    return fail(ErrorCode::io, fmt::format("{}:{} cannot be listened on: it is in use or not of this computer",
+                                           address.host, address.port));
+  }
+  const bool six = address.host.find(':') != std::string::npos;
+  out->url_ = fmt::format("http://{}:{}/{}/", six ? "[" + address.host + "]" : address.host, port, token);
+  serving.thread = std::thread([&serving] {
+    serving.server.listen_after_bind();
+    serving.ended = true;
+  });
+  // A server that does not run yet cannot be stopped.
+  while (!serving.server.is_running() && !serving.ended) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  return out;
+}
+
+LiveServer::~LiveServer() {
+  if (!serving_->thread.joinable()) return;
+  serving_->server.stop();
+  serving_->thread.join();
+}
+
+void LiveServer::show(std::shared_ptr<const LivePages> pages) {
+  const std::lock_guard lock(serving_->mutex);
+  serving_->pages = std::move(pages);
+  serving_->seen = false;
+}
+
+void LiveServer::wait_until_seen(std::chrono::milliseconds patience) {
+  std::unique_lock lock(serving_->mutex);
+  if (serving_->last_asked == Clock::time_point() || Clock::now() - serving_->last_asked > somebody_looks) return;
+  serving_->changed.wait_for(lock, patience, [this] { return serving_->seen; });
+}
+
+}  // namespace todbench
