@@ -57,8 +57,9 @@ BEGIN {
   may["bench/run"] = science " " devices " bench/text bench/plan bench/judgement bench/session bench/report"
   may["bench/studies"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
   may["bench/sweep"] = science " bench/text bench/plan bench/judgement bench/session bench/run"
+  may["bench/history"] = core " bench/text bench/session"
   may["bench/doctor"] = core " bench/text"
-  bench = "bench/text bench/plan bench/judgement bench/session bench/report bench/observer_fit bench/reference_set bench/run bench/studies bench/sweep"
+  bench = "bench/text bench/plan bench/judgement bench/session bench/report bench/observer_fit bench/reference_set bench/run bench/studies bench/sweep bench/history"
   may["bench/cli"] = science " acquisition/recording bench/doctor " bench
   may["bench/gui/presenters"] = science " " bench
   may["bench/gui/views"] = science " " bench " bench/gui/presenters"
@@ -71,7 +72,7 @@ BEGIN {
   home["^libusb"] = "^acquisition/(aravis|usb)/"
   home["^(Q[A-Z]|qcustomplot.h)"] = "^bench/gui/"
   home["^toml\\+\\+/"] = "^bench/(plan|sweep)/"
-  home["^sqlite3.h"] = "^bench/sweep/"
+  home["^sqlite3.h"] = "^bench/(history|sweep)/"
   home["^CLI/"] = "^bench/cli/"
   home["^libxml/"] = "^acquisition/description/"
   home["^tiffio.h"] = "^acquisition/recording/"
