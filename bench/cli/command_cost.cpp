@@ -8,6 +8,7 @@
 #include "bench/report/cost_figure.h"
 #include "bench/run/rebuild_report.h"
 #include "bench/session/cost_record.h"
+#include "bench/session/signature.h"
 #include "bench/studies/cost_study.h"
 #include "bench/text/files.h"
 
@@ -55,6 +56,7 @@ Result<Asked> plan_of(Console& console, const CostArguments& arguments) {
     if (!plan) return tl::unexpected(plan.error());
     return Asked{*std::move(plan)};
   }
+  if (auto open = require_unsigned(arguments.session); !open) return tl::unexpected(open.error());
   auto session = opened(console, arguments.session, arguments.opening);
   if (!session) return tl::unexpected(session.error());
   auto plan = LoadedPlan::of(std::move(session->plan), std::move(session->parts));
@@ -65,6 +67,7 @@ Result<Asked> plan_of(Console& console, const CostArguments& arguments) {
 /// cost.json and, from the folder as it then is, the report; the manifest follows both. The files may have been changed
 /// while the costs were measured.
 Result<void> into_session(const CostFrontier& frontier, const std::filesystem::path& folder, const Opening& opening) {
+  if (auto open = require_unsigned(folder); !open) return open;
   auto session = open_session(folder, opening);
   if (!session) return tl::unexpected(session.error());
   if (auto written = write_file_atomically(folder / "cost.json", to_page(cost_json(frontier))); !written)

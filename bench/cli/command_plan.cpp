@@ -5,6 +5,7 @@
 #include "bench/cli/simulation_plan.h"
 #include "bench/judgement/verdict.h"
 #include "bench/run/comparison_forecast.h"
+#include "bench/run/limit_forecast.h"
 #include "bench/run/prediction.h"
 
 namespace todbench {
@@ -31,6 +32,30 @@ void print_plan(const Console& console, const ExperimentInputs& inputs, const Pl
                     : ""));
 }
 
+Json outlook_json(const LimitOutlook& outlook) {
+  Json json{{"u_ln_acuity", json_number(outlook.u_ln_acuity)},
+            {"guard_band_ln", json_number(outlook.guard_band_ln)},
+            {"p_rejected", json_number(outlook.p_rejected)},
+            {"passes_95_from_per_mrad", json_number(outlook.passes_95_from_per_mrad)}};
+  if (outlook.fleet) {
+    json["consumer_risk"] = json_number(outlook.fleet->consumer_risk);
+    json["producer_risk"] = json_number(outlook.fleet->producer_risk);
+  }
+  return json;
+}
+
+Json limits_json(const std::vector<LimitForecast>& forecasts) {
+  Json limits = Json::array();
+  for (const LimitForecast& forecast : forecasts) {
+    limits.push_back({{"delta_t_k", forecast.delta_t_k},
+                      {"least_acuity_per_mrad", forecast.least_acuity_per_mrad},
+                      {"expected_acuity_per_mrad", json_number(forecast.expected_acuity_per_mrad)},
+                      {"planned", outlook_json(forecast.planned)},
+                      {"four_times_the_presentations", outlook_json(forecast.fourfold)}});
+  }
+  return limits;
+}
+
 int run_plan(Console& console, SimulationOverrides overrides, const Program& program) {
   if (program.common.seed_given) overrides.seed = program.common.seed;
   const auto loaded = simulation_plan(overrides, program.stop->token());
@@ -45,10 +70,15 @@ int run_plan(Console& console, SimulationOverrides overrides, const Program& pro
     if (timed.error().code == ErrorCode::interrupted) return report_error(console, timed.error());
     prediction->warnings.push_back("no predicted time: " + timed.error().message);
   }
+  const auto limits = limit_forecasts(plan, *prediction);
+  if (!limits) return report_error(console, limits.error());
   if (console.json()) {
-    console.object(plan_json(inputs->effects, prediction->figures));
+    Json json = plan_json(inputs->effects, prediction->figures);
+    if (!plan.limits.acuity.empty()) json["limits"] = limits_json(*limits);
+    console.object(json);
   } else {
     print_plan(console, *inputs, *prediction);
+    for (const LimitForecast& limit : *limits) console.text("limit at " + in_words(limit));
   }
   for (const auto& warning : prediction->warnings) console.note(warning);
   // Without a camera nothing will be compared.

@@ -11,7 +11,9 @@
 #include "bench/run/comparison_forecast.h"
 #include "bench/run/rebuild_report.h"
 #include "bench/run/report_data.h"
+#include "bench/session/provenance.h"
 #include "bench/session/session_comparison.h"
+#include "bench/session/signature.h"
 #include "bench/text/files.h"
 
 namespace todbench {
@@ -80,7 +82,23 @@ int run_compare(Console& console, const CompareArguments& arguments) {
   return exit_code(decision_of(comparison->verdict));
 }
 
-int run_report(Console& console, const std::string& folder, Opening opening) {
+/// The report of a signed session as its next revision.
+int run_revision(Console& console, const std::string& folder, const std::string& reason) {
+  const auto session = opened(console, folder, {});
+  if (!session) return report_error(console, session.error());
+  const auto path = std::filesystem::path(folder);
+  const auto data = revise_report(*session, path, reason, utc_now());
+  if (!data) return report_error(console, data.error());
+  const std::string file = (path / revision_page(*data->revision, "html")).string();
+  if (console.json())
+    console.object({{"report", file}, {"revision", data->revision->number}});
+  else
+    console.text(file);
+  return 0;
+}
+
+int run_report(Console& console, const std::string& folder, Opening opening, const std::string& reason) {
+  if (!reason.empty()) return run_revision(console, folder, reason);
   opening.accept_cut_off = true;
   const auto session = opened(console, folder, opening);
   if (!session) return report_error(console, session.error());
@@ -102,26 +120,77 @@ int run_report(Console& console, const std::string& folder, Opening opening) {
   return 0;
 }
 
-int run_verify(Console& console, const std::string& folder) {
+struct SignArguments {
+  std::string folder, with, key;
+};
+
+int run_sign(Console& console, const SignArguments& arguments) {
+  const SigningProgram with =
+      arguments.with == to_string(SigningProgram::minisign) ? SigningProgram::minisign : SigningProgram::openssl;
+  const auto made = sign_session(arguments.folder, with, arguments.key, utc_now());
+  if (!made) return report_error(console, made.error());
+  if (console.json()) {
+    console.object({{"session", arguments.folder},
+                    {"with", to_string(made->with)},
+                    {"signed_utc", made->signed_utc},
+                    {"manifest_sha256", made->manifest_sha256},
+                    {"key_sha256", made->key_sha256()}});
+  } else {
+    console.text("signed: manifest " + made->manifest_sha256 + ", key " + made->key_sha256());
+  }
+  return 0;
+}
+
+/// What the signature of a session says; an error where it cannot be looked at, or is asked for and not there.
+Result<std::optional<SignatureCheck>> signature_of(const std::string& folder, const std::string& public_key) {
+  auto check =
+      check_signature(folder, public_key.empty() ? std::nullopt : std::optional(std::filesystem::path(public_key)));
+  if (check && !*check && !public_key.empty()) return fail(ErrorCode::invalid_input, folder + ": not signed");
+  return check;
+}
+
+Json signature_json(const SignatureCheck& check) {
+  return {{"with", to_string(check.signature.with)},
+          {"signed_utc", check.signature.signed_utc},
+          {"valid", check.valid},
+          {"checked_with", check.own_key ? "the key in the folder" : "the key that was given"},
+          {"key_sha256", check.signature.key_sha256()},
+          {"reason", check.valid ? Json() : Json(check.sentence)}};
+}
+
+int run_verify(Console& console, const std::string& folder, const std::string& public_key) {
   const auto check = check_session(folder);
   if (!check) return report_error(console, check.error());
+  const auto signature = signature_of(folder, public_key);
+  if (!signature) return report_error(console, signature.error());
+  const bool signature_holds = !*signature || (*signature)->valid;
   const ManifestCheck& files = check->files;
   const bool intact = check->condition == SessionCondition::intact;
   if (console.json()) {
-    console.object({{"intact", intact},
-                    {"changed", files.changed},
-                    {"missing", files.missing},
-                    {"foreign", files.foreign},
-                    {"signed_by", nullptr},
-                    {"manifest_sha256", files.manifest_sha256.empty() ? Json() : Json(files.manifest_sha256)},
-                    {"condition", to_string(check->condition)},
-                    {"reason", check->sentence.empty() ? Json() : Json(check->sentence)}});
-    return intact ? 0 : exit_code(ErrorCode::invalid_input);
+    Json json{{"intact", intact},
+              {"changed", files.changed},
+              {"missing", files.missing},
+              {"foreign", files.foreign},
+              {"signed_by", *signature && signature_holds ? Json((*signature)->signature.key_sha256()) : Json()},
+              {"manifest_sha256", files.manifest_sha256.empty() ? Json() : Json(files.manifest_sha256)},
+              {"condition", to_string(check->condition)},
+              {"reason", check->sentence.empty() ? Json() : Json(check->sentence)}};
+    if (*signature) json["signature"] = signature_json(**signature);
+    console.object(json);
+    return intact && signature_holds ? 0 : exit_code(ErrorCode::invalid_input);
   }
   for (const std::string& file : files.changed) console.text("changed   " + file);
   for (const std::string& file : files.missing) console.text("missing   " + file);
   for (const std::string& file : files.foreign) console.text("foreign   " + file);
   if (!files.manifest_sha256.empty()) console.text("SHA-256 of the manifest: " + files.manifest_sha256);
+  if (!signature_holds)
+    return report_error(console, {ErrorCode::invalid_input, folder + ": " + (*signature)->sentence});
+  if (*signature) {
+    console.text("signed " + (*signature)->signature.signed_utc + " with " +
+                 std::string(to_string((*signature)->signature.with)) + ", SHA-256 of the public key " +
+                 (*signature)->signature.key_sha256() +
+                 ((*signature)->own_key ? "; checked with the key in the folder, which does not say whose it is" : ""));
+  }
   if (intact) {
     console.text("intact: every file is what the run wrote");
     return 0;
@@ -156,8 +225,11 @@ void add_report_command(CLI::App& app, Program& program) {
   command->add_option("DIR", *folder, "session folder")->required();
   auto opening = std::make_shared<Opening>();
   add_accept_changed(*command, opening->accept_changed);
-  finish_command(*command, program,
-                 [folder, opening](Console& console) { return run_report(console, *folder, *opening); });
+  auto reason = std::make_shared<std::string>();
+  command->add_option("--reason", *reason, "why a signed report is revised: the revision is a page of its own");
+  finish_command(*command, program, [folder, opening, reason](Console& console) {
+    return run_report(console, *folder, *opening, *reason);
+  });
 }
 
 void add_verify_command(CLI::App& app, Program& program) {
@@ -165,7 +237,21 @@ void add_verify_command(CLI::App& app, Program& program) {
       "verify", "whether the files of a session folder are those that its run wrote, by its manifest");
   auto folder = std::make_shared<std::string>();
   command->add_option("DIR", *folder, "session folder")->required();
-  finish_command(*command, program, [folder](Console& console) { return run_verify(console, *folder); });
+  auto public_key = std::make_shared<std::string>();
+  command->add_option("--public-key", *public_key, "of who signed; without it the key that came with the folder");
+  finish_command(*command, program,
+                 [folder, public_key](Console& console) { return run_verify(console, *folder, *public_key); });
+}
+
+void add_sign_command(CLI::App& app, Program& program) {
+  auto* command = app.add_subcommand("sign", "signs a session folder: a detached signature over its manifest");
+  auto a = std::make_shared<SignArguments>();
+  command->add_option("DIR", a->folder, "session folder")->required();
+  std::vector<std::string> names;
+  for (const SigningProgram with : signing_programs) names.emplace_back(to_string(with));
+  command->add_option("--with", a->with, "program that signs")->required()->check(CLI::IsMember(names));
+  command->add_option("--key", a->key, "file with the secret key")->required();
+  finish_command(*command, program, [a](Console& console) { return run_sign(console, *a); });
 }
 
 }  // namespace todbench

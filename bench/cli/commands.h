@@ -51,6 +51,8 @@ void add_replay_command(CLI::App& app, Program& program);
 void add_compare_command(CLI::App& app, Program& program);
 void add_report_command(CLI::App& app, Program& program);
 void add_verify_command(CLI::App& app, Program& program);
+void add_history_command(CLI::App& app, Program& program);
+void add_sign_command(CLI::App& app, Program& program);
 void add_noise_command(CLI::App& app, Program& program);
 void add_pattern_command(CLI::App& app, Program& program);
 void add_range_command(CLI::App& app, Program& program);

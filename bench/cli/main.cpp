@@ -165,6 +165,8 @@ int run(int argc, char** argv) {
   add_compare_command(app, program);
   add_report_command(app, program);
   add_verify_command(app, program);
+  add_sign_command(app, program);
+  add_history_command(app, program);
   add_fit_command(app, program);
   add_render_command(app, program);
   add_mtf_command(app, program);

@@ -281,6 +281,8 @@ Result<std::optional<CurveUncertainty>> curve_uncertainty(const Plan& plan, cons
                                                           const std::optional<Comparison>& comparison) {
   if (!plan.uncertainty.stated()) return std::nullopt;
   CurveUncertainty out;
+  out.u_scale = relative_u_of_scale(plan);
+  out.u_camera_scale = relative_u_of_camera_scale(plan);
   for (const BudgetInput input : not_stated(plan.uncertainty)) out.not_stated.emplace_back(to_string(input));
   const std::vector<double> slopes = contrast_slopes(curve);
   bool read_back = true;

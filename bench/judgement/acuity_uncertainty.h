@@ -51,6 +51,8 @@ struct PointUncertainty {
 struct CurveUncertainty {
   std::vector<PointUncertainty> points;   ///< in the order of the curve
   std::vector<std::string> not_stated{};  ///< rows that a complete budget has
+  double u_scale = 0;         ///< relative, of the temperature scale and what is divided by it (relative_u_of_scale())
+  double u_camera_scale = 0;  ///< relative, of kelvin of the camera's scale
 };
 
 /// The point at this set contrast; null where there is none.

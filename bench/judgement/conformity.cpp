@@ -91,20 +91,6 @@ bool positive(double value) {
 
 }  // namespace
 
-std::string_view to_string(ConformityRule rule) {
-  switch (rule) {
-    case ConformityRule::guarded_acceptance_and_rejection:
-      return "guarded_acceptance_and_rejection";
-    case ConformityRule::simple:
-      return "simple";
-    case ConformityRule::guarded:
-      return "guarded";
-    case ConformityRule::non_binary:
-      return "non_binary";
-  }
-  return "";
-}
-
 std::string_view to_string(ConformityDecision decision) {
   switch (decision) {
     case ConformityDecision::pass:

@@ -6,6 +6,8 @@
 #include <cctype>
 #include <cmath>
 
+#include "bench/judgement/limit_decision.h"
+#include "bench/judgement/measure_demands.h"
 #include "bench/text/text.h"
 #include "tod/psychometric/acuity.h"
 
@@ -33,10 +35,19 @@ std::string words_of(const Interval& acuity_per_mrad) {
   return "no interval";
 }
 
+/// The decision of a rule, conditional ones as inconclusive.
+void settle(Demand& demand, const LimitAnswer& answer) {
+  demand.conformity = answer.decision;
+  demand.p_conformity = answer.p_conformity;
+  demand.decision = kind_of(answer.decision);
+}
+
 /// A demand on a number that is not fit for a decision stays open, whatever its interval says.
 void withhold(Demand& demand, const std::optional<Adequacy>& adequacy) {
   if (!adequacy || adequacy->adequate()) return;
   demand.decision = VerdictKind::inconclusive;
+  if (demand.conformity) demand.conformity = ConformityDecision::inconclusive;
+  demand.p_conformity.reset();
   demand.reason =
       "not fit for a decision: " + reasons_unfit(*adequacy) + (demand.reason.empty() ? "" : "; ") + demand.reason;
 }
@@ -55,10 +66,19 @@ Deciding deciding_of(const TodPoint& point, const CurveUncertainty* uncertainty)
   return {found->expanded_mrad, found->statistical_mrad};
 }
 
-/// Passes when the whole 95 % interval is at or above the limit (exactly on it passes), fails when the whole interval
-/// is below it; a one-sided limit of the fit decides in its direction. Where a free lapse explains the data
-/// significantly better, both fits have to agree: the union of their intervals counts.
-Demand judged_acuity(const AcuityLimit& limit, const TodCurve& curve, const CurveUncertainty* uncertainty) {
+/// Of the interval that decides; nothing: very many.
+std::optional<double> freedom_of(const TodPoint& point, const CurveUncertainty* uncertainty) {
+  const PointUncertainty* found = uncertainty == nullptr ? nullptr : point_at(*uncertainty, point.set_delta_t_k);
+  if (found != nullptr && found->combined) return found->combined->nu_eff;
+  return point.fit.clusters > 1 ? std::optional(std::max(1.0, point.fit.clusters - 1)) : std::nullopt;
+}
+
+/// By the default rule: passes when the whole 95 % interval is at or above the limit (exactly on it passes), fails when
+/// the whole interval is below it; a one-sided limit of the fit decides in its direction. Where a free lapse explains
+/// the data significantly better, both fits have to agree: the union of their intervals counts.
+Demand judged_acuity(const AcuityLimit& limit, const Evidence& evidence) {
+  const TodCurve& curve = evidence.curve;
+  const CurveUncertainty* const uncertainty = evidence.uncertainty;
   Demand demand{.kind = DemandKind::acuity, .delta_t_k = limit.delta_t_k, .limit = limit.least_acuity_per_mrad};
   const TodPoint* point = point_at(curve, limit.delta_t_k);
   if (point == nullptr) {
@@ -73,11 +93,17 @@ Demand judged_acuity(const AcuityLimit& limit, const TodCurve& curve, const Curv
   if (deciding.statistical_mrad) demand.statistical = acuity_interval(*deciding.statistical_mrad);
   // Compared as sizes, the quantity that was estimated: one rounding instead of two, so that "exactly on the limit"
   // exists.
+  const LimitAnswer answer = decide({.value = point->fit.threshold,
+                                     .interval = s75_mrad,
+                                     .limit = largest_mrad,
+                                     .at_least = false,
+                                     .scale = LimitScale::logarithmic,
+                                     .degrees_of_freedom = freedom_of(*point, uncertainty)},
+                                    evidence.limits.rule, evidence.limits.guard_band_risk);
+  settle(demand, answer);
   if (s75_mrad.high && *s75_mrad.high <= largest_mrad) {
-    demand.decision = VerdictKind::pass;
     demand.reason = words_of(demand.interval) + ": at or above the limit";
   } else if (s75_mrad.low && *s75_mrad.low > largest_mrad) {
-    demand.decision = VerdictKind::fail;
     demand.reason = words_of(demand.interval) + ": below the limit";
   } else if (s75_mrad.low && s75_mrad.high) {
     demand.reason = words_of(demand.interval) + ": the limit lies within";
@@ -92,8 +118,7 @@ Demand judged_acuity(const AcuityLimit& limit, const TodCurve& curve, const Curv
 
 std::vector<Demand> judge_acuity(const Evidence& evidence) {
   std::vector<Demand> demands;
-  for (const AcuityLimit& limit : evidence.limits.acuity)
-    demands.push_back(judged_acuity(limit, evidence.curve, evidence.uncertainty));
+  for (const AcuityLimit& limit : evidence.limits.acuity) demands.push_back(judged_acuity(limit, evidence));
   return demands;
 }
 
@@ -231,6 +256,44 @@ ComparisonVerdict comparison_verdict(const Comparison& comparison, const CurveUn
   return comparison.verdict == ComparisonVerdict::inconclusive ? comparison.verdict : all;
 }
 
+/// By the rule of the plan: the two one-sided tests at 5 % are the guard band.
+ConformityDecision equivalence_decision(ComparisonVerdict verdict, const Comparison& comparison,
+                                        const std::vector<Interval>& ratios, ConformityRule rule) {
+  if (rule == ConformityRule::guarded_acceptance_and_rejection || comparison.points.empty() ||
+      (comparison.adequacy && !comparison.adequacy->adequate()))
+    return conformity_of(decision_of(verdict));
+  bool meets = true;
+  for (std::size_t i = 0; i < ratios.size(); ++i) {
+    const ComparisonPoint& point = comparison.points[i];
+    if (!point.ratio || !ratios[i].low || !ratios[i].high) return ConformityDecision::inconclusive;
+    meets = meets && deviation_percent(*point.ratio) <= point.margin_percent;
+  }
+  if (rule == ConformityRule::simple) return meets ? ConformityDecision::pass : ConformityDecision::fail;
+  const ConformityDecision decision = conformity_of(decision_of(verdict));
+  if (rule == ConformityRule::guarded)
+    return decision == ConformityDecision::pass ? decision : ConformityDecision::fail;
+  if (decision != ConformityDecision::inconclusive) return decision;
+  return meets ? ConformityDecision::conditional_pass : ConformityDecision::conditional_fail;
+}
+
+/// Probability that a ratio lies within the margin, from its 90 % interval; the smallest over the contrasts, which is
+/// the most that all of them together can have.
+std::optional<double> p_equivalence(const Comparison& comparison, const std::vector<Interval>& ratios) {
+  std::optional<double> least;
+  for (std::size_t i = 0; i < ratios.size(); ++i) {
+    const ComparisonPoint& point = comparison.points[i];
+    const auto& [low, high] = ratios[i];
+    if (!point.ratio || !low || !high || !(*low > 0) || !(*high > *low)) return std::nullopt;
+    constexpr double z90 = 1.6448536269514722;
+    const double margin = std::log1p(point.margin_percent / 100);
+    const auto found = conformity({.value = std::log(*point.ratio), .u = std::log(*high / *low) / (2 * z90)},
+                                  {.at_least = -margin, .at_most = margin}, ConformityRule::simple, 0);
+    if (!found) return std::nullopt;
+    least = std::min(least.value_or(1), found->p_conformity);
+  }
+  return least;
+}
+
 /// Passes, fails or stays open as the comparison says, where it was made with the margin that is demanded.
 std::vector<Demand> judge_equivalence(const Evidence& evidence) {
   if (!evidence.limits.equivalence_margin_percent) return {};
@@ -251,7 +314,8 @@ std::vector<Demand> judge_equivalence(const Evidence& evidence) {
   demand.interval = deviation_interval_percent(ratios);
   if (evidence.uncertainty != nullptr)
     demand.statistical = deviation_interval_percent(ratios_90(*evidence.comparison, nullptr));
-  demand.decision = decision_of(verdict);
+  settle(demand, {.decision = equivalence_decision(verdict, *evidence.comparison, ratios, evidence.limits.rule),
+                  .p_conformity = p_equivalence(*evidence.comparison, ratios)});
   demand.reason = reason_of(verdict, ratios);
   if (const auto& found = evidence.comparison->adequacy; found && !found->adequate())
     demand.reason += "; not fit for a decision: " + reasons_unfit(*found);
@@ -262,21 +326,36 @@ std::string equivalence_in_words(const Demand& demand) {
   return "acuity equivalent to the simulated twin within " + rounded(demand.limit) + " %";
 }
 
-constexpr std::array rows{
-    DemandKindRow{DemandKind::acuity, "acuity", "1/mrad", LimitSide::at_least, judge_acuity, acuity_in_words},
-    DemandKindRow{DemandKind::identified, "identified", "1/mrad", LimitSide::none, judge_identified,
-                  identified_in_words},
-    DemandKindRow{DemandKind::equivalence, "equivalence", "%", LimitSide::at_most, judge_equivalence,
-                  equivalence_in_words},
-};
+const auto& table() {
+  static const std::array rows{
+      DemandKindRow{DemandKind::acuity, "acuity", "1/mrad", LimitSide::at_least, judge_acuity, acuity_in_words},
+      DemandKindRow{DemandKind::identified, "identified", "1/mrad", LimitSide::none, judge_identified,
+                    identified_in_words},
+      DemandKindRow{DemandKind::equivalence, "equivalence", "%", LimitSide::at_most, judge_equivalence,
+                    equivalence_in_words},
+      measure_row(DemandKind::netd),
+      measure_row(DemandKind::temporal_noise),
+      measure_row(DemandKind::noise_t),
+      measure_row(DemandKind::noise_v),
+      measure_row(DemandKind::noise_h),
+      measure_row(DemandKind::noise_tv),
+      measure_row(DemandKind::noise_th),
+      measure_row(DemandKind::noise_vh),
+      measure_row(DemandKind::noise_tvh),
+      measure_row(DemandKind::temperature_scale_at_least),
+      measure_row(DemandKind::temperature_scale_at_most),
+  };
+  return rows;
+}
 
 }  // namespace
 
 std::span<const DemandKindRow> demand_kinds() {
-  return rows;
+  return table();
 }
 
 const DemandKindRow& row_of(DemandKind kind) {
+  const auto& rows = table();
   const auto row = std::find_if(rows.begin(), rows.end(), [&](const DemandKindRow& r) { return r.kind == kind; });
   assert(row != rows.end());
   return *row;

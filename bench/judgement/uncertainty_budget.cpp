@@ -18,20 +18,6 @@ double sensitivity_of(const BudgetRow& row) {
   return row.sensitivity.value_or(1);
 }
 
-double standard_of(const BudgetRow& row) {
-  switch (row.distribution) {
-    case BudgetDistribution::normal:
-      return row.value / row.coverage_factor;
-    case BudgetDistribution::rectangular:
-      return row.value / std::numbers::sqrt3;
-    case BudgetDistribution::triangular:
-      return row.value / std::sqrt(6.0);
-    case BudgetDistribution::u_shaped:
-      return row.value / std::numbers::sqrt2;
-  }
-  return 0;
-}
-
 tl::unexpected<Error> wrong(const BudgetRow& row, const std::string& sentence) {
   return fail(ErrorCode::invalid_input, "row '" + one_line(row.name) + "': " + sentence);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bench/judgement/demand_kinds.h"
+#include "bench/text/text.h"
 
 namespace todbench {
 
@@ -50,20 +51,27 @@ std::string_view to_string(VerdictKind kind) {
   return "";
 }
 
-std::string_view to_string(DecisionRule rule) {
+std::string in_words(ConformityRule rule, const std::optional<double>& guard_band_risk) {
+  const std::string band = guard_band_risk ? "a guard band that leaves a risk of " + number_text(*guard_band_risk) +
+                                                 " of a wrong acceptance at the acceptance limit"
+                                           : "the 95 % confidence interval as guard band";
   switch (rule) {
-    case DecisionRule::guarded_acceptance_and_rejection:
-      return "guarded_acceptance_and_rejection";
-  }
-  return "";
-}
-
-std::string in_words(DecisionRule rule) {
-  switch (rule) {
-    case DecisionRule::guarded_acceptance_and_rejection:
+    case ConformityRule::guarded_acceptance_and_rejection:
+      if (guard_band_risk)
+        return "Guarded acceptance and guarded rejection with " + band +
+               " (after ILAC-G8:09/2019): inconclusive between, or when the threshold cannot be identified.";
       return "Guarded acceptance and guarded rejection with the 95 % confidence interval as guard band (after "
              "ILAC-G8:09/2019): pass when the whole interval meets the limit, fail when the whole interval misses it, "
              "inconclusive when the limit lies within the interval or the threshold cannot be identified.";
+    case ConformityRule::simple:
+      return "Simple acceptance (ILAC-G8:09/2019, 4.2.1): pass when the result meets the limit, else fail; a result at "
+             "the limit is wrongly accepted or rejected with a probability of up to 50 %.";
+    case ConformityRule::guarded:
+      return "Guarded acceptance with " + band + " (ILAC-G8:09/2019, 4.2.2): pass inside by the guard band, else fail.";
+    case ConformityRule::non_binary:
+      return "Non-binary with " + band +
+             " (ILAC-G8:09/2019, 4.2.3): pass inside by the guard band, fail outside by it, between a conditional pass "
+             "or a conditional fail, which the verdict counts as inconclusive.";
   }
   return "";
 }
@@ -88,6 +96,14 @@ std::string_view remark_on(JudgedWhen when) {
   return "";
 }
 
+std::optional<double> Demand::consumer_risk() const {
+  return decision == VerdictKind::pass && p_conformity ? std::optional(1 - *p_conformity) : std::nullopt;
+}
+
+std::optional<double> Demand::producer_risk() const {
+  return decision == VerdictKind::fail ? p_conformity : std::nullopt;
+}
+
 bool threshold_identified(const PsychometricFit& fit) {
   return fit.threshold && fit.ci95.low && fit.ci95.high && fit.verdict != FitVerdict::flat_or_decreasing &&
          fit.verdict != FitVerdict::no_data;
@@ -99,7 +115,9 @@ bool limits_asked(const Verdict& verdict) {
 }
 
 Verdict judge(const Evidence& evidence) {
-  Verdict verdict{.rule_in_words = in_words(DecisionRule::guarded_acceptance_and_rejection),
+  const LimitsPlan& limits = evidence.limits;
+  Verdict verdict{.rule = limits.rule,
+                  .rule_in_words = in_words(limits.rule, limits.guard_band_risk),
                   .ended_early = evidence.ended_early,
                   .judged = evidence.judged};
   for (const DemandKindRow& row : demand_kinds()) {
@@ -110,6 +128,23 @@ Verdict judge(const Evidence& evidence) {
   verdict.decision = decision;
   verdict.reason = std::move(reason) + without(verdict);
   return verdict;
+}
+
+VerdictKind kind_of(ConformityDecision decision) {
+  if (decision == ConformityDecision::pass) return VerdictKind::pass;
+  return decision == ConformityDecision::fail ? VerdictKind::fail : VerdictKind::inconclusive;
+}
+
+ConformityDecision conformity_of(VerdictKind kind) {
+  switch (kind) {
+    case VerdictKind::pass:
+      return ConformityDecision::pass;
+    case VerdictKind::fail:
+      return ConformityDecision::fail;
+    case VerdictKind::inconclusive:
+      break;
+  }
+  return ConformityDecision::inconclusive;
 }
 
 VerdictKind decision_of(ComparisonVerdict verdict) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/judgement/acuity_uncertainty.h"
+#include "bench/judgement/conformity.h"
 #include "bench/plan/plan.h"
 #include "tod/comparison/comparison.h"
 #include "tod/psychometric/tod_curve.h"
@@ -17,14 +18,8 @@ namespace todbench {
 enum class VerdictKind { pass, fail, inconclusive };
 [[nodiscard]] std::string_view to_string(VerdictKind kind);
 
-/// How an interval and a limit make a decision.
-enum class DecisionRule {
-  /// Guarded acceptance and guarded rejection with the 95 % confidence interval of the result as guard band
-  /// (ILAC-G8:09/2019, 4.2; JCGM 106:2012, 8.3).
-  guarded_acceptance_and_rejection,
-};
-[[nodiscard]] std::string_view to_string(DecisionRule rule);
-[[nodiscard]] std::string in_words(DecisionRule rule);
+/// How an interval and a limit make a decision: as the plan agreed.
+[[nodiscard]] std::string in_words(ConformityRule rule, const std::optional<double>& guard_band_risk = {});
 
 /// When a verdict was made.
 enum class JudgedWhen {
@@ -47,19 +42,34 @@ struct Demand {
   std::optional<Interval> statistical{};
   VerdictKind decision = VerdictKind::inconclusive;
   std::string reason{};  ///< a sentence
+  /// The decision in the words of the rule: a conditional one is inconclusive above. Nothing: no number is demanded.
+  std::optional<ConformityDecision> conformity{};
+  /// Probability that the demand is met, given the result (decide()). Nothing: not known.
+  std::optional<double> p_conformity{};
+
+  /// Specific risks of this decision: of a wrong acceptance where it is to pass, of a wrong rejection where to fail.
+  [[nodiscard]] std::optional<double> consumer_risk() const;
+  [[nodiscard]] std::optional<double> producer_risk() const;
 };
 
 /// verdict.json of a session. Made once, by judge(); everything else shows it.
 struct Verdict {
   VerdictKind decision = VerdictKind::inconclusive;
   std::string reason{};  ///< of the decision, a sentence
-  DecisionRule rule = DecisionRule::guarded_acceptance_and_rejection;
+  ConformityRule rule = ConformityRule::guarded_acceptance_and_rejection;
   std::string rule_in_words{};
   std::vector<Demand> demands{};
   std::optional<std::string> ended_early{};  ///< why the run did
   JudgedWhen judged = JudgedWhen::at_end_of_run;
   /// Rows that the budget of the plan leaves out; nothing: the plan has no budget.
   std::optional<std::vector<std::string>> not_stated{};
+};
+
+/// A physical measure of the session, in its unit.
+struct MeasuredQuantity {
+  std::string measure;  ///< as in measures.json
+  std::optional<double> value{};
+  Interval ci95{};
 };
 
 /// What is judged. Borrows for the call.
@@ -70,6 +80,8 @@ struct Evidence {
   std::optional<std::string> ended_early{};
   JudgedWhen judged = JudgedWhen::at_end_of_run;
   const CurveUncertainty* uncertainty = nullptr;  ///< of the curve; null: the plan has no budget
+  /// Of the camera, or of the simulated sensor alone; nothing: none was measured.
+  std::optional<std::vector<MeasuredQuantity>> measures{};
 };
 
 /// Judges every kind of demand. The whole fails if one demand fails, is inconclusive if one is, if nothing was measured
@@ -84,6 +96,9 @@ struct Evidence {
 /// bound.
 [[nodiscard]] bool threshold_identified(const PsychometricFit& fit);
 
+/// Conditional decisions are inconclusive.
+[[nodiscard]] VerdictKind kind_of(ConformityDecision decision);
+[[nodiscard]] ConformityDecision conformity_of(VerdictKind kind);
 /// A comparison as the answer to a demanded equivalence.
 [[nodiscard]] VerdictKind decision_of(ComparisonVerdict verdict);
 

@@ -11,7 +11,9 @@ namespace {
 
 constexpr std::string_view schema = "todbench-verdict-1";
 constexpr std::array decisions{VerdictKind::pass, VerdictKind::fail, VerdictKind::inconclusive};
-constexpr std::array rules{DecisionRule::guarded_acceptance_and_rejection};
+constexpr std::array conformity_decisions{ConformityDecision::pass, ConformityDecision::conditional_pass,
+                                          ConformityDecision::inconclusive, ConformityDecision::conditional_fail,
+                                          ConformityDecision::fail};
 constexpr std::array moments{JudgedWhen::at_end_of_run, JudgedWhen::afterwards};
 
 std::vector<DemandKind> known_kinds() {
@@ -32,6 +34,12 @@ Json demand_json(const Demand& demand) {
   if (demand.statistical) json["statistical_interval"] = json_interval(*demand.statistical);
   json["decision"] = to_string(demand.decision);
   json["reason"] = demand.reason;
+  if (demand.conformity) {
+    json["conformity"] = {{"decision", to_string(*demand.conformity)},
+                          {"p_conformity", json_number(demand.p_conformity)},
+                          {"consumer_risk", json_number(demand.consumer_risk())},
+                          {"producer_risk", json_number(demand.producer_risk())}};
+  }
   return json;
 }
 
@@ -48,6 +56,10 @@ Demand demand_from(const JsonReader& reader) {
     demand.statistical = statistical.interval();
   demand.decision = reader.at("decision").named(decisions);
   demand.reason = reader.at("reason").text();
+  if (const JsonReader conformity = reader.at_if_there("conformity"); !conformity.is_null()) {
+    demand.conformity = conformity.at("decision").named(conformity_decisions);
+    demand.p_conformity = conformity.at("p_conformity").optional_number();
+  }
   return demand;
 }
 
@@ -74,7 +86,7 @@ Result<Verdict> verdict_from(const Json& record) {
   Verdict verdict;
   verdict.decision = reader.at("decision").named(decisions);
   verdict.reason = reader.at("reason").text();
-  verdict.rule = reader.at("rule").named(rules);
+  verdict.rule = reader.at("rule").named(conformity_rules);
   verdict.rule_in_words = reader.at("rule_in_words").text();
   for (const JsonReader& demand : reader.at("demands").elements()) verdict.demands.push_back(demand_from(demand));
   const JsonReader ended_early = reader.at("ended_early");

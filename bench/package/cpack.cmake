@@ -26,7 +26,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME todbench)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS bash-completion)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "todbench-gui, todbench-doc, python3-numpy")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "todbench-gui, todbench-doc, python3-numpy, openssl, minisign")
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "test bench for thermal cameras, judged by a model observer
 Measures how well a thermal camera lets an observer see: the TOD
 (triangle orientation discrimination) curve, the 75 % acuity over

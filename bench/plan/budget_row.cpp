@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <numbers>
 
 namespace todbench {
 namespace {
@@ -99,6 +101,20 @@ std::string_view to_string(BudgetInput input) {
       return "acuity";
   }
   return "";
+}
+
+double standard_of(const BudgetRow& row) {
+  switch (row.distribution) {
+    case BudgetDistribution::normal:
+      return row.value / row.coverage_factor;
+    case BudgetDistribution::rectangular:
+      return row.value / std::numbers::sqrt3;
+    case BudgetDistribution::triangular:
+      return row.value / std::sqrt(6.0);
+    case BudgetDistribution::u_shaped:
+      return row.value / std::numbers::sqrt2;
+  }
+  return 0;
 }
 
 BudgetInput input_of(const BudgetRow& row) {

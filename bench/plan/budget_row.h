@@ -90,6 +90,9 @@ struct BudgetRow {
   bool operator==(const BudgetRow&) const = default;
 };
 
+/// Standard uncertainty in the row's unit.
+[[nodiscard]] double standard_of(const BudgetRow& row);
+
 /// Through what the row reaches the acuity: `enters`, or what its name says; never by_name.
 [[nodiscard]] BudgetInput input_of(const BudgetRow& row);
 /// Kinds of input: how their relative error moves the acuity.

@@ -32,6 +32,12 @@ constexpr const auto& values_of(const PsychometricForm&) {
 constexpr const auto& values_of(const Mounting&) {
   return all_mountings;
 }
+constexpr const auto& values_of(const ConformityRule&) {
+  return conformity_rules;
+}
+constexpr const auto& values_of(const LimitedMeasure&) {
+  return limited_measures;
+}
 constexpr const auto& values_of(const BudgetDistribution&) {
   return budget_distributions;
 }

@@ -1,5 +1,8 @@
 #include "bench/plan/plan.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace todbench {
 
 std::string_view to_string(ScheduleKind kind) {
@@ -16,6 +19,84 @@ std::string_view to_string(TargetKind kind) {
       return "scene";
   }
   return "";
+}
+
+std::string_view to_string(ConformityRule rule) {
+  switch (rule) {
+    case ConformityRule::guarded_acceptance_and_rejection:
+      return "guarded_acceptance_and_rejection";
+    case ConformityRule::simple:
+      return "simple";
+    case ConformityRule::guarded:
+      return "guarded";
+    case ConformityRule::non_binary:
+      return "non_binary";
+  }
+  return "";
+}
+
+std::string_view to_string(LimitedMeasure measure) {
+  switch (measure) {
+    case LimitedMeasure::netd:
+      return "netd";
+    case LimitedMeasure::temporal_noise:
+      return "temporal_noise";
+    case LimitedMeasure::noise_t:
+      return "noise_t";
+    case LimitedMeasure::noise_v:
+      return "noise_v";
+    case LimitedMeasure::noise_h:
+      return "noise_h";
+    case LimitedMeasure::noise_tv:
+      return "noise_tv";
+    case LimitedMeasure::noise_th:
+      return "noise_th";
+    case LimitedMeasure::noise_vh:
+      return "noise_vh";
+    case LimitedMeasure::noise_tvh:
+      return "noise_tvh";
+    case LimitedMeasure::transfer_slope:
+      return "transfer_slope";
+  }
+  return "";
+}
+
+double relative_u_of_scale(const Plan& plan) {
+  double largest_k = 0, sum = 0;
+  for (const double step_k : plan.measures.transfer_steps_k) largest_k = std::max(largest_k, std::abs(step_k));
+  for (const BudgetRow& row : plan.uncertainty.rows) {
+    const BudgetInput input = input_of(row);
+    if (kind_of(input) != InputKind::contrast || input == BudgetInput::camera_scale || row.sensitivity) continue;
+    const BudgetUnit unit = budget_unit(InputKind::contrast, row.unit).value_or(BudgetUnit{});
+    sum = std::hypot(sum, standard_of(row) * unit.factor / (unit.relative || !(largest_k > 0) ? 1 : largest_k));
+  }
+  return sum;
+}
+
+double relative_u_of_camera_scale(const Plan& plan) {
+  double sum = 0;
+  for (const BudgetRow& row : plan.uncertainty.rows) {
+    const BudgetUnit unit = budget_unit(InputKind::contrast, row.unit).value_or(BudgetUnit{});
+    if (input_of(row) != BudgetInput::camera_scale || row.sensitivity || !unit.relative) continue;
+    sum = std::hypot(sum, standard_of(row) * unit.factor);
+  }
+  return sum;
+}
+
+double known_u_of_acuity(const Plan& plan, BudgetCommon common) {
+  double sum = 0;
+  for (const BudgetRow& row : plan.uncertainty.rows) {
+    if (std::find(row.common.begin(), row.common.end(), common) != row.common.end()) continue;
+    const BudgetInput input = input_of(row);
+    const auto unit = budget_unit(kind_of(input), row.unit);
+    double sensitivity = 0;
+    if (row.sensitivity)
+      sensitivity = std::abs(*row.sensitivity);
+    else if (unit && kind_of(input) != InputKind::contrast && (unit->relative || input != BudgetInput::cut_outs))
+      sensitivity = unit->relative ? unit->factor : unit->factor / plan.target.distance_m;
+    sum = std::hypot(sum, sensitivity * standard_of(row));
+  }
+  return sum;
 }
 
 }  // namespace todbench

@@ -13,6 +13,7 @@
 #include "acquisition/core/accuracy.h"
 #include "acquisition/core/result.h"
 #include "bench/plan/budget_row.h"
+#include "bench/plan/conformity_rule.h"
 #include "bench/plan/resources.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "tod/measurement/measurement.h"
@@ -102,6 +103,18 @@ enum class DemandKind {
   acuity,       ///< the 75 % acuity at a contrast, [[limits.acuity]]
   identified,   ///< a threshold with both sides of its interval, at every contrast without a limit on acuity
   equivalence,  ///< agreement with the simulated twin, [limits] equivalence_margin_percent
+  // Physical measures, [[limits.measure]].
+  netd,
+  temporal_noise,
+  noise_t,
+  noise_v,
+  noise_h,
+  noise_tv,
+  noise_th,
+  noise_vh,
+  noise_tvh,
+  temperature_scale_at_least,  ///< contrast seen over contrast shown
+  temperature_scale_at_most,
 };
 
 /// [[limits.acuity]]: the 75 % acuity demanded at a contrast.
@@ -111,10 +124,42 @@ struct AcuityLimit {
   bool operator==(const AcuityLimit&) const = default;
 };
 
+/// Physical measures that can be limited, by their names in measures.json.
+enum class LimitedMeasure {
+  netd,
+  temporal_noise,
+  noise_t,
+  noise_v,
+  noise_h,
+  noise_tv,
+  noise_th,
+  noise_vh,
+  noise_tvh,
+  transfer_slope,  ///< the temperature scale
+};
+inline constexpr std::array limited_measures{
+    LimitedMeasure::netd,      LimitedMeasure::temporal_noise, LimitedMeasure::noise_t,  LimitedMeasure::noise_v,
+    LimitedMeasure::noise_h,   LimitedMeasure::noise_tv,       LimitedMeasure::noise_th, LimitedMeasure::noise_vh,
+    LimitedMeasure::noise_tvh, LimitedMeasure::transfer_slope};
+[[nodiscard]] std::string_view to_string(LimitedMeasure measure);
+
+/// [[limits.measure]]: limits on a physical measure, in its unit.
+struct MeasureLimit {
+  LimitedMeasure measure = LimitedMeasure::netd;
+  std::optional<double> at_least{};  ///< of the temperature scale only
+  std::optional<double> at_most{};
+  bool operator==(const MeasureLimit&) const = default;
+};
+
 /// [limits]
 struct LimitsPlan {
   std::vector<AcuityLimit> acuity;
   std::optional<double> equivalence_margin_percent;  ///< demanded agreement with the twin; nothing: not demanded
+  std::vector<MeasureLimit> measures{};
+  ConformityRule rule = ConformityRule::guarded_acceptance_and_rejection;
+  /// Of a wrong acceptance at the acceptance limit, in place of the 95 % interval as guard band.
+  std::optional<double> guard_band_risk{};
+  std::optional<double> fleet_sd_percent{};  ///< of true acuities over the fleet; for what `plan` says beforehand
   bool operator==(const LimitsPlan&) const = default;
 };
 
@@ -189,6 +234,15 @@ struct Plan {
 /// contradicts each other. `invalid_input` about the key. What the plan names is not looked for: that is
 /// LoadedPlan::load() (bench/plan/loaded_plan.h).
 [[nodiscard]] Result<void> validate(const Plan& plan);
+
+/// Relative standard uncertainty that the stated rows give the temperature scale of a camera: those of the contrast,
+/// without the camera's own; kelvin count by the largest step of the signal transfer.
+[[nodiscard]] double relative_u_of_scale(const Plan& plan);
+/// The same for a temperature difference in the camera's scale: its camera-scale row.
+[[nodiscard]] double relative_u_of_camera_scale(const Plan& plan);
+/// Standard uncertainty of ln acuity from the stated rows whose sensitivity is known before the measurement, without
+/// those that are shared with `common`.
+[[nodiscard]] double known_u_of_acuity(const Plan& plan, BudgetCommon common);
 
 /// The instruments whose due date is before `today`, as one sentence with code `calibration`; success when there is
 /// none.

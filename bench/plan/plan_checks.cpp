@@ -106,6 +106,52 @@ ValueMistakes check_limit_contrast(const Plan& plan, std::size_t row) {
   return mistakes;
 }
 
+ValueMistakes check_margin(const Plan& plan, std::size_t /*row*/) {
+  const auto& margin = plan.limits.equivalence_margin_percent;
+  if (!margin || plan.limits.rule == ConformityRule::simple) return {};
+  // Two one-sided tests at 5 %; contrast counts by a slope that is not known yet, and is left out.
+  const double stated = known_u_of_acuity(plan, BudgetCommon::twin);
+  if (1.645 * stated < std::log1p(*margin / 100)) return {};
+  return {{std::nullopt, "nothing can pass: the budget alone makes a ratio of acuities uncertain by " +
+                             number_text(std::round(16450 * stated) / 100) + " % (90 %), the margin is " +
+                             number_text(*margin) + " %"}};
+}
+
+ValueMistakes check_limited_measure(const Plan& plan, std::size_t row) {
+  const LimitedMeasure measure = plan.limits.measures[row].measure;
+  const bool noise = measure != LimitedMeasure::transfer_slope;
+  const bool transfer = !noise || measure == LimitedMeasure::netd;
+  ValueMistakes mistakes;
+  if (noise && !plan.measures.noise)
+    mistakes.push_back(
+        {std::nullopt, "a limit on " + std::string(to_string(measure)) + " needs noise = true in [measures]"});
+  if (transfer && !plan.measures.transfer)
+    mistakes.push_back(
+        {std::nullopt, "a limit on " + std::string(to_string(measure)) + " needs transfer = true in [measures]"});
+  for (std::size_t other = 0; other < row; ++other) {
+    if (plan.limits.measures[other].measure == measure)
+      mistakes.push_back({std::nullopt, "a second row for " + std::string(to_string(measure))});
+  }
+  return mistakes;
+}
+
+ValueMistakes check_measure_limits(const Plan& plan, std::size_t row) {
+  const MeasureLimit& limits = plan.limits.measures[row];
+  const std::string name(to_string(limits.measure));
+  if (!limits.at_least && !limits.at_most) return {{std::nullopt, "there is no limit on " + name}};
+  if (limits.at_least && limits.measure != LimitedMeasure::transfer_slope)
+    return {{std::nullopt, name + " has no lower limit: only transfer_slope has both"}};
+  if (!limits.at_least || !limits.at_most) return {};
+  if (*limits.at_least >= *limits.at_most)
+    return {{std::nullopt, "nothing can pass: the lower limit of " + name + " is not below the upper one"}};
+  if (plan.limits.rule == ConformityRule::simple) return {};
+  const double expanded = 1.96 * relative_u_of_scale(plan) * 0.5 * (*limits.at_least + *limits.at_most);
+  if (2 * expanded < *limits.at_most - *limits.at_least) return {};
+  return {{std::nullopt, "nothing can pass: the budget alone makes " + name + " uncertain by " +
+                             number_text(std::round(1e6 * expanded) / 1e6) + ", the tolerance is " +
+                             number_text(std::round(1e6 * (*limits.at_most - *limits.at_least)) / 1e6)}};
+}
+
 ValueMistakes check_require(const Plan& plan, std::size_t /*row*/) {
   if (!plan.uncertainty.require) return {};
   std::string missing;

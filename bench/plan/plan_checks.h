@@ -31,6 +31,12 @@ using ValueMistakes = std::vector<ValueMistake>;
 [[nodiscard]] ValueMistakes check_transfer_steps(const Plan& plan, std::size_t row);
 /// Among the contrasts of the target, and not in an earlier row.
 [[nodiscard]] ValueMistakes check_limit_contrast(const Plan& plan, std::size_t row);
+/// Above what the rows of the budget that do not cancel between camera and twin make of a ratio.
+[[nodiscard]] ValueMistakes check_margin(const Plan& plan, std::size_t row);
+/// One that [measures] asks for, not in an earlier row.
+[[nodiscard]] ValueMistakes check_limited_measure(const Plan& plan, std::size_t row);
+/// One or two, with room between them for a value and its stated uncertainty.
+[[nodiscard]] ValueMistakes check_measure_limits(const Plan& plan, std::size_t row);
 /// A complete budget states every expected row.
 [[nodiscard]] ValueMistakes check_require(const Plan& plan, std::size_t row);
 /// Not in an earlier row, and no name of a row that a run states itself.

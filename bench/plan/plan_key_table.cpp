@@ -382,14 +382,55 @@ PlanSection measures_section() {
 }
 
 PlanSection limits_section() {
-  return {.name = "limits",
-          .sentence = "What is demanded of the result.",
-          .keys = {{.name = "equivalence_margin_percent",
-                    .type = OptionalNumberKey{NumberRange::above_to(0, 100)},
-                    .unit = "%",
-                    .sentence = "demanded agreement with the twin; without it none is demanded",
-                    .place = in(&Plan::limits, &LimitsPlan::equivalence_margin_percent),
-                    .form = {"Equivalence margin", "planMargin"}}}};
+  return {
+      .name = "limits",
+      .sentence = "What is demanded of the result.",
+      .keys = {
+          {.name = "equivalence_margin_percent",
+           .type = OptionalNumberKey{NumberRange::above_to(0, 100)},
+           .unit = "%",
+           .sentence = "demanded agreement with the twin; without it none is demanded",
+           .place = in(&Plan::limits, &LimitsPlan::equivalence_margin_percent),
+           .form = {"Equivalence margin", "planMargin"},
+           .check = check_margin},
+          {.name = "rule",
+           .type = ChoiceKey{names_of(conformity_rules)},
+           .sentence = "how an interval and a limit make a decision, agreed before the measurement",
+           .place = in(&Plan::limits, &LimitsPlan::rule),
+           .written_at_default = false},
+          {.name = "guard_band_risk",
+           .type = OptionalNumberKey{NumberRange::between(1e-9, 0.5)},
+           .sentence = "of a wrong acceptance at the acceptance limit; without it the guard band is the 95 % interval",
+           .place = in(&Plan::limits, &LimitsPlan::guard_band_risk)},
+          {.name = "fleet_sd_percent",
+           .type = OptionalNumberKey{NumberRange::above_to(0, 100)},
+           .unit = "%",
+           .sentence = "spread of true acuities over the fleet; todbench plan then states the risks of both sides",
+           .place = in(&Plan::limits, &LimitsPlan::fleet_sd_percent)}}};
+}
+
+PlanSection measure_limits_section() {
+  const auto rows = [](auto& plan) -> auto& {
+    return plan.limits.measures;
+  };
+  return {.name = "limits.measure",
+          .sentence = "Limits on a physical measure of [measures], in its unit (K; K/K for transfer_slope).",
+          .keys = {{.name = "measure",
+                    .type = ChoiceKey{names_of(limited_measures)},
+                    .sentence = "by its name in measures.json",
+                    .place = in_row(rows, &MeasureLimit::measure),
+                    .required = Required::always,
+                    .check = check_limited_measure},
+                   {.name = "at_least",
+                    .type = OptionalNumberKey{positive},
+                    .sentence = "lower limit of transfer_slope",
+                    .place = in_row(rows, &MeasureLimit::at_least)},
+                   {.name = "at_most",
+                    .type = OptionalNumberKey{positive},
+                    .sentence = "upper limit",
+                    .place = in_row(rows, &MeasureLimit::at_most),
+                    .check = check_measure_limits}},
+          .rows = rows_of(rows)};
 }
 
 PlanSection acuity_limits_section() {
@@ -547,9 +588,10 @@ PlanSection instrument_section() {
 
 const std::vector<PlanSection>& plan_sections() {
   static const std::vector<PlanSection> sections{
-      about_section(),         camera_section(),      target_section(),      observer_section(),  simulation_section(),
-      schedule_section(),      fit_section(),         measurement_section(), measures_section(),  limits_section(),
-      acuity_limits_section(), uncertainty_section(), budget_row_section(),  instrument_section()};
+      about_section(),       camera_section(),     target_section(),        observer_section(),
+      simulation_section(),  schedule_section(),   fit_section(),           measurement_section(),
+      measures_section(),    limits_section(),     acuity_limits_section(), measure_limits_section(),
+      uncertainty_section(), budget_row_section(), instrument_section()};
   return sections;
 }
 

@@ -22,6 +22,8 @@ std::string subtitle(const ReportData& data) {
 std::string page_label(const ReportData& data) {
   std::string label = data.session.empty() ? data.title : data.session;
   if (data.camera && !data.camera->serial.empty()) label += ", serial number " + data.camera->serial;
+  if (data.revision) label += ", revision " + std::to_string(data.revision->number);
+  if (!data.manifest_sha256.empty()) label += " · SHA-256 " + data.manifest_sha256;
   return label;
 }
 

@@ -14,6 +14,7 @@
 #include "bench/report/document.h"
 #include "bench/report/plot.h"
 #include "bench/session/measures_record.h"
+#include "bench/session/signature.h"
 #include "sim_devices/prediction/cost_frontier.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"
@@ -80,6 +81,7 @@ struct ReportData {
   std::string manifest_sha256;                ///< of the manifest that vouches for all this; empty: there is none
   std::vector<std::string> accepted_changes;  ///< files of the session that are not those that the run wrote
   bool cut_off = false;                       ///< the run wrote no manifest
+  std::optional<ReportRevision> revision;     ///< of the report of a signed session; nothing: the first report
   std::vector<std::string> notes;
   std::optional<std::string> interrupted;   ///< why the run ended early
   std::vector<Interruption> interruptions;  ///< losses of the camera after which the run went on

@@ -189,6 +189,18 @@ RichText result_cell(const Demand& demand) {
                   " %)");
 }
 
+/// Conditional decisions by their names, and how sure the decision is.
+RichText conformity_words(const Demand& demand) {
+  std::string text;
+  if (demand.conformity == ConformityDecision::conditional_pass ||
+      demand.conformity == ConformityDecision::conditional_fail)
+    text += "; " + std::string(to_string(*demand.conformity));
+  if (demand.p_conformity) text += "; probability of conformity " + probability(*demand.p_conformity);
+  if (const auto risk = demand.consumer_risk()) text += ", consumer's risk " + probability(*risk);
+  if (const auto risk = demand.producer_risk()) text += ", producer's risk " + probability(*risk);
+  return plain(text);
+}
+
 /// The interval of the finite number of trials, beside the one that decides.
 RichText statistical_cell(const Demand& demand) {
   Demand alone = demand;
@@ -254,6 +266,10 @@ VerdictBox verdict_box(const ReportData& data) {
   const ReportVerdict verdict = report_verdict(data);
   const Headline found = headline(verdict);
   VerdictBox box{found.word, found.mood, {plain(found.sentence)}};
+  if (data.revision)
+    box.paragraphs.push_back(
+        strong("Revision " + std::to_string(data.revision->number) + " of " + data.revision->utc + ":") +
+        plain(" " + data.revision->reason + ". It amends the report that was signed."));
   for (const std::string& file : data.accepted_changes)
     box.paragraphs.push_back(strong("Changed, removed or added after the session ended:") + plain(" " + file));
   if (data.cut_off)
@@ -295,6 +311,7 @@ Section limits_section(const ReportData& data) {
     rows.rows.push_back({plain(title(demand)), plain(row_of(demand.kind).unit), limit_cell(demand), result_cell(demand),
                          believed ? badge(decision, mood_of(demand.decision)) : plain(decision),
                          text_or_missing(demand.reason, "none given")});
+    if (demand.conformity) rows.rows.back().back() += conformity_words(demand);
     if (expanded) rows.rows.back().insert(rows.rows.back().begin() + 4, statistical_cell(demand));
   }
   section.blocks.emplace_back(std::move(rows));

@@ -6,7 +6,9 @@
 #include "bench/run/report_data.h"
 #include "bench/session/human_record.h"
 #include "bench/session/manifest.h"
+#include "bench/session/signature.h"
 #include "bench/text/files.h"
+#include "bench/text/folders.h"
 
 namespace todbench {
 
@@ -21,6 +23,7 @@ Result<ReportData> report_data_of(const Session& session, const std::filesystem:
 
 Result<ReportData> rebuild_report(const Session& session, const std::filesystem::path& folder,
                                   const PageWriter& write_pages) {
+  if (auto open = require_unsigned(folder); !open) return tl::unexpected(open.error());
   auto data = report_data_of(session, folder);
   if (!data) return data;
   const bool vouched_for = session.accepted_changes.empty() && !session.cut_off;
@@ -34,6 +37,25 @@ Result<ReportData> rebuild_report(const Session& session, const std::filesystem:
   if (!pages) return tl::unexpected(pages.error());
   if (!vouched_for) return data;
   if (auto refreshed = refresh_manifest(folder, *pages); !refreshed) return tl::unexpected(refreshed.error());
+  return data;
+}
+
+Result<ReportData> revise_report(const Session& session, const std::filesystem::path& folder, const std::string& reason,
+                                 const std::string& utc) {
+  auto revision = next_revision(folder, reason, utc);
+  if (!revision) return tl::unexpected(revision.error());
+  auto data = report_data_of(session, folder);
+  if (!data) return data;
+  data->revision = *revision;
+  if (auto made = make_folder(folder / "revisions"); !made) return tl::unexpected(made.error());
+  std::vector<std::string> pages;
+  for (const auto& [extension, text] :
+       {std::pair(std::string("html"), render_report(*data)), std::pair(std::string("csv"), report_csv(*data))}) {
+    pages.push_back(revision_page(*revision, extension));
+    if (auto written = write_file_atomically(folder / pages.back(), text); !written)
+      return tl::unexpected(written.error());
+  }
+  if (auto kept = keep_revision(folder, *revision, pages); !kept) return tl::unexpected(kept.error());
   return data;
 }
 

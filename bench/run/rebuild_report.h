@@ -20,10 +20,14 @@ using PageWriter = std::function<Result<std::vector<std::string>>(const ReportDa
 [[nodiscard]] Result<ReportData> report_data_of(const Session& session, const std::filesystem::path& folder);
 
 /// Keeps a verdict that had to be made, lets `write_pages` write, and brings the manifest up to date with both. The
+/// A signed session is refused. The
 /// manifest of a session whose changed files were accepted stays as it is, so that it goes on telling of them. `io`
 /// with the path; errors of report_data_of() and of `write_pages`.
 [[nodiscard]] Result<ReportData> rebuild_report(const Session& session, const std::filesystem::path& folder,
                                                 const PageWriter& write_pages);
+/// Of a signed session: the report as a revision of its own, in revisions/. `invalid_input`: as next_revision().
+[[nodiscard]] Result<ReportData> revise_report(const Session& session, const std::filesystem::path& folder,
+                                               const std::string& reason, const std::string& utc);
 /// Writes report.html and report.csv.
 [[nodiscard]] PageWriter html_page(std::filesystem::path folder);
 

@@ -125,11 +125,13 @@ ExperimentOutcome concluded(ExperimentOutcome outcome, const Plan& plan, const S
   if (outcome.measures || outcome.twin_measures)
     refused.keep(frame.folder.write_measures(outcome.measures, outcome.twin_measures));
   if (!outcome.ended_by) outcome.ended_by = refused.first();
-  outcome.verdict = judge({.limits = plan.limits,
-                           .curve = outcome.curve,
-                           .comparison = outcome.comparison,
-                           .ended_early = outcome.ended_by ? std::optional(outcome.ended_by->message) : std::nullopt,
-                           .uncertainty = outcome.uncertainty ? &*outcome.uncertainty : nullptr});
+  outcome.verdict = judge(
+      {.limits = plan.limits,
+       .curve = outcome.curve,
+       .comparison = outcome.comparison,
+       .ended_early = outcome.ended_by ? std::optional(outcome.ended_by->message) : std::nullopt,
+       .uncertainty = outcome.uncertainty ? &*outcome.uncertainty : nullptr,
+       .measures = outcome.measures ? std::optional(quantities_of(measure_lines(*outcome.measures))) : std::nullopt});
   auto closed = close_session(frame, provenance, outcome.verdict, outcome.ended_by);
   if (!closed && !outcome.ended_by) outcome.ended_by = closed.error();
   return outcome;

@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 
+#include "bench/session/signature.h"
 #include "bench/text/files.h"
 #include "bench/text/json_reader.h"
 #include "bench/text/text.h"
@@ -126,6 +127,12 @@ Result<void> check_entries(const std::filesystem::path& folder, const ManifestEn
   return {};
 }
 
+/// What comes after the manifest: its signature, and revisions of the report.
+bool is_of_a_signature(std::string_view path) {
+  return path == "signature.json" || path == "manifest.json.sig" || path == "manifest.json.minisig" ||
+         path.starts_with("revisions/");
+}
+
 }  // namespace
 
 bool is_report_page(std::string_view path) {
@@ -216,6 +223,7 @@ Result<std::string> manifest_digest(const std::filesystem::path& folder) {
 Result<void> refresh_manifest(const std::filesystem::path& folder, const std::vector<std::string>& files) {
   Result<Manifest> manifest = read_written_manifest(folder);
   if (!manifest) return tl::unexpected(manifest.error());
+  if (auto open = require_unsigned(folder); !open) return open;
   if (auto updated = update_entries(folder, files, manifest->entries); !updated) return updated;
   return write_manifest(folder, manifest->entries);
 }
@@ -233,7 +241,8 @@ Result<ManifestCheck> check_manifest(const std::filesystem::path& folder) {
   if (auto compared = check_entries(folder, manifest->entries, check); !compared)
     return tl::unexpected(compared.error());
   for (std::string& path : everything_in(folder)) {
-    if (path != manifest_name && !manifest->entries.contains(path)) check.foreign.push_back(std::move(path));
+    if (path != manifest_name && !is_of_a_signature(path) && !manifest->entries.contains(path))
+      check.foreign.push_back(std::move(path));
   }
   std::sort(check.changed.begin(), check.changed.end());
   return check;

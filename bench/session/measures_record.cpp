@@ -147,6 +147,12 @@ MeasureLines measure_lines(const CameraMeasures& measures) {
   return found;
 }
 
+std::vector<MeasuredQuantity> quantities_of(const MeasureLines& lines) {
+  std::vector<MeasuredQuantity> quantities;
+  for (const MeasureLine& line : lines.lines) quantities.push_back({line.measure, line.value, line.ci95});
+  return quantities;
+}
+
 Json measures_json(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin) {
   return {{"main", side_json(main)}, {"twin", side_json(twin)}};
 }

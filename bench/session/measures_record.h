@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "acquisition/core/result.h"
+#include "bench/judgement/verdict.h"
 #include "bench/text/json.h"
 #include "tod/camera_measures/camera_measures.h"
 
@@ -26,6 +27,9 @@ struct MeasureLines {
   std::vector<std::string> reasons;
 };
 [[nodiscard]] MeasureLines measure_lines(const CameraMeasures& measures);
+
+/// As judge() takes them.
+[[nodiscard]] std::vector<MeasuredQuantity> quantities_of(const MeasureLines& lines);
 
 /// Those of a session: of the camera (or of the simulated sensor alone) and of the twin.
 struct SessionMeasures {

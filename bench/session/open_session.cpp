@@ -1,4 +1,5 @@
 #include "bench/session/open_session.h"
+#include "bench/session/signature.h"
 
 #include <algorithm>
 #include <iterator>
@@ -107,7 +108,7 @@ Result<Session> open_session(const std::filesystem::path& folder, const Opening&
 Result<void> require_intact(const std::filesystem::path& folder) {
   const Result<SessionCheck> check = check_session(folder);
   if (!check) return tl::unexpected(check.error());
-  if (check->not_vouched_for.empty()) return {};
+  if (check->not_vouched_for.empty()) return require_unsigned(folder);
   return fail(ErrorCode::invalid_input, folder.string() + ": the session was changed: " + check->sentence);
 }
 

@@ -9,6 +9,7 @@
 #include "bench/session/cost_record.h"
 #include "bench/session/ending_reserve.h"
 #include "bench/session/fit_record.h"
+#include "bench/session/signature.h"
 #include "bench/session/uncertainty_record.h"
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
@@ -185,6 +186,7 @@ Result<SessionFolder> SessionFolder::create(const std::filesystem::path& folder,
     return fail(ErrorCode::invalid_input,
                 folder.string() + ": the folder is not empty; choose another or allow overwriting (--force)");
   }
+  if (auto open = require_unsigned(folder); !open) return tl::unexpected(open.error());
   if (const Result<void> removed = remove_session_files(folder); !removed) return tl::unexpected(removed.error());
   return SessionFolder(folder, clocks);
 }
@@ -344,7 +346,10 @@ Verdict verdict_of(const Session& session) {
                 .comparison = session.comparison,
                 .ended_early = ended_early(session),
                 .judged = JudgedWhen::afterwards,
-                .uncertainty = session.uncertainty ? &*session.uncertainty : nullptr});
+                .uncertainty = session.uncertainty ? &*session.uncertainty : nullptr,
+                .measures = session.measures && session.measures->main
+                                ? std::optional(quantities_of(*session.measures->main))
+                                : std::nullopt});
 }
 
 Result<void> keep_verdict(const std::filesystem::path& folder, const Verdict& verdict) {

@@ -107,7 +107,10 @@ PointUncertainty point_from(const JsonReader& item) {
 Json uncertainty_json(const CurveUncertainty& uncertainty) {
   Json points = Json::array();
   for (const PointUncertainty& point : uncertainty.points) points.push_back(point_json(point));
-  return {{"points", points}, {"not_stated", uncertainty.not_stated}};
+  return {{"points", points},
+          {"not_stated", uncertainty.not_stated},
+          {"u_temperature_scale", json_number(uncertainty.u_scale)},
+          {"u_camera_scale", json_number(uncertainty.u_camera_scale)}};
 }
 
 Result<CurveUncertainty> uncertainty_from(const Json& record) {
@@ -115,6 +118,8 @@ Result<CurveUncertainty> uncertainty_from(const Json& record) {
   CurveUncertainty uncertainty;
   for (const JsonReader& point : reader.at("points").elements()) uncertainty.points.push_back(point_from(point));
   uncertainty.not_stated = reader.at("not_stated").texts();
+  uncertainty.u_scale = reader.at_if_there("u_temperature_scale").optional_number().value_or(0);
+  uncertainty.u_camera_scale = reader.at_if_there("u_camera_scale").optional_number().value_or(0);
   if (auto finished = reader.finish(); !finished) return tl::unexpected(finished.error());
   return uncertainty;
 }

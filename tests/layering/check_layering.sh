@@ -56,11 +56,12 @@ BEGIN {
   may["bench/observer_fit"] = science " bench/text bench/plan bench/judgement bench/session bench/report"
   may["bench/run"] = science " " devices " bench/text bench/plan bench/judgement bench/session bench/report"
   may["bench/studies"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
+  may["bench/history"] = core " bench/text bench/session"
   may["bench/serve"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
   may["bench/sweep"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
   may["bench/doctor"] = core " bench/text"
   may["bench/enhance"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
-  bench = "bench/text bench/plan bench/judgement bench/session bench/report bench/observer_fit bench/reference_set bench/run bench/serve bench/studies bench/sweep bench/enhance"
+  bench = "bench/text bench/plan bench/judgement bench/session bench/report bench/observer_fit bench/reference_set bench/run bench/serve bench/studies bench/sweep bench/enhance bench/history"
   may["bench/cli"] = science " acquisition/recording bench/doctor " bench
   may["bench/gui/presenters"] = science " " bench
   may["bench/gui/views"] = science " " bench " bench/gui/presenters"
@@ -74,7 +75,7 @@ BEGIN {
   home["^(Q[A-Z]|qcustomplot.h)"] = "^bench/gui/"
   home["^toml\\+\\+/"] = "^bench/(plan|sweep)/"
   home["^httplib.h"] = "^bench/serve/"
-  home["^sqlite3.h"] = "^bench/sweep/"
+  home["^sqlite3.h"] = "^bench/(history|sweep)/"
   home["^CLI/"] = "^bench/cli/"
   home["^libxml/"] = "^acquisition/description/"
   home["^tiffio.h"] = "^acquisition/recording/"

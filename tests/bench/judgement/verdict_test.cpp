@@ -261,7 +261,10 @@ TEST(DemandKinds, EveryKindHasOneRowWithANameAndAUnit) {
     EXPECT_FALSE(row.name.empty() || row.unit.empty());
     EXPECT_EQ(to_string(row.kind), row.name);
   }
-  EXPECT_EQ(names, (std::set<std::string_view>{"acuity", "identified", "equivalence"}));
+  EXPECT_EQ(names,
+            (std::set<std::string_view>{"acuity", "identified", "equivalence", "netd", "temporal_noise", "noise_t",
+                                        "noise_v", "noise_h", "noise_tv", "noise_th", "noise_vh", "noise_tvh",
+                                        "temperature_scale_at_least", "temperature_scale_at_most"}));
 }
 
 /// A verdict with every kind of demand, sides that are open and numbers that do not exist.
@@ -342,7 +345,7 @@ INSTANTIATE_TEST_SUITE_P(
                "'schema': expected 'todbench-verdict-1'"},
         Damage{"no_decision", [](Json& j) { j.erase("decision"); }, "missing key 'decision'"},
         Damage{"an_unknown_decision", [](Json& j) { j["decision"] = "passed"; }, "'decision': expected a known word"},
-        Damage{"an_unknown_rule", [](Json& j) { j["rule"] = "simple"; }, "'rule': expected a known word"},
+        Damage{"an_unknown_rule", [](Json& j) { j["rule"] = "lenient"; }, "'rule': expected a known word"},
         Damage{"an_unknown_kind", [](Json& j) { j["demands"][1]["kind"] = "beauty"; },
                "'demands[1].kind': expected a known word"},
         Damage{"another_unit", [](Json& j) { j["demands"][2]["unit"] = "1/mrad"; }, "'demands[2].unit': expected '%'"},

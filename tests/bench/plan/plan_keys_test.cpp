@@ -108,6 +108,8 @@ std::optional<KeyValue> impossible(const KeyType& type) {
 TEST(ValidPlan, NoNumberLeavesItsRangeWhoeverMadeThePlan) {
   Plan good = with_rows();
   good.limits.acuity = {{16.9, 0.4}};
+  good.measures.noise = good.measures.transfer = true;
+  good.limits.measures = {{LimitedMeasure::netd, std::nullopt, 0.05}};
   ASSERT_TRUE(validate(good)) << validate(good).error().message;
   int tried = 0;
   for (const KeyAt& at : all_keys()) {

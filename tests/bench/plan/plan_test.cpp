@@ -77,6 +77,16 @@ Plan plan_with_budget() {
   return plan;
 }
 
+Plan plan_with_rule() {
+  Plan plan;
+  plan.measures.noise = plan.measures.transfer = true;
+  plan.limits.measures = {{LimitedMeasure::noise_tvh, std::nullopt, 0.05}, {LimitedMeasure::transfer_slope, 0.9, 1.1}};
+  plan.limits.rule = ConformityRule::non_binary;
+  plan.limits.guard_band_risk = 0.01;
+  plan.limits.fleet_sd_percent = 4;
+  return plan;
+}
+
 Plan graded_plan() {
   Plan plan;
   plan.schedule.answers = AnswerKind::graded;
@@ -86,7 +96,7 @@ Plan graded_plan() {
 }
 
 TEST(Plan, WhatIsWrittenReadsBackEqual) {
-  for (const Plan& plan : {Plan{}, unusual_plan(), graded_plan(), plan_with_budget()}) {
+  for (const Plan& plan : {Plan{}, unusual_plan(), graded_plan(), plan_with_budget(), plan_with_rule()}) {
     const Result<Plan> back = parse(to_toml(plan));
 
     ASSERT_TRUE(back) << back.error().message << "\n" << to_toml(plan);

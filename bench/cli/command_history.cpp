@@ -1,0 +1,400 @@
+// todbench history add, show, check, export, event
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+#include <tuple>
+
+#include "bench/cli/commands.h"
+#include "bench/history/control_chart.h"
+#include "bench/history/history_index.h"
+#include "bench/judgement/verdict.h"
+#include "bench/session/manifest.h"
+#include "bench/session/provenance.h"
+#include "bench/text/files.h"
+#include "bench/text/text.h"
+
+namespace todbench {
+namespace {
+
+struct HistoryArguments {
+  std::string index{default_history_file().string()};
+  std::vector<std::string> folders;
+  std::string serial, measure, kind, text, utc, out;
+  std::optional<double> at_least, at_most;
+  double horizon_days = 365;
+};
+
+/// Values of one measure of a unit since its last event.
+struct Series {
+  HistoryUnit unit;
+  std::string measure, condition, unit_text, scale;
+  std::vector<ChartValue> values;
+  std::vector<std::string> started_utc;
+};
+
+/// Kinds of events after which a unit is another one.
+constexpr std::array begins_anew{"repair", "firmware", "recalibration", "transport"};
+
+std::optional<double> last_break(const std::vector<HistoryEvent>& events) {
+  std::optional<double> last;
+  for (const HistoryEvent& event : events) {
+    if (const auto days = days_of_utc(event.utc)) last = std::max(last.value_or(*days), *days);
+  }
+  return last;
+}
+
+Result<std::vector<Series>> series_of(const HistoryIndex& index, const HistoryArguments& a) {
+  const auto sessions = index.sessions(a.serial.empty() ? std::nullopt : std::optional(a.serial));
+  if (!sessions) return tl::unexpected(sessions.error());
+  std::vector<Series> all;
+  std::map<std::string, std::optional<double>> breaks;
+  std::map<std::tuple<std::string, std::string, std::string, std::string>, std::string> firmware;
+  for (const HistorySession& session : *sessions) {
+    const HistoryUnit& unit = session.unit;
+    if (!breaks.contains(unit.serial)) {
+      const auto events = index.events(unit.serial);
+      if (!events) return tl::unexpected(events.error());
+      breaks[unit.serial] = last_break(*events);
+    }
+    const double days = days_of_utc(session.started_utc).value_or(0);
+    if (breaks[unit.serial] && days < *breaks[unit.serial]) continue;
+    // Another firmware begins a new series.
+    auto& known = firmware[{unit.vendor, unit.model, unit.serial, unit.lens}];
+    if (!known.empty() && known != session.firmware)
+      std::erase_if(all, [&](const Series& series) { return series.unit == unit; });
+    known = session.firmware;
+    for (const HistoryValue& value : session.values) {
+      if (!a.measure.empty() && value.measure != a.measure) continue;
+      auto found = std::find_if(all.begin(), all.end(), [&](const Series& series) {
+        return series.unit == unit && series.measure == value.measure && series.condition == value.condition;
+      });
+      if (found == all.end())
+        found = all.insert(all.end(), {unit, value.measure, value.condition, value.unit, value.scale, {}, {}});
+      found->values.push_back({days, value.value, value.u});
+      found->started_utc.push_back(session.started_utc);
+    }
+  }
+  return all;
+}
+
+Json unit_json(const HistoryUnit& unit) {
+  return {{"vendor", unit.vendor}, {"model", unit.model}, {"serial", unit.serial}, {"lens", unit.lens}};
+}
+
+double months_between(const Series& series) {
+  std::vector<double> gaps;
+  for (std::size_t i = 1; i < series.values.size(); ++i)
+    gaps.push_back(series.values[i].days - series.values[i - 1].days);
+  if (gaps.empty()) return 0;
+  std::nth_element(gaps.begin(), gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2), gaps.end());
+  return gaps[gaps.size() / 2] / 30.436875;
+}
+
+/// A limit on the scale of the chart.
+std::optional<double> limit_of(const Series& series, const HistoryArguments& a) {
+  const auto& limit = a.at_least ? a.at_least : a.at_most;
+  if (!limit) return std::nullopt;
+  return series.scale == "ln" ? std::log(*limit) : *limit;
+}
+
+double shown_value(const Series& series, double value) {
+  return series.scale == "ln" ? std::exp(value) : value;
+}
+
+Json crossing_json(const Crossing& found) {
+  const auto date = [](const std::optional<double>& days) { return days ? Json(date_of_days(*days)) : Json(); };
+  return {{"kind", to_string(found.kind)},
+          {"slope_per_year", json_number(found.slope_per_year)},
+          {"slope_u_per_year", json_number(found.slope_u_per_year)},
+          {"best", date(found.best_days)},
+          {"not_before", date(found.earliest_days)},
+          {"not_after", date(found.latest_days)}};
+}
+
+Json chart_json(const Series& series, const HistoryArguments& a) {
+  const ChartDesign design;
+  Json json{{"unit", unit_json(series.unit)}, {"measure", series.measure}, {"condition", series.condition},
+            {"unit_text", series.unit_text},  {"scale", series.scale},     {"values", Json::array()}};
+  const auto chart = control_chart(series.values, design);
+  for (std::size_t i = 0; i < series.values.size(); ++i) {
+    Json value{{"started_utc", series.started_utc[i]},
+               {"value", json_number(shown_value(series, series.values[i].value))},
+               {"u", json_number(series.values[i].u)}};
+    if (chart) {
+      const ChartPoint& point = chart->points[i];
+      value["z"] = json_number(point.z);
+      value["ewma"] = json_number(point.ewma);
+      value["ewma_limit"] = point.in_reference ? Json() : json_number(point.ewma_limit);
+      value["cusum_up"] = json_number(point.cusum_up);
+      value["cusum_down"] = json_number(point.cusum_down);
+      value["signal"] = point.signal;
+    }
+    json["values"].push_back(std::move(value));
+  }
+  json["chart"] = nullptr;
+  if (chart) {
+    const double months = months_between(series);
+    json["chart"] = {{"reference", json_number(shown_value(series, chart->reference))},
+                     {"reference_u", json_number(chart->reference_u)},
+                     {"scatter", json_number(chart->scatter)},
+                     {"signal", chart->signals()},
+                     {"run_length_months",
+                      {{"ewma_in_control", json_number(months * ewma_run_length(design.lambda, design.ewma_limit, 0))},
+                       {"ewma_one_sd", json_number(months * ewma_run_length(design.lambda, design.ewma_limit, 1))},
+                       {"cusum_in_control", json_number(months * cusum_run_length(design.cusum_k, design.cusum_h, 0))},
+                       {"cusum_one_sd", json_number(months * cusum_run_length(design.cusum_k, design.cusum_h, 1))}}}};
+  }
+  json["crossing"] = nullptr;
+  if (const auto limit = limit_of(series, a)) {
+    if (const auto found = crossing(series.values, chart ? chart->scatter : 0, *limit))
+      json["crossing"] = crossing_json(*found);
+  }
+  return json;
+}
+
+int run_add(Console& console, const HistoryArguments& a) {
+  auto index = HistoryIndex::open(a.index);
+  if (!index) return report_error(console, index.error());
+  int added = 0, known = 0, moved = 0;
+  std::vector<std::string> refused;
+  for (const std::string& folder : a.folders) {
+    const auto sessions = session_folders_below(folder);
+    if (!sessions) return report_error(console, sessions.error());
+    if (sessions->empty()) refused.push_back(folder + ": no session folder in it");
+    for (const auto& one : *sessions) {
+      const auto session = read_history_session(one);
+      if (!session) {
+        refused.push_back(session.error().message);
+        continue;
+      }
+      const auto done = index->add(*session);
+      if (!done) return report_error(console, done.error());
+      ++(*done == Adding::added ? added : *done == Adding::known ? known : moved);
+    }
+  }
+  for (const std::string& sentence : refused) console.note(sentence);
+  if (console.json()) {
+    console.object({{"index", a.index}, {"added", added}, {"known", known}, {"moved", moved}, {"refused", refused}});
+  } else {
+    console.text("added " + std::to_string(added) + ", known " + std::to_string(known) + ", moved " +
+                 std::to_string(moved) + ", refused " + std::to_string(refused.size()));
+  }
+  return refused.empty() ? 0 : exit_code(ErrorCode::invalid_input);
+}
+
+int show_units(Console& console, const HistoryIndex& index) {
+  const auto sessions = index.sessions(std::nullopt);
+  if (!sessions) return report_error(console, sessions.error());
+  struct Line {
+    HistoryUnit unit;
+    int sessions;
+    std::string first, last;
+  };
+  std::vector<Line> lines;
+  for (const HistorySession& session : *sessions) {
+    if (lines.empty() || !(lines.back().unit == session.unit))
+      lines.push_back({session.unit, 0, session.started_utc, session.started_utc});
+    ++lines.back().sessions;
+    lines.back().last = session.started_utc;
+  }
+  if (console.json()) {
+    Json units = Json::array();
+    for (const Line& line : lines) {
+      Json unit = unit_json(line.unit);
+      unit["sessions"] = line.sessions;
+      unit["first_utc"] = line.first;
+      unit["last_utc"] = line.last;
+      units.push_back(std::move(unit));
+    }
+    console.object({{"units", units}});
+    return 0;
+  }
+  std::vector<TableRow> rows;
+  for (const Line& line : lines) {
+    rows.push_back({line.unit.vendor, line.unit.model, line.unit.serial, line.unit.lens, std::to_string(line.sessions),
+                    line.first, line.last});
+  }
+  console.table({"vendor", "model", "serial", "lens", "sessions", "first", "last"}, rows);
+  return 0;
+}
+
+int run_show(Console& console, const HistoryArguments& a) {
+  const auto index = HistoryIndex::open(a.index);
+  if (!index) return report_error(console, index.error());
+  if (a.serial.empty()) return show_units(console, *index);
+  const auto all = series_of(*index, a);
+  if (!all) return report_error(console, all.error());
+  const auto events = index->events(a.serial);
+  if (!events) return report_error(console, events.error());
+  if (all->empty())
+    return report_error(console, {ErrorCode::not_found, a.serial + ": no values of such a unit in " + a.index});
+  Json charts = Json::array();
+  for (const Series& series : *all) charts.push_back(chart_json(series, a));
+  if (console.json()) {
+    Json listed = Json::array();
+    for (const HistoryEvent& event : *events)
+      listed.push_back({{"utc", event.utc}, {"kind", event.kind}, {"text", event.text}});
+    console.object({{"charts", charts}, {"events", listed}});
+    return 0;
+  }
+  std::vector<TableRow> rows;
+  for (const Series& series : *all) {
+    for (std::size_t i = 0; i < series.values.size(); ++i) {
+      rows.push_back({series.measure + (series.condition.empty() ? "" : " " + series.condition), series.started_utc[i],
+                      fixed(shown_value(series, series.values[i].value), 4), fixed(series.values[i].u, 4)});
+    }
+  }
+  console.table({"measure", "started", "value", "u"}, rows);
+  return 0;
+}
+
+/// Manifests that are no longer those of the index.
+std::vector<std::string> lost_sessions(const std::vector<HistorySession>& sessions) {
+  std::vector<std::string> lost;
+  for (const HistorySession& session : sessions) {
+    const auto digest = manifest_digest(session.path);
+    if (!digest || *digest != session.manifest_sha256) lost.push_back(session.path);
+  }
+  return lost;
+}
+
+int run_check(Console& console, const HistoryArguments& a) {
+  if (a.at_least && a.at_most)
+    return report_error(console, {ErrorCode::invalid_input, "history check: one limit at a time"});
+  if ((a.at_least || a.at_most) && a.measure.empty())
+    return report_error(console, {ErrorCode::invalid_input, "history check: a limit needs --measure"});
+  const auto index = HistoryIndex::open(a.index);
+  if (!index) return report_error(console, index.error());
+  const auto sessions = index->sessions(a.serial.empty() ? std::nullopt : std::optional(a.serial));
+  if (!sessions) return report_error(console, sessions.error());
+  const auto all = series_of(*index, a);
+  if (!all) return report_error(console, all.error());
+  std::vector<std::string> warnings, predicted;
+  for (const std::string& path : lost_sessions(*sessions))
+    warnings.push_back(path + ": the session is not there as it was added");
+  for (const Series& series : *all) {
+    const std::string name = series.unit.model + " " + series.unit.serial + ", " + series.measure +
+                             (series.condition.empty() ? "" : " at " + series.condition);
+    const auto chart = control_chart(series.values, {});
+    if (chart && chart->signals()) warnings.push_back(name + ": beyond the limits of its chart");
+    const auto limit = limit_of(series, a);
+    if (!limit) continue;
+    const double last = series.values.back().value;
+    if (a.at_least ? last < *limit : last > *limit) {
+      predicted.push_back(name + ": the last value is beyond the limit");
+      continue;
+    }
+    const auto found = crossing(series.values, chart ? chart->scatter : 0, *limit);
+    if (found && found->kind == CrossingKind::found && found->best_days &&
+        *found->best_days <= series.values.back().days + a.horizon_days) {
+      predicted.push_back(name + ": the limit is met about " + date_of_days(*found->best_days) + ", not before " +
+                          date_of_days(*found->earliest_days) + " (95 %)");
+    }
+  }
+  const int code = !predicted.empty() ? exit_code(VerdictKind::fail)
+                                      : exit_code(warnings.empty() ? VerdictKind::pass : VerdictKind::inconclusive);
+  if (console.json()) {
+    console.object({{"warnings", warnings}, {"limits_ahead", predicted}});
+  } else {
+    for (const std::string& sentence : warnings) console.text("warning: " + sentence);
+    for (const std::string& sentence : predicted) console.text("limit: " + sentence);
+    if (code == 0) console.text("nothing to report");
+  }
+  return code;
+}
+
+int run_export(Console& console, const HistoryArguments& a) {
+  const auto index = HistoryIndex::open(a.index);
+  if (!index) return report_error(console, index.error());
+  const auto sessions = index->sessions(a.serial.empty() ? std::nullopt : std::optional(a.serial));
+  if (!sessions) return report_error(console, sessions.error());
+  std::string csv = "vendor,model,serial,lens,firmware,started_utc,state,measure,condition,unit,scale,value,u,path\n";
+  for (const HistorySession& s : *sessions) {
+    for (const HistoryValue& v : s.values) {
+      for (const std::string& field : {s.unit.vendor, s.unit.model, s.unit.serial, s.unit.lens, s.firmware,
+                                       s.started_utc, s.state, v.measure, v.condition, v.unit, v.scale})
+        csv += csv_field(field) + ",";
+      csv += number_text(v.value) + "," + number_text(v.u) + "," + csv_field(s.path) + "\n";
+    }
+  }
+  if (a.out.empty()) {
+    csv.pop_back();
+    console.text(csv);
+    return 0;
+  }
+  if (auto written = write_file_atomically(a.out, csv); !written) return report_error(console, written.error());
+  console.note("written: " + a.out);
+  return 0;
+}
+
+int run_event(Console& console, const HistoryArguments& a) {
+  const std::string utc = a.utc.empty() ? utc_now() : a.utc;
+  if (!days_of_utc(utc))
+    return report_error(console, {ErrorCode::invalid_input,
+                                  "--utc: expected \"YYYY-MM-DDTHH:MM:SSZ\", found \"" + one_line(utc) + "\""});
+  auto index = HistoryIndex::open(a.index);
+  if (!index) return report_error(console, index.error());
+  if (auto added = index->add_event({a.serial, utc, a.kind, a.text}); !added)
+    return report_error(console, added.error());
+  console.note("kept: " + a.kind + " of " + a.serial + ", " + utc);
+  return 0;
+}
+
+}  // namespace
+
+void add_history_command(CLI::App& app, Program& program) {
+  auto* history = app.add_subcommand("history", "sessions by unit over the years: control charts and drift");
+  history->require_subcommand(1);
+  const auto begun = [&](const char* name, const char* sentence) {
+    auto* command = history->add_subcommand(name, sentence);
+    auto a = std::make_shared<HistoryArguments>();
+    command->add_option("--index", a->index, "file of the index; it can be made again from the session folders")
+        ->capture_default_str();
+    return std::pair(command, a);
+  };
+  {
+    const auto [command, a] = begun("add", "adds session folders, or all below a folder; again changes nothing");
+    command->add_option("DIR", a->folders, "session folders, or folders of them")->required();
+    finish_command(*command, program, [a = a](Console& console) { return run_add(console, *a); });
+  }
+  {
+    const auto [command, a] = begun("show", "units, or values and charts of one");
+    command->add_option("SERIAL", a->serial, "serial number; without it the units");
+    command->add_option("--measure", a->measure, "acuity, netd, ...; without it all");
+    command->add_option("--at-least", a->at_least, "limit whose crossing is predicted");
+    command->add_option("--at-most", a->at_most, "the same from above")->excludes("--at-least");
+    finish_command(*command, program, [a = a](Console& console) { return run_show(console, *a); });
+  }
+  {
+    const auto [command, a] =
+        begun("check", "whether sessions are as they were added, charts signal or a limit is near");
+    command->add_option("SERIAL", a->serial, "serial number; without it all units");
+    command->add_option("--measure", a->measure, "acuity, netd, ...; without it all");
+    command->add_option("--at-least", a->at_least, "limit of the measure");
+    command->add_option("--at-most", a->at_most, "the same from above");
+    command->add_option("--horizon-days", a->horizon_days, "how far ahead a limit matters")
+        ->check(number_in(0, 36525))
+        ->capture_default_str();
+    finish_command(*command, program, [a = a](Console& console) { return run_check(console, *a); });
+  }
+  {
+    const auto [command, a] = begun("export", "every value as CSV");
+    command->add_option("SERIAL", a->serial, "serial number; without it all units");
+    command->add_option("--out", a->out, "file; without it standard output");
+    finish_command(*command, program, [a = a](Console& console) { return run_export(console, *a); });
+  }
+  {
+    const auto [command, a] = begun("event", "keeps what happened to a unit: its charts begin anew after it");
+    command->add_option("SERIAL", a->serial, "serial number")->required();
+    command->add_option("--kind", a->kind, "repair, firmware, recalibration or transport")
+        ->required()
+        ->check(CLI::IsMember(std::vector<std::string>(begins_anew.begin(), begins_anew.end())));
+    command->add_option("--text", a->text, "what was done");
+    command->add_option("--utc", a->utc, "when; default: now");
+    finish_command(*command, program, [a = a](Console& console) { return run_event(console, *a); });
+  }
+}
+
+}  // namespace todbench

@@ -1,0 +1,336 @@
+#include "bench/history/history_index.h"
+
+#include <sqlite3.h>
+#include <sys/vfs.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <system_error>
+#include <utility>
+
+#include "bench/text/csv_table.h"
+#include "bench/text/files.h"
+#include "bench/text/folders.h"
+#include "bench/text/text.h"
+
+namespace todbench {
+namespace {
+
+constexpr int version = 1;
+constexpr int busy_ms = 2000;
+constexpr const char* schema = R"(
+CREATE TABLE unit(id INTEGER PRIMARY KEY, vendor TEXT NOT NULL, model TEXT NOT NULL, serial TEXT NOT NULL,
+  lens TEXT NOT NULL, UNIQUE(vendor, model, serial, lens)) STRICT;
+CREATE TABLE session(id INTEGER PRIMARY KEY, unit INTEGER NOT NULL REFERENCES unit(id), path TEXT NOT NULL,
+  manifest_sha256 TEXT NOT NULL UNIQUE, started_utc TEXT NOT NULL, program TEXT NOT NULL, state TEXT NOT NULL,
+  firmware TEXT NOT NULL) STRICT;
+CREATE TABLE value(session INTEGER NOT NULL REFERENCES session(id), measure TEXT NOT NULL, condition TEXT NOT NULL,
+  unit_text TEXT NOT NULL, scale TEXT NOT NULL, value REAL NOT NULL, u REAL NOT NULL,
+  PRIMARY KEY(session, measure, condition)) STRICT, WITHOUT ROWID;
+CREATE TABLE event(id INTEGER PRIMARY KEY, serial TEXT NOT NULL, utc TEXT NOT NULL, kind TEXT NOT NULL,
+  text TEXT NOT NULL) STRICT;
+CREATE INDEX session_by_unit ON session(unit, started_utc);
+PRAGMA user_version = 1;
+)";
+
+/// Magic numbers of statfs(2): NFS, SMB, CIFS, SMB2, AFS, Coda, 9p, Ceph.
+constexpr std::array<unsigned long, 8> network_disks{0x6969,     0x517B,     0xFF534D42, 0xFE534D42,
+                                                     0x5346414F, 0x73757245, 0x01021997, 0x00C36400};
+
+bool on_network_disk(const std::filesystem::path& folder) {
+  struct statfs found {};
+  if (::statfs(folder.c_str(), &found) != 0) return false;
+  const auto type = static_cast<unsigned long>(found.f_type) & 0xFFFFFFFFUL;
+  return std::find(network_disks.begin(), network_disks.end(), type) != network_disks.end();
+}
+
+tl::unexpected<Error> refused(sqlite3* database, const std::filesystem::path& file) {
+  const int code = sqlite3_extended_errcode(database) & 0xFF;
+  if (code == SQLITE_BUSY || code == SQLITE_LOCKED)
+    return fail(ErrorCode::io, file.string() + ": another program is writing to this history; try again");
+  if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT) {
+    return fail(ErrorCode::invalid_input,
+                file.string() + ": no history, or a damaged one; move it away and add the session folders again");
+  }
+  return fail(ErrorCode::io, file.string() + ": " + one_line(sqlite3_errmsg(database)));
+}
+
+/// A statement that is finalised in the end.
+class Statement {
+ public:
+  Statement(sqlite3* database, const char* text) {
+    good_ = sqlite3_prepare_v2(database, text, -1, &statement_, nullptr) == SQLITE_OK;
+  }
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
+  ~Statement() { sqlite3_finalize(statement_); }
+
+  Statement& bind(const std::string& text) {
+    good_ = good_ && sqlite3_bind_text(statement_, ++bound_, text.data(), static_cast<int>(text.size()),
+                                       SQLITE_TRANSIENT) == SQLITE_OK;
+    return *this;
+  }
+  Statement& bind(double number) {
+    good_ = good_ && sqlite3_bind_double(statement_, ++bound_, number) == SQLITE_OK;
+    return *this;
+  }
+  Statement& bind(sqlite3_int64 number) {
+    good_ = good_ && sqlite3_bind_int64(statement_, ++bound_, number) == SQLITE_OK;
+    return *this;
+  }
+  /// SQLITE_ROW, SQLITE_DONE, or what went wrong.
+  int step() { return good_ ? sqlite3_step(statement_) : SQLITE_ERROR; }
+  [[nodiscard]] std::string text(int column) const {
+    const auto* found = reinterpret_cast<const char*>(sqlite3_column_text(statement_, column));
+    return found == nullptr ? ""
+                            : std::string(found, static_cast<std::size_t>(sqlite3_column_bytes(statement_, column)));
+  }
+  [[nodiscard]] double number(int column) const { return sqlite3_column_double(statement_, column); }
+  [[nodiscard]] sqlite3_int64 whole(int column) const { return sqlite3_column_int64(statement_, column); }
+
+ private:
+  sqlite3_stmt* statement_ = nullptr;
+  int bound_ = 0;
+  bool good_ = false;
+};
+
+bool run(sqlite3* database, const char* text) {
+  return sqlite3_exec(database, text, nullptr, nullptr, nullptr) == SQLITE_OK;
+}
+
+std::filesystem::path events_file(const std::filesystem::path& file) {
+  return file.string() + ".events.csv";
+}
+
+bool insert_event(sqlite3* database, const HistoryEvent& event) {
+  return Statement(database, "INSERT INTO event(serial, utc, kind, text) VALUES(?, ?, ?, ?)")
+             .bind(event.serial)
+             .bind(event.utc)
+             .bind(event.kind)
+             .bind(event.text)
+             .step() == SQLITE_DONE;
+}
+
+/// Those that an index which was lost knew.
+Result<std::vector<HistoryEvent>> kept_events(const std::filesystem::path& file) {
+  std::vector<HistoryEvent> events;
+  if (!is_there(events_file(file))) return events;
+  const auto text = read_text_file(events_file(file));
+  if (!text) return tl::unexpected(text.error());
+  const auto table = parse_csv(*text, events_file(file).string());
+  if (!table) return tl::unexpected(table.error());
+  for (const CsvRow& row : table->rows) {
+    if (row.fields.size() != 4) return table->wrong(row.line, "expected serial, utc, kind and text");
+    events.push_back({row.fields[0], row.fields[1], row.fields[2], row.fields[3]});
+  }
+  return events;
+}
+
+/// Within a transaction that is taken back unless it is committed.
+class Transaction {
+ public:
+  explicit Transaction(sqlite3* database) : database_(database), open_(run(database, "BEGIN IMMEDIATE")) {}
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
+  ~Transaction() {
+    if (open_) (void)run(database_, "ROLLBACK");
+  }
+  [[nodiscard]] bool open() const { return open_; }
+  [[nodiscard]] bool commit() {
+    const bool done = run(database_, "COMMIT");
+    if (done) open_ = false;
+    return done;
+  }
+
+ private:
+  sqlite3* database_;
+  bool open_;
+};
+
+Result<void> prepare(sqlite3* database, const std::filesystem::path& file) {
+  sqlite3_busy_timeout(database, busy_ms);
+  if (!run(database, "PRAGMA foreign_keys = ON; PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;"))
+    return refused(database, file);
+  sqlite3_int64 found = 0;
+  sqlite3_int64 tables = 0;
+  {
+    Statement asked(database, "PRAGMA user_version");
+    if (asked.step() != SQLITE_ROW) return refused(database, file);
+    found = asked.whole(0);
+    Statement counted(database, "SELECT count(*) FROM sqlite_schema");
+    if (counted.step() != SQLITE_ROW) return refused(database, file);
+    tables = counted.whole(0);
+  }
+  if (found == version) return {};
+  if (found != 0 || tables != 0)
+    return fail(ErrorCode::invalid_input, file.string() + ": not a history of this version of the program");
+  const auto events = kept_events(file);
+  if (!events) return tl::unexpected(events.error());
+  Transaction transaction(database);
+  if (!transaction.open() || !run(database, schema)) return refused(database, file);
+  for (const HistoryEvent& event : *events) {
+    if (!insert_event(database, event)) return refused(database, file);
+  }
+  if (!transaction.commit()) return refused(database, file);
+  return {};
+}
+
+}  // namespace
+
+void HistoryIndex::Close::operator()(sqlite3* database) const {
+  sqlite3_close(database);
+}
+
+HistoryIndex::HistoryIndex(std::filesystem::path file, std::unique_ptr<sqlite3, Close> database)
+    : file_(std::move(file)), database_(std::move(database)) {}
+HistoryIndex::HistoryIndex(HistoryIndex&&) noexcept = default;
+HistoryIndex& HistoryIndex::operator=(HistoryIndex&&) noexcept = default;
+HistoryIndex::~HistoryIndex() = default;
+
+Result<HistoryIndex> HistoryIndex::open(const std::filesystem::path& file) {
+  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  if (auto made = make_folder(folder); !made) return tl::unexpected(made.error());
+  if (on_network_disk(folder)) {
+    return fail(ErrorCode::invalid_input,
+                file.string() +
+                    ": lies on a network disk, where two programs can spoil it; take a local file, which "
+                    "todbench history add fills from the session folders");
+  }
+  sqlite3* opened = nullptr;
+  const int code = sqlite3_open_v2(file.c_str(), &opened, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
+  std::unique_ptr<sqlite3, Close> database(opened);
+  if (code != SQLITE_OK) return refused(opened, file);
+  if (auto prepared = prepare(opened, file); !prepared) return tl::unexpected(prepared.error());
+  return HistoryIndex(file, std::move(database));
+}
+
+Result<Adding> HistoryIndex::add(const HistorySession& session) {
+  sqlite3* const database = database_.get();
+  Transaction transaction(database);
+  if (!transaction.open()) return refused(database, file_);
+  {
+    Statement known(database, "SELECT path FROM session WHERE manifest_sha256 = ?");
+    const int found = known.bind(session.manifest_sha256).step();
+    if (found != SQLITE_ROW && found != SQLITE_DONE) return refused(database, file_);
+    if (found == SQLITE_ROW && known.text(0) == session.path) return Adding::known;
+    if (found == SQLITE_ROW) {
+      if (Statement(database, "UPDATE session SET path = ? WHERE manifest_sha256 = ?")
+              .bind(session.path)
+              .bind(session.manifest_sha256)
+              .step() != SQLITE_DONE)
+        return refused(database, file_);
+    }
+    if (found == SQLITE_ROW) {
+      // The statement that still stands on its row would keep the transaction open.
+      while (known.step() == SQLITE_ROW) {
+      }
+      if (!transaction.commit()) return refused(database, file_);
+      return Adding::moved;
+    }
+  }
+  const HistoryUnit& unit = session.unit;
+  const auto bound = [&](const char* text) {
+    Statement statement(database, text);
+    return statement.bind(unit.vendor).bind(unit.model).bind(unit.serial).bind(unit.lens).step();
+  };
+  if (bound("INSERT OR IGNORE INTO unit(vendor, model, serial, lens) VALUES(?, ?, ?, ?)") != SQLITE_DONE)
+    return refused(database, file_);
+  if (Statement(database,
+                "INSERT INTO session(unit, path, manifest_sha256, started_utc, program, state, firmware) SELECT id, ?, "
+                "?, ?, ?, ?, ? FROM unit WHERE vendor = ? AND model = ? AND serial = ? AND lens = ?")
+          .bind(session.path)
+          .bind(session.manifest_sha256)
+          .bind(session.started_utc)
+          .bind(session.program)
+          .bind(session.state)
+          .bind(session.firmware)
+          .bind(unit.vendor)
+          .bind(unit.model)
+          .bind(unit.serial)
+          .bind(unit.lens)
+          .step() != SQLITE_DONE)
+    return refused(database, file_);
+  const sqlite3_int64 id = sqlite3_last_insert_rowid(database);
+  for (const HistoryValue& value : session.values) {
+    if (Statement(database, "INSERT OR REPLACE INTO value VALUES(?, ?, ?, ?, ?, ?, ?)")
+            .bind(id)
+            .bind(value.measure)
+            .bind(value.condition)
+            .bind(value.unit)
+            .bind(value.scale)
+            .bind(value.value)
+            .bind(value.u)
+            .step() != SQLITE_DONE)
+      return refused(database, file_);
+  }
+  if (!transaction.commit()) return refused(database, file_);
+  return Adding::added;
+}
+
+Result<void> HistoryIndex::add_event(const HistoryEvent& event) {
+  const auto file = events_file(file_);
+  const bool begun = is_there(file);
+  auto csv = AppendFile::open(file, AppendFile::Start::at_end);
+  if (!csv) return tl::unexpected(csv.error());
+  const std::string row = csv_field(event.serial) + "," + csv_field(event.utc) + "," + csv_field(event.kind) + "," +
+                          csv_field(one_line(event.text)) + "\n";
+  if (auto written = csv->append((begun ? "" : "serial,utc,kind,text\n") + row); !written) return written;
+  if (!insert_event(database_.get(), event)) return refused(database_.get(), file_);
+  return {};
+}
+
+Result<std::vector<HistorySession>> HistoryIndex::sessions(const std::optional<std::string>& serial) const {
+  sqlite3* const database = database_.get();
+  std::vector<HistorySession> sessions;
+  Statement asked(
+      database,
+      "SELECT u.vendor, u.model, u.serial, u.lens, s.path, s.manifest_sha256, s.started_utc, s.program, "
+      "s.state, s.firmware, s.id FROM session s JOIN unit u ON u.id = s.unit WHERE ?1 = '' OR u.serial = ?2 "
+      "ORDER BY u.vendor, u.model, u.serial, u.lens, s.started_utc, s.id");
+  asked.bind(serial ? std::string("one") : std::string()).bind(serial.value_or(""));
+  int found = asked.step();
+  for (; found == SQLITE_ROW; found = asked.step()) {
+    HistorySession session{.unit = {asked.text(0), asked.text(1), asked.text(2), asked.text(3)},
+                           .path = asked.text(4),
+                           .manifest_sha256 = asked.text(5),
+                           .started_utc = asked.text(6),
+                           .program = asked.text(7),
+                           .state = asked.text(8),
+                           .firmware = asked.text(9),
+                           .values = {}};
+    Statement of(database,
+                 "SELECT measure, condition, unit_text, scale, value, u FROM value WHERE session = ? ORDER BY measure, "
+                 "condition");
+    of.bind(asked.whole(10));
+    int row = of.step();
+    for (; row == SQLITE_ROW; row = of.step())
+      session.values.push_back({of.text(0), of.text(1), of.text(2), of.text(3), of.number(4), of.number(5)});
+    if (row != SQLITE_DONE) return refused(database, file_);
+    sessions.push_back(std::move(session));
+  }
+  if (found != SQLITE_DONE) return refused(database, file_);
+  return sessions;
+}
+
+Result<std::vector<HistoryEvent>> HistoryIndex::events(const std::string& serial) const {
+  std::vector<HistoryEvent> events;
+  Statement asked(database_.get(), "SELECT serial, utc, kind, text FROM event WHERE serial = ? ORDER BY utc, id");
+  asked.bind(serial);
+  int found = asked.step();
+  for (; found == SQLITE_ROW; found = asked.step())
+    events.push_back({asked.text(0), asked.text(1), asked.text(2), asked.text(3)});
+  if (found != SQLITE_DONE) return refused(database_.get(), file_);
+  return events;
+}
+
+std::filesystem::path default_history_file() {
+  const char* const data = std::getenv("XDG_DATA_HOME");
+  const char* const home = std::getenv("HOME");
+  const std::filesystem::path folder = data != nullptr && *data != 0
+                                           ? std::filesystem::path(data)
+                                           : std::filesystem::path(home != nullptr ? home : ".") / ".local" / "share";
+  return folder / "todbench" / "history.sqlite";
+}
+
+}  // namespace todbench

@@ -1,0 +1,208 @@
+#include "bench/history/history_session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <system_error>
+
+#include "bench/session/manifest.h"
+#include "bench/text/csv_table.h"
+#include "bench/text/files.h"
+#include "bench/text/json.h"
+#include "bench/text/text.h"
+
+namespace todbench {
+namespace {
+
+constexpr double z95 = 1.959963984540054;
+
+/// A file of a session that the manifest vouches for.
+Result<std::string> vouched_text(const std::filesystem::path& folder, const std::string& name) {
+  const auto listed = is_listed(folder, name);
+  if (!listed) return tl::unexpected(listed.error());
+  if (!*listed) return fail(ErrorCode::invalid_input, (folder / name).string() + ": changed after the session ended");
+  return read_text_file(folder / name);
+}
+
+Result<Json> vouched_json(const std::filesystem::path& folder, const std::string& name) {
+  const auto text = vouched_text(folder, name);
+  if (!text) return tl::unexpected(text.error());
+  Json json = Json::parse(*text, nullptr, false);
+  if (!json.is_object()) return fail(ErrorCode::invalid_input, (folder / name).string() + ": not valid JSON");
+  return json;
+}
+
+std::string text_at(const Json& json, const char* key) {
+  return json.is_object() && json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
+}
+
+std::optional<double> number_at(const Json& json, const char* key) {
+  if (!json.is_object() || !json.contains(key) || !json[key].is_number()) return std::nullopt;
+  return json[key].get<double>();
+}
+
+/// A setting of the camera that names its lens.
+std::string lens_of(const Json& camera) {
+  if (!camera.contains("settings") || !camera["settings"].is_object()) return "";
+  for (const auto& [name, value] : camera["settings"].items()) {
+    std::string lower;
+    for (const char c : name) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (lower.starts_with("lens") && value.is_string()) return value.get<std::string>();
+  }
+  return "";
+}
+
+/// Standard uncertainties of ln acuity from the rows that are not common to a series, by contrast.
+Result<std::map<double, double>> stated_uncertainties(const std::filesystem::path& folder) {
+  std::map<double, double> stated;
+  if (!is_there(folder / "uncertainty.json")) return stated;
+  const auto json = vouched_json(folder, "uncertainty.json");
+  if (!json) return tl::unexpected(json.error());
+  if (!json->contains("points")) return stated;
+  for (const Json& point : (*json)["points"]) {
+    const auto contrast_k = number_at(point, "delta_t_k"), u = number_at(point, "u_not_common_to_series");
+    if (contrast_k && u) stated[*contrast_k] = *u;
+  }
+  return stated;
+}
+
+Result<void> add_acuities(HistorySession& session, const std::filesystem::path& folder, const std::string& side) {
+  const auto text = vouched_text(folder, "curve.csv");
+  if (!text) return tl::unexpected(text.error());
+  const auto table = parse_csv(*text, (folder / "curve.csv").string());
+  if (!table) return tl::unexpected(table.error());
+  const auto stated = stated_uncertainties(folder);
+  if (!stated) return tl::unexpected(stated.error());
+  const auto column = [&](const char* name) {
+    return static_cast<std::size_t>(std::find(table->header.begin(), table->header.end(), name) -
+                                    table->header.begin());
+  };
+  const std::size_t of_side = column("side"), contrast = column("set_delta_t_k"), acuity = column("acuity_per_mrad"),
+                    low = column("acuity_ci95_low_per_mrad"), high = column("acuity_ci95_high_per_mrad");
+  for (const std::size_t index : {of_side, contrast, acuity, low, high}) {
+    if (index >= table->header.size()) return table->wrong(1, "a column of curve.csv is missing");
+  }
+  for (const CsvRow& row : table->rows) {
+    if (row.fields[of_side] != side) continue;
+    const auto contrast_k = parse_number(row.fields[contrast]), value = parse_number(row.fields[acuity]),
+               from = parse_number(row.fields[low]), to = parse_number(row.fields[high]);
+    // No uncertainty, no row.
+    if (!contrast_k || !value || !from || !to || !(*value > 0) || !(*from > 0) || !(*to > *from)) continue;
+    const auto more = stated->find(*contrast_k);
+    session.values.push_back({"acuity", "dT=" + number_text(*contrast_k) + "K", "1/mrad", "ln", std::log(*value),
+                              std::hypot(std::log(*to / *from) / (2 * z95), more == stated->end() ? 0 : more->second)});
+  }
+  return {};
+}
+
+Result<void> add_measures(HistorySession& session, const std::filesystem::path& folder) {
+  if (!is_there(folder / "measures.json")) return {};
+  const auto json = vouched_json(folder, "measures.json");
+  if (!json) return tl::unexpected(json.error());
+  if (!json->contains("main") || !(*json)["main"].is_object() || !(*json)["main"].contains("quantities")) return {};
+  for (const Json& line : (*json)["main"]["quantities"]) {
+    const auto value = number_at(line, "value");
+    if (!value || !line.contains("ci95") || !line["ci95"].is_array() || line["ci95"].size() != 2) continue;
+    if (!line["ci95"][0].is_number() || !line["ci95"][1].is_number()) continue;
+    const double u = (line["ci95"][1].get<double>() - line["ci95"][0].get<double>()) / (2 * z95);
+    if (u > 0) session.values.push_back({text_at(line, "measure"), "", text_at(line, "unit"), "linear", *value, u});
+  }
+  return {};
+}
+
+Result<void> set_unit(HistorySession& session, const std::filesystem::path& folder, const Json& provenance) {
+  const auto fits = vouched_text(folder, "fits.json");
+  if (!fits) return tl::unexpected(fits.error());
+  // The name of the curve is that of the camera when it ended; the file may be long.
+  constexpr std::string_view key = "\"sensor\": \"";
+  const std::size_t at = fits->find(key);
+  const std::size_t from = at == std::string::npos ? fits->size() : at + key.size();
+  const std::string sensor = fits->substr(from, fits->find('"', from) - from);
+  if (!provenance.contains("camera") || !provenance["camera"].is_object()) {
+    session.unit = {"simulation", sensor, "", ""};
+    return {};
+  }
+  const Json& camera = provenance["camera"];
+  session.unit = {text_at(camera, "vendor"), text_at(camera, "model"), text_at(camera, "serial"), lens_of(camera)};
+  session.firmware = text_at(camera, "firmware");
+  if (session.unit.serial.empty())
+    return fail(ErrorCode::invalid_input, folder.string() + ": the camera has no serial number");
+  if (!sensor.ends_with(session.unit.serial)) {
+    return fail(ErrorCode::invalid_input, folder.string() + ": the session began with serial number " +
+                                              one_line(session.unit.serial) + " and its curve is of '" +
+                                              one_line(sensor) + "'");
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<HistorySession> read_history_session(const std::filesystem::path& folder) {
+  auto digest = manifest_digest(folder);
+  if (!digest) return tl::unexpected(digest.error());
+  const auto provenance = vouched_json(folder, "provenance.json");
+  if (!provenance) return tl::unexpected(provenance.error());
+  HistorySession session;
+  session.manifest_sha256 = *std::move(digest);
+  std::error_code problem;
+  const auto absolute = std::filesystem::weakly_canonical(folder, problem);
+  session.path = (problem ? folder : absolute).string();
+  session.started_utc = text_at(*provenance, "started_utc");
+  session.program = text_at(*provenance, "program_version");
+  session.state = text_at(*provenance, "state");
+  if (!days_of_utc(session.started_utc))
+    return fail(ErrorCode::invalid_input, (folder / "provenance.json").string() + ": no time of the start");
+  if (auto set = set_unit(session, folder, *provenance); !set) return tl::unexpected(set.error());
+  if (auto added = add_acuities(session, folder, text_at(*provenance, "side")); !added)
+    return tl::unexpected(added.error());
+  if (auto added = add_measures(session, folder); !added) return tl::unexpected(added.error());
+  return session;
+}
+
+Result<std::vector<std::filesystem::path>> session_folders_below(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> found;
+  std::error_code problem;
+  if (!std::filesystem::is_directory(folder, problem))
+    return fail(ErrorCode::not_found, folder.string() + ": no such folder");
+  if (is_there(folder / "session.toml")) return std::vector{folder};
+  auto entry = std::filesystem::recursive_directory_iterator(
+      folder, std::filesystem::directory_options::skip_permission_denied, problem);
+  for (const auto end = std::filesystem::recursive_directory_iterator(); !problem && entry != end;
+       entry.increment(problem)) {
+    std::error_code ignored;
+    if (!entry->is_directory(ignored) || entry->is_symlink(ignored)) continue;
+    if (!is_there(entry->path() / "session.toml")) continue;
+    found.push_back(entry->path());
+    entry.disable_recursion_pending();
+  }
+  if (problem) return fail(ErrorCode::io, folder.string() + ": " + problem.message());
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::optional<double> days_of_utc(const std::string& utc) {
+  int year = 0, month = 0, day = 0, hour = 0, minute = 0, second = 0;
+  char zone = 0;
+  if (std::sscanf(utc.c_str(), "%4d-%2d-%2dT%2d:%2d:%2d%c", &year, &month, &day, &hour, &minute, &second, &zone) != 7 ||
+      zone != 'Z')
+    return std::nullopt;
+  const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day))};
+  if (!date.ok()) return std::nullopt;
+  return static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count()) + hour / 24.0 + minute / 1440.0 +
+         second / 86400.0;
+}
+
+std::string date_of_days(double days) {
+  const double within = std::clamp(days, -719162.0, 2932896.0);  // years 1 to 9999
+  const std::chrono::year_month_day date{
+      std::chrono::sys_days(std::chrono::days(static_cast<int>(std::floor(within))))};
+  char text[16];
+  std::snprintf(text, sizeof text, "%04d-%02u-%02u", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
+                static_cast<unsigned>(date.day()));
+  return text;
+}
+
+}  // namespace todbench

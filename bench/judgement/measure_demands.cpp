@@ -1,0 +1,165 @@
+#include "bench/judgement/measure_demands.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+
+#include "bench/judgement/limit_decision.h"
+#include "bench/text/text.h"
+
+namespace todbench {
+namespace {
+
+/// A demand on a measure.
+struct MeasureDemand {
+  DemandKind kind;
+  LimitedMeasure measure;
+  LimitSide side;
+  std::string_view name, unit, words;
+};
+constexpr std::array measure_demands{
+    MeasureDemand{DemandKind::netd, LimitedMeasure::netd, LimitSide::at_most, "netd", "K", "NETD at most "},
+    MeasureDemand{DemandKind::temporal_noise, LimitedMeasure::temporal_noise, LimitSide::at_most, "temporal_noise", "K",
+                  "temporal noise of a pixel at most "},
+    MeasureDemand{DemandKind::noise_t, LimitedMeasure::noise_t, LimitSide::at_most, "noise_t", "K",
+                  "3-D noise t at most "},
+    MeasureDemand{DemandKind::noise_v, LimitedMeasure::noise_v, LimitSide::at_most, "noise_v", "K",
+                  "3-D noise v at most "},
+    MeasureDemand{DemandKind::noise_h, LimitedMeasure::noise_h, LimitSide::at_most, "noise_h", "K",
+                  "3-D noise h at most "},
+    MeasureDemand{DemandKind::noise_tv, LimitedMeasure::noise_tv, LimitSide::at_most, "noise_tv", "K",
+                  "3-D noise tv at most "},
+    MeasureDemand{DemandKind::noise_th, LimitedMeasure::noise_th, LimitSide::at_most, "noise_th", "K",
+                  "3-D noise th at most "},
+    MeasureDemand{DemandKind::noise_vh, LimitedMeasure::noise_vh, LimitSide::at_most, "noise_vh", "K",
+                  "3-D noise vh at most "},
+    MeasureDemand{DemandKind::noise_tvh, LimitedMeasure::noise_tvh, LimitSide::at_most, "noise_tvh", "K",
+                  "3-D noise tvh at most "},
+    MeasureDemand{DemandKind::temperature_scale_at_least, LimitedMeasure::transfer_slope, LimitSide::at_least,
+                  "temperature_scale_at_least", "K/K", "contrast seen over contrast shown at least "},
+    MeasureDemand{DemandKind::temperature_scale_at_most, LimitedMeasure::transfer_slope, LimitSide::at_most,
+                  "temperature_scale_at_most", "K/K", "contrast seen over contrast shown at most "},
+};
+
+const MeasureDemand& demand_of(DemandKind kind) {
+  const auto* const found = std::find_if(measure_demands.begin(), measure_demands.end(),
+                                         [&](const MeasureDemand& demand) { return demand.kind == kind; });
+  assert(found != measure_demands.end());
+  return *found;
+}
+
+/// Relative standard uncertainty of a measure from the budget.
+double stated_u(LimitedMeasure measure, const CurveUncertainty* uncertainty) {
+  if (uncertainty == nullptr) return 0;
+  const bool of_scale = measure == LimitedMeasure::transfer_slope || measure == LimitedMeasure::netd;
+  return of_scale ? uncertainty->u_scale : uncertainty->u_camera_scale;
+}
+
+/// Each side joined with what is stated, as the root of the sum of squares.
+Interval expanded(double value, const Interval& statistical, double relative_u) {
+  constexpr double z95 = 1.959963984540054;
+  const double stated = z95 * relative_u * std::abs(value);
+  Interval out;
+  if (statistical.low) out.low = value - std::hypot(value - *statistical.low, stated);
+  if (statistical.high) out.high = value + std::hypot(*statistical.high - value, stated);
+  return out;
+}
+
+std::string words_of(const Interval& interval, std::string_view unit) {
+  return "95 % interval " + (interval.low ? number_text(*interval.low) : std::string("open")) + " to " +
+         (interval.high ? number_text(*interval.high) : std::string("open")) + " " + std::string(unit);
+}
+
+const MeasuredQuantity* quantity_of(const Evidence& evidence, LimitedMeasure measure) {
+  if (!evidence.measures) return nullptr;
+  const auto found = std::find_if(evidence.measures->begin(), evidence.measures->end(),
+                                  [&](const MeasuredQuantity& one) { return one.measure == to_string(measure); });
+  return found == evidence.measures->end() ? nullptr : &*found;
+}
+
+Demand judged(const MeasureDemand& asked, double limit, const Evidence& evidence) {
+  Demand demand{.kind = asked.kind, .limit = limit};
+  demand.conformity = ConformityDecision::inconclusive;
+  const MeasuredQuantity* measured = quantity_of(evidence, asked.measure);
+  if (measured == nullptr || !measured->value) {
+    demand.reason = "this was not measured";
+    return demand;
+  }
+  demand.result = measured->value;
+  demand.interval = measured->ci95;
+  if (const double u = stated_u(asked.measure, evidence.uncertainty); evidence.uncertainty != nullptr) {
+    demand.statistical = measured->ci95;
+    demand.interval = expanded(*measured->value, measured->ci95, u);
+  }
+  const LimitAnswer answer = decide({.value = demand.result,
+                                     .interval = demand.interval,
+                                     .limit = limit,
+                                     .at_least = asked.side == LimitSide::at_least},
+                                    evidence.limits.rule, evidence.limits.guard_band_risk);
+  demand.conformity = answer.decision;
+  demand.p_conformity = answer.p_conformity;
+  demand.decision = kind_of(answer.decision);
+  demand.reason = words_of(demand.interval, asked.unit);
+  return demand;
+}
+
+template <DemandKind kind>
+std::vector<Demand> judge_measure(const Evidence& evidence) {
+  const MeasureDemand& asked = demand_of(kind);
+  std::vector<Demand> demands;
+  for (const MeasureLimit& limits : evidence.limits.measures) {
+    const auto& limit = asked.side == LimitSide::at_least ? limits.at_least : limits.at_most;
+    if (limits.measure == asked.measure && limit) demands.push_back(judged(asked, *limit, evidence));
+  }
+  return demands;
+}
+
+std::string measure_in_words(const Demand& demand) {
+  const MeasureDemand& asked = demand_of(demand.kind);
+  return std::string(asked.words) + (demand.limit ? number_text(*demand.limit) : "(no number)") + " " +
+         std::string(asked.unit);
+}
+
+template <DemandKind kind>
+DemandKindRow row() {
+  const MeasureDemand& asked = demand_of(kind);
+  return {kind, asked.name, asked.unit, asked.side, judge_measure<kind>, measure_in_words};
+}
+
+}  // namespace
+
+DemandKindRow measure_row(DemandKind kind) {
+  switch (kind) {
+    case DemandKind::netd:
+      return row<DemandKind::netd>();
+    case DemandKind::temporal_noise:
+      return row<DemandKind::temporal_noise>();
+    case DemandKind::noise_t:
+      return row<DemandKind::noise_t>();
+    case DemandKind::noise_v:
+      return row<DemandKind::noise_v>();
+    case DemandKind::noise_h:
+      return row<DemandKind::noise_h>();
+    case DemandKind::noise_tv:
+      return row<DemandKind::noise_tv>();
+    case DemandKind::noise_th:
+      return row<DemandKind::noise_th>();
+    case DemandKind::noise_vh:
+      return row<DemandKind::noise_vh>();
+    case DemandKind::noise_tvh:
+      return row<DemandKind::noise_tvh>();
+    case DemandKind::temperature_scale_at_least:
+      return row<DemandKind::temperature_scale_at_least>();
+    case DemandKind::temperature_scale_at_most:
+      return row<DemandKind::temperature_scale_at_most>();
+    case DemandKind::acuity:
+    case DemandKind::identified:
+    case DemandKind::equivalence:
+      break;
+  }
+  assert(false && "no measure");
+  return row<DemandKind::netd>();
+}
+
+}  // namespace todbench

@@ -1,0 +1,103 @@
+#include "bench/run/limit_forecast.h"
+
+#include <fmt/format.h>
+
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+
+#include "bench/judgement/acuity_uncertainty.h"
+#include "bench/text/text.h"
+
+namespace todbench {
+namespace {
+
+constexpr double z95 = 1.959963984540054;
+
+/// The curve that is expected, as far as a budget looks at it.
+TodCurve expected_curve(const PlanPrediction& prediction) {
+  TodCurve curve;
+  for (const ContrastPrediction& contrast : prediction.contrasts) {
+    TodPoint point;
+    point.set_delta_t_k = point.delta_t_k = contrast.delta_t_k;
+    point.fit.verdict = FitVerdict::ok;
+    point.fit.threshold = contrast.s75_mrad;
+    if (contrast.s75_mrad && contrast.uncertainty_percent) {
+      const double half = std::log1p(*contrast.uncertainty_percent / 100);
+      point.fit.ci95 = {*contrast.s75_mrad * std::exp(-half), *contrast.s75_mrad * std::exp(half)};
+    }
+    curve.points.push_back(std::move(point));
+  }
+  return curve;
+}
+
+/// Guard band over standard uncertainty.
+double guard_of(const LimitsPlan& limits) {
+  if (limits.rule == ConformityRule::simple) return 0;
+  return limits.guard_band_risk ? guard_band_for_risk(*limits.guard_band_risk, {.value = 0, .u = 1}) : z95;
+}
+
+Result<LimitOutlook> outlook(const LimitsPlan& limits, double u, double ln_acuity, double ln_limit) {
+  const boost::math::normal normal;
+  LimitOutlook out{.u_ln_acuity = u, .guard_band_ln = guard_of(limits) * u};
+  const double accepted_from = ln_limit + out.guard_band_ln;
+  out.p_rejected = cdf(normal, (accepted_from - ln_acuity) / u);
+  out.passes_95_from_per_mrad = std::exp(accepted_from + quantile(normal, 0.95) * u);
+  if (limits.fleet_sd_percent) {
+    const auto risks = global_risks({.mean = ln_acuity, .sd = std::log1p(*limits.fleet_sd_percent / 100)}, u,
+                                    {.at_least = ln_limit}, {.at_least = accepted_from});
+    if (!risks) return tl::unexpected(risks.error());
+    out.fleet = *risks;
+  }
+  return out;
+}
+
+std::string percent(double share) {
+  return fmt::format("{:.{}f} %", 100 * share, share < 0.1 ? 1 : 0);
+}
+
+}  // namespace
+
+Result<std::vector<LimitForecast>> limit_forecasts(const Plan& plan, const PlanPrediction& prediction) {
+  std::vector<LimitForecast> forecasts;
+  if (plan.limits.acuity.empty()) return forecasts;
+  const TodCurve curve = expected_curve(prediction);
+  const auto budget = curve_uncertainty(plan, curve, {}, std::nullopt);
+  if (!budget) return tl::unexpected(budget.error());
+  for (const AcuityLimit& limit : plan.limits.acuity) {
+    const TodPoint* point = point_at(curve, limit.delta_t_k);
+    if (point == nullptr || !point->fit.threshold || !point->fit.ci95.high) continue;
+    const double trials = std::log(*point->fit.ci95.high / *point->fit.threshold) / z95;
+    const PointUncertainty* stated = *budget ? point_at(**budget, limit.delta_t_k) : nullptr;
+    const double u_stated = stated != nullptr ? stated->u_stated : 0;
+    const double ln_acuity = -std::log(*point->fit.threshold), ln_limit = std::log(limit.least_acuity_per_mrad);
+    const auto planned = outlook(plan.limits, std::hypot(trials, u_stated), ln_acuity, ln_limit);
+    const auto fourfold = outlook(plan.limits, std::hypot(trials / 2, u_stated), ln_acuity, ln_limit);
+    if (!planned) return tl::unexpected(planned.error());
+    if (!fourfold) return tl::unexpected(fourfold.error());
+    forecasts.push_back({.delta_t_k = limit.delta_t_k,
+                         .least_acuity_per_mrad = limit.least_acuity_per_mrad,
+                         .expected_acuity_per_mrad = std::exp(ln_acuity),
+                         .planned = *planned,
+                         .fourfold = *fourfold});
+  }
+  return forecasts;
+}
+
+std::string in_words(const LimitForecast& forecast) {
+  std::string text = fmt::format(
+      "{} K, at least {} 1/mrad: a camera like the simulated one ({:.4g} 1/mrad) does not pass with {}; with four "
+      "times "
+      "the presentations {}; from {:.4g} 1/mrad ({:.4g}) a camera passes with 95 %",
+      number_text(forecast.delta_t_k), number_text(forecast.least_acuity_per_mrad), forecast.expected_acuity_per_mrad,
+      percent(forecast.planned.p_rejected), percent(forecast.fourfold.p_rejected),
+      forecast.planned.passes_95_from_per_mrad, forecast.fourfold.passes_95_from_per_mrad);
+  if (forecast.planned.fleet && forecast.fourfold.fleet) {
+    text +=
+        fmt::format("; of the fleet good and rejected {} ({}), bad and accepted {} ({})",
+                    percent(forecast.planned.fleet->producer_risk), percent(forecast.fourfold.fleet->producer_risk),
+                    percent(forecast.planned.fleet->consumer_risk), percent(forecast.fourfold.fleet->consumer_risk));
+  }
+  return text;
+}
+
+}  // namespace todbench

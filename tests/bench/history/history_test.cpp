@@ -1,0 +1,218 @@
+// Charts against their references, and the index against the folders that it is made from.
+#include <gmock/gmock.h>
+#include <sqlite3.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "bench/history/control_chart.h"
+#include "bench/history/history_index.h"
+#include "tests/support/source_file.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/tod/measures/measures_reference.h"
+
+namespace todbench {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::TemporaryFolder;
+
+std::optional<double> number(const nlohmann::json& json) {
+  return json.is_null() ? std::nullopt : std::optional(json.get<double>());
+}
+
+TEST(RunLength, IsThatOfTheReference) {
+  for (const auto& reference : test::reference_cases("conformity", "run_lengths")) {
+    const double shift = reference["shift_sd"], expected = reference["average_run_length"];
+    const double found = reference.contains("weight")
+                             ? ewma_run_length(reference["weight"], reference["limit_in_sd"], shift)
+                             : cusum_run_length(reference["reference_value"], reference["decision_interval"], shift);
+    EXPECT_NEAR(found, expected, 1e-7 * expected) << reference.dump();
+  }
+}
+
+std::vector<ChartValue> values_of(const nlohmann::json& reference) {
+  std::vector<ChartValue> values;
+  for (std::size_t i = 0; i < reference["day"].size(); ++i)
+    values.push_back({reference["day"][i], reference["value"][i], reference["standard_uncertainty"][i]});
+  return values;
+}
+
+TEST(ControlChart, IsThatOfTheReference) {
+  for (const auto& reference : test::reference_cases("conformity", "series")) {
+    const ChartDesign design{.lambda = reference["ewma_weight"],
+                             .ewma_limit = reference["ewma_limit_factor"],
+                             .cusum_k = reference["cusum_reference_value"],
+                             .cusum_h = reference["cusum_decision_interval"],
+                             .reference = reference["reference"].get<double>(),
+                             .scatter = reference["between_sd"].get<double>()};
+
+    const auto chart = control_chart(values_of(reference), design);
+
+    ASSERT_TRUE(chart);
+    for (std::size_t i = 0; i < chart->points.size(); ++i) {
+      const ChartPoint& point = chart->points[i];
+      EXPECT_NEAR(point.z, reference["standardised"][i].get<double>(), 1e-8);
+      EXPECT_NEAR(point.ewma, reference["ewma"][i].get<double>(), 1e-8);
+      EXPECT_NEAR(point.ewma_limit, reference["ewma_limit"][i].get<double>(), 1e-8);
+      EXPECT_NEAR(point.cusum_up, reference["cusum_high"][i].get<double>(), 1e-8);
+      EXPECT_NEAR(point.cusum_down, reference["cusum_low"][i].get<double>(), 1e-8);
+    }
+  }
+}
+
+TEST(Crossing, HasTheLineOfTheReference) {
+  for (const auto& reference : test::reference_cases("conformity", "series")) {
+    const auto found =
+        crossing(values_of(reference), reference["between_sd"].get<double>(), reference["limit"].get<double>());
+
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->slope_per_year / 365.25, reference["slope_per_day"].get<double>(), 1e-11);
+    EXPECT_NEAR(found->slope_u_per_year / 365.25, reference["slope_se"].get<double>(), 1e-11);
+    const auto day = number(reference["crossing_day"]);
+    EXPECT_EQ(found->best_days.has_value(), day.has_value());
+    if (day) {
+      EXPECT_NEAR(*found->best_days, *day, 1e-4);
+    }
+  }
+}
+
+TEST(Crossing, IsFoundBetweenTheEndsOfFieller) {
+  // x = 0.5 - 0.0002 t without scatter of the points: met at day 500.
+  std::vector<ChartValue> values;
+  for (int i = 0; i < 12; ++i) values.push_back({30.0 * i, 0.5 - 0.0002 * 30 * i, 0.005});
+
+  const auto found = crossing(values, 0, 0.4);
+
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->kind, CrossingKind::found);
+  EXPECT_NEAR(found->best_days.value(), 500, 1e-9);
+  // Both ends satisfy the equality of Fieller.
+  double w = 0, mean = 0, stt = 0;
+  for (const ChartValue& value : values) w += 1 / 0.000025, mean += value.days / 12;
+  for (const ChartValue& value : values) stt += std::pow(value.days - mean, 2) / 0.000025;
+  for (const double t : {found->earliest_days.value(), found->latest_days.value()}) {
+    const double distance = 0.5 - 0.0002 * t - 0.4;
+    EXPECT_NEAR(distance * distance, 1.959963984540054 * 1.959963984540054 * (1 / w + std::pow(t - mean, 2) / stt),
+                1e-12);
+  }
+}
+
+TEST(Crossing, IsOpenWhereTheSlopeMayBeNone) {
+  const std::vector<ChartValue> level{{0, 0.5, 0.01}, {30, 0.501, 0.01}, {60, 0.4995, 0.01}};
+
+  const auto found = crossing(level, 0, 0.4);
+
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->kind, CrossingKind::not_before);
+  EXPECT_GT(found->earliest_days.value(), 60);
+  EXPECT_FALSE(found->latest_days);
+  EXPECT_FALSE(crossing({{0, 1, 1}, {0, 1, 1}, {0, 1, 1}}, 0, 2));
+}
+
+class History : public ::testing::Test {
+ protected:
+  std::filesystem::path session(const std::string& name) const {
+    const auto folder = folder_.path() / name;
+    std::filesystem::create_directories(folder.parent_path());
+    std::filesystem::copy(source_file("tests/golden/session-0.1"), folder, std::filesystem::copy_options::recursive);
+    return folder;
+  }
+  [[nodiscard]] std::filesystem::path file() const { return folder_.path() / "index" / "history.sqlite"; }
+  TemporaryFolder folder_;
+};
+
+TEST_F(History, KnowsASessionByItsManifestAndFindsItWhereItWasMoved) {
+  const auto folder = session("all/a");
+  auto index = HistoryIndex::open(file());
+  ASSERT_TRUE(index) << index.error().message;
+  const auto found = session_folders_below(folder_.path() / "all");
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->size(), 1u);
+
+  EXPECT_EQ(index->add(*read_history_session(found->front())).value(), Adding::added);
+  EXPECT_EQ(index->add(*read_history_session(found->front())).value(), Adding::known);
+  std::filesystem::rename(folder, folder_.path() / "all/b");
+  EXPECT_EQ(index->add(*read_history_session(folder_.path() / "all/b")).value(), Adding::moved);
+
+  const auto sessions = index->sessions(std::nullopt);
+  ASSERT_TRUE(sessions) << sessions.error().message;
+  ASSERT_EQ(sessions->size(), 1u);
+  EXPECT_THAT(sessions->front().path, HasSubstr("all/b"));
+  EXPECT_EQ(sessions->front().unit.vendor, "simulation");
+  ASSERT_FALSE(sessions->front().values.empty());
+  // 0.4929 with 0.4241 to 0.5768 in curve.csv at 16.9 K.
+  const HistoryValue& acuity = sessions->front().values.front();
+  EXPECT_EQ(acuity.measure, "acuity");
+  EXPECT_NEAR(std::exp(acuity.value), 0.49288, 1e-5);
+  EXPECT_NEAR(acuity.u, std::log(0.57682673 / 0.42409196) / (2 * 1.96), 1e-5);
+}
+
+TEST_F(History, IsMadeAgainFromFoldersAndEvents) {
+  const auto folder = session("a");
+  const HistoryEvent repair{"42", "2026-01-31T12:00:00Z", "repair", "new \"window\", cleaned"};
+  {
+    auto index = HistoryIndex::open(file());
+    ASSERT_TRUE(index) << index.error().message;
+    ASSERT_TRUE(index->add(*read_history_session(folder)));
+    ASSERT_TRUE(index->add_event(repair));
+  }
+  for (const char* end : {"", "-wal", "-shm"}) std::filesystem::remove(file().string() + end);
+
+  auto index = HistoryIndex::open(file());
+  ASSERT_TRUE(index) << index.error().message;
+  ASSERT_TRUE(index->add(*read_history_session(folder)));
+
+  EXPECT_EQ(index->sessions(std::nullopt)->size(), 1u);
+  const auto events = index->events("42");
+  ASSERT_TRUE(events);
+  ASSERT_EQ(events->size(), 1u);
+  EXPECT_EQ(events->front().text, repair.text);
+}
+
+TEST_F(History, RefusesWhatIsNoSessionAnyMore) {
+  const auto folder = session("a");
+  std::ofstream(folder / "curve.csv", std::ios::app) << "measured,1,1,1,1,1,1,1,1,1,1,1,1,1,1,ok\n";
+
+  const auto refused = read_history_session(folder);
+
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::invalid_input);
+  EXPECT_THAT(refused.error().message, HasSubstr("curve.csv"));
+}
+
+TEST_F(History, RefusesAnIndexThatIsNone) {
+  folder_.write("index/history.sqlite", std::string(5000, 'x'));
+  const auto damaged = HistoryIndex::open(file());
+  ASSERT_FALSE(damaged);
+  EXPECT_EQ(damaged.error().code, ErrorCode::invalid_input);
+
+  sqlite3* other = nullptr;
+  const auto another = folder_.path() / "other.sqlite";
+  ASSERT_EQ(sqlite3_open(another.c_str(), &other), SQLITE_OK);
+  sqlite3_exec(other, "CREATE TABLE mine(x)", nullptr, nullptr, nullptr);
+  sqlite3_close(other);
+  const auto foreign = HistoryIndex::open(another);
+  ASSERT_FALSE(foreign);
+  EXPECT_EQ(foreign.error().code, ErrorCode::invalid_input);
+}
+
+TEST_F(History, SaysWhoIsInTheWay) {
+  const auto folder = session("a");
+  auto index = HistoryIndex::open(file());
+  ASSERT_TRUE(index) << index.error().message;
+  sqlite3* other = nullptr;
+  ASSERT_EQ(sqlite3_open(file().c_str(), &other), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(other, "BEGIN IMMEDIATE", nullptr, nullptr, nullptr), SQLITE_OK);
+
+  const auto refused = index->add(*read_history_session(folder));
+  sqlite3_exec(other, "ROLLBACK", nullptr, nullptr, nullptr);
+  sqlite3_close(other);
+
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::io);
+  EXPECT_TRUE(index->add(*read_history_session(folder)));
+}
+
+}  // namespace
+}  // namespace todbench

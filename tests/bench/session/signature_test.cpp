@@ -1,0 +1,147 @@
+// Signing and checking with the real programs.
+#include "bench/session/signature.h"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "bench/session/manifest.h"
+#include "bench/session/open_session.h"
+#include "bench/session/session_folder.h"
+#include "bench/text/program.h"
+#include "tests/support/source_file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace todbench {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::TemporaryFolder;
+
+constexpr const char* utc = "2026-11-22T12:00:00Z";
+
+void run(const std::vector<std::string>& words) {
+  const auto done = run_program(words, ProgramOutput::kept);
+  ASSERT_TRUE(done) << done.error().message;
+  ASSERT_EQ(done->exit_code, 0) << done->output;
+}
+
+class Signature : public ::testing::TestWithParam<std::vector<std::string>> {
+ protected:
+  void SetUp() override {
+    std::filesystem::copy(source_file("tests/golden/session-0.1"), session_, std::filesystem::copy_options::recursive);
+    make_key("mine");
+  }
+  /// NAME.pem and NAME.pub.
+  void make_key(const std::string& name, const std::vector<std::string>& kind = {"-algorithm", "ED25519"}) {
+    const std::string key = (folder_.path() / (name + ".pem")).string();
+    std::vector<std::string> words{"openssl", "genpkey"};
+    words.insert(words.end(), kind.begin(), kind.end());
+    words.insert(words.end(), {"-out", key});
+    run(words);
+    run({"openssl", "pkey", "-in", key, "-pubout", "-out", (folder_.path() / (name + ".pub")).string()});
+  }
+  [[nodiscard]] std::filesystem::path key(const std::string& name) const { return folder_.path() / name; }
+
+  TemporaryFolder folder_;
+  std::filesystem::path session_ = folder_.path() / "session";
+};
+
+TEST_P(Signature, HoldsForItsManifestAndKeyOnly) {
+  make_key("mine", GetParam());
+  make_key("other", GetParam());
+
+  const auto made = sign_session(session_, SigningProgram::openssl, key("mine.pem"), utc);
+
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_TRUE(check_session(session_)->files.intact());
+  for (const std::optional<std::filesystem::path>& with :
+       {std::optional<std::filesystem::path>(), std::optional(key("mine.pub"))}) {
+    const auto check = check_signature(session_, with);
+    ASSERT_TRUE(check && *check) << check.error().message;
+    EXPECT_TRUE((*check)->valid) << (*check)->sentence;
+    EXPECT_EQ((*check)->own_key, !with);
+    EXPECT_EQ((*check)->signature.signed_utc, utc);
+  }
+  EXPECT_FALSE((*check_signature(session_, key("other.pub")))->valid);
+  std::ofstream(session_ / manifest_name, std::ios::app) << " ";
+  EXPECT_FALSE((*check_signature(session_, std::nullopt))->valid);
+}
+INSTANTIATE_TEST_SUITE_P(Kinds, Signature,
+                         ::testing::Values(std::vector<std::string>{"-algorithm", "ED25519"},
+                                           std::vector<std::string>{"-algorithm", "EC", "-pkeyopt",
+                                                                    "ec_paramgen_curve:P-256"},
+                                           std::vector<std::string>{"-algorithm", "RSA"}),
+                         [](const auto& kind) { return kind.param[1]; });
+
+using SignedSession = Signature;
+
+TEST_F(SignedSession, IsNeverWrittenAgain) {
+  ASSERT_TRUE(sign_session(session_, SigningProgram::openssl, key("mine.pem"), utc));
+
+  EXPECT_EQ(refresh_manifest(session_, {"report.html"}).error().code, ErrorCode::invalid_input);
+  EXPECT_EQ(require_intact(session_).error().code, ErrorCode::invalid_input);
+  EXPECT_EQ(sign_session(session_, SigningProgram::openssl, key("mine.pem"), utc).error().code,
+            ErrorCode::invalid_input);
+  const auto again = SessionFolder::create(session_, ExistingFolder::overwrite);
+  ASSERT_FALSE(again);
+  EXPECT_THAT(again.error().message, HasSubstr("is signed"));
+  EXPECT_TRUE((*check_signature(session_, std::nullopt))->valid);
+}
+
+TEST_F(SignedSession, HasRevisionsWithNumbersThatAreChecked) {
+  EXPECT_FALSE(next_revision(session_, "a reason", utc));
+  ASSERT_TRUE(sign_session(session_, SigningProgram::openssl, key("mine.pem"), utc));
+  EXPECT_FALSE(next_revision(session_, " \n", utc));
+
+  for (const int number : {2, 3}) {
+    const auto revision = next_revision(session_, "a reason", utc);
+    ASSERT_TRUE(revision) << revision.error().message;
+    EXPECT_EQ(revision->number, number);
+    std::filesystem::create_directories(session_ / "revisions");
+    const std::string page = revision_page(*revision, "html");
+    std::ofstream(session_ / page) << "page " << number;
+    ASSERT_TRUE(keep_revision(session_, *revision, {page}));
+  }
+
+  EXPECT_TRUE((*check_signature(session_, std::nullopt))->valid);
+  EXPECT_TRUE(check_session(session_)->files.intact());
+  std::ofstream(session_ / "revisions/report-2.html", std::ios::app) << "x";
+  const auto check = check_signature(session_, std::nullopt);
+  EXPECT_FALSE((*check)->valid);
+  EXPECT_THAT((*check)->sentence, HasSubstr("revisions/report-2.html"));
+}
+
+TEST_F(SignedSession, IsRefusedWithOneSentence) {
+  folder_.write("no.pem", "no key");
+  const auto refused = sign_session(session_, SigningProgram::openssl, key("no.pem"), utc);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::invalid_input);
+  EXPECT_EQ(refused.error().message.find('\n'), std::string::npos);
+  EXPECT_EQ(sign_session(session_, SigningProgram::openssl, key("none.pem"), utc).error().code, ErrorCode::not_found);
+  EXPECT_FALSE(is_signed(session_));
+  EXPECT_TRUE(check_session(session_)->files.intact());
+  std::ofstream(session_ / "trials.csv", std::ios::app) << "1\n";
+  EXPECT_EQ(sign_session(session_, SigningProgram::openssl, key("mine.pem"), utc).error().code,
+            ErrorCode::invalid_input);
+}
+
+TEST_F(SignedSession, MaySignWithMinisign) {
+  if (!run_program({"minisign", "-v"}, ProgramOutput::kept)) GTEST_SKIP() << "minisign is not installed";
+  run({"minisign", "-G", "-W", "-p", key("m.pub").string(), "-s", key("m.key").string()});
+
+  const auto made = sign_session(session_, SigningProgram::minisign, key("m.key"), utc);
+
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_TRUE((*check_signature(session_, key("m.pub")))->valid);
+  EXPECT_TRUE((*check_signature(session_, std::nullopt))->valid);
+}
+
+TEST(RunProgram, SaysWhatIsNotInstalled) {
+  const auto run = run_program({"no-such-program-anywhere"}, ProgramOutput::kept);
+  ASSERT_FALSE(run);
+  EXPECT_EQ(run.error().code, ErrorCode::not_found);
+}
+
+}  // namespace
+}  // namespace todbench
