@@ -17,12 +17,9 @@ struct NamedResource {
   ResourceKind kind;
 };
 constexpr std::array named_resources{
-    NamedResource{"--sensor", ResourceKind::sensor},
-    NamedResource{"--observer", ResourceKind::observer},
-    NamedResource{"--plates", ResourceKind::plate},
-    NamedResource{"PLAN.toml", ResourceKind::plan},
-    NamedResource{"SCENE.toml", ResourceKind::scene},
-    NamedResource{"SET.toml", ResourceKind::target_set},
+    NamedResource{"--sensor", ResourceKind::sensor},  NamedResource{"--observer", ResourceKind::observer},
+    NamedResource{"--plates", ResourceKind::plate},   NamedResource{"PLAN.toml", ResourceKind::plan},
+    NamedResource{"SCENE.toml", ResourceKind::scene}, NamedResource{"SET.toml", ResourceKind::target_set},
 };
 constexpr std::string_view camera_argument = "CAMERA";
 

@@ -11,8 +11,8 @@ namespace todbench {
 namespace {
 
 constexpr double normal_range_m = 400, microscan_range_m = 640;
-constexpr double shown_m = 14;  ///< side of every picture
-constexpr double raised_m = 1;  ///< of the water line above its middle: the sky stays out of it
+constexpr double shown_m = 13.5;  ///< side of every picture, to the next even number of pitches
+constexpr double raised_m = 1;    ///< of the water line above its middle: the sky stays out of it
 
 Result<ScenePictures> craft_seen(const FieldScene& scene, SensorSpec sensor, int microscan, double range_m,
                                  Accuracy accuracy, std::uint64_t seed) {
@@ -24,7 +24,7 @@ Result<ScenePictures> craft_seen(const FieldScene& scene, SensorSpec sensor, int
   task.view.centre_pitch.y = -raised_m * 1e3 / (range_m * sensor.ifov_mrad());
   task.accuracy = accuracy;
   task.seed = seed;
-  task.field_pitch = static_cast<int>(std::lround(shown_m * 1e3 / (range_m * sensor.ifov_mrad())));
+  task.field_pitch = 2 * static_cast<int>(std::lround(shown_m * 1e3 / (range_m * sensor.ifov_mrad()) / 2));
   return scene_pictures(task);
 }
 
@@ -43,8 +43,9 @@ Result<std::vector<CraftPicture>> eo_vista_craft(Accuracy accuracy, std::uint64_
   if (!finer) return tl::unexpected(finer.error());
   const auto display = [](const ScenePictures& pictures) { return pictures.stages[5].kelvin; };
   const double low = std::min(normal->grey_low_k, finer->grey_low_k);
-  const double high = std::max(normal->grey_high_k, finer->grey_high_k);
-  const std::string scale = fmt::format("Black {:.2g} K, white {:.2g} K above the water.", low, high);
+  // Half of the warmest spot: the hull would else be next to black.
+  const double high = 0.5 * std::max(normal->grey_high_k, finer->grey_high_k);
+  const std::string scale = fmt::format("Black {:.2g} K, white {:.2g} K and more above the water.", low, high);
   return std::vector<CraftPicture>{
       {"figure-12-scene", "The craft at the sensor", "craft-01, side view, before any camera. " + scale, 0,
        normal->stages.front().kelvin, low, high},
