@@ -90,11 +90,11 @@ void Console::table(const TableRow& header, const std::vector<TableRow>& given) 
 }
 
 void Console::waiting(std::string_view sentence) {
-  constexpr auto line_period = std::chrono::seconds(10);
+  constexpr auto waiting_line_period = std::chrono::seconds(10);
   if (options_.quiet) return;
   const auto now = std::chrono::steady_clock::now();
   if (!terminal_) {
-    if (last_waiting_.time_since_epoch().count() != 0 && now - last_waiting_ < line_period) return;
+    if (last_waiting_.time_since_epoch().count() != 0 && now - last_waiting_ < waiting_line_period) return;
     last_waiting_ = now;
     std::fputs((one_line(sentence) + "\n").c_str(), stderr);
     return;

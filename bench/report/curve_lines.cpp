@@ -35,9 +35,9 @@ std::string acuity_text(const AcuityNow& now) {
 }
 
 /// Letters of a line of the plot, a UTF-8 character each.
-class PlotLine {
+class TextLine {
  public:
-  PlotLine(std::size_t width, double largest) : cells_(width, " "), largest_(largest) {}
+  TextLine(std::size_t width, double largest) : cells_(width, " "), largest_(largest) {}
   void put(double value, const char* sign) {
     if (const auto place = place_of(value)) cells_[*place] = sign;
   }
@@ -97,7 +97,7 @@ std::vector<std::string> curve_lines(const CurveLines& shown, std::size_t column
       fmt::format("0 … {:.3g} 1/mrad", end) + (width >= wide ? "   ● measured  ○ twin  ┆ limit" : "");
   std::vector<std::string> lines{fmt::format("{:>9} |{:<{}}|", "dT [K]", heading, width)};
   for (const double contrast : shown.delta_t_k) {
-    PlotLine line(width, end);
+    TextLine line(width, end);
     const AcuityNow measured = acuity_at(shown.measured, contrast), twin = acuity_at(shown.twin, contrast);
     for (const AcuityLimit& limit : shown.limits) {
       if (same_contrast(limit.delta_t_k, contrast)) line.put(limit.least_acuity_per_mrad, "┆");

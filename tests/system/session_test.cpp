@@ -403,7 +403,10 @@ TEST_F(Sessions, QuietMeansNothingOnStandardErrorAndNoTerminalNoControlCharacter
   const Ended plain = run({"simulate", "./plan.toml", "--out", "s"});
   const Ended quiet = run({"simulate", "./plan.toml", "--out", "t", "--quiet"}, {.setenv = {{"NO_COLOR", "1"}}});
 
-  EXPECT_THAT(lines_of(plain.err), ElementsAre("simulating sc2000", "estimating sc2000 directly", "session: s"));
+  auto said = lines_of(plain.err);
+  // On a busy machine a run takes long enough for a line of the curve so far.
+  std::erase_if(said, [](const std::string& line) { return line.starts_with("acuity [1/mrad] so far"); });
+  EXPECT_THAT(said, ElementsAre("simulating sc2000", "estimating sc2000 directly", "session: s"));
   EXPECT_EQ(quiet.err, "");
   for (const char c : plain.err + plain.out) EXPECT_TRUE(c == '\n' || c < 0 || c >= 0x20) << static_cast<int>(c);
 }
