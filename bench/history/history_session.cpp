@@ -16,7 +16,7 @@
 namespace todbench {
 namespace {
 
-constexpr double z95 = 1.959963984540054;
+constexpr double normal_z95 = 1.959963984540054;
 
 /// A file of a session that the manifest vouches for.
 Result<std::string> vouched_text(const std::filesystem::path& folder, const std::string& name) {
@@ -91,8 +91,9 @@ Result<void> add_acuities(HistorySession& session, const std::filesystem::path& 
     // No uncertainty, no row.
     if (!contrast_k || !value || !from || !to || !(*value > 0) || !(*from > 0) || !(*to > *from)) continue;
     const auto more = stated->find(*contrast_k);
-    session.values.push_back({"acuity", "dT=" + number_text(*contrast_k) + "K", "1/mrad", "ln", std::log(*value),
-                              std::hypot(std::log(*to / *from) / (2 * z95), more == stated->end() ? 0 : more->second)});
+    session.values.push_back(
+        {"acuity", "dT=" + number_text(*contrast_k) + "K", "1/mrad", "ln", std::log(*value),
+         std::hypot(std::log(*to / *from) / (2 * normal_z95), more == stated->end() ? 0 : more->second)});
   }
   return {};
 }
@@ -106,7 +107,7 @@ Result<void> add_measures(HistorySession& session, const std::filesystem::path& 
     const auto value = number_at(line, "value");
     if (!value || !line.contains("ci95") || !line["ci95"].is_array() || line["ci95"].size() != 2) continue;
     if (!line["ci95"][0].is_number() || !line["ci95"][1].is_number()) continue;
-    const double u = (line["ci95"][1].get<double>() - line["ci95"][0].get<double>()) / (2 * z95);
+    const double u = (line["ci95"][1].get<double>() - line["ci95"][0].get<double>()) / (2 * normal_z95);
     if (u > 0) session.values.push_back({text_at(line, "measure"), "", text_at(line, "unit"), "linear", *value, u});
   }
   return {};

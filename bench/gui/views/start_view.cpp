@@ -19,19 +19,21 @@ struct StartChoice {
 };
 
 constexpr std::array choices{
-    StartChoice{"startDemo", "Try without hardware",
-           "The emulated laboratory is a camera, a black body and a plate stage on this computer. A whole measurement "
-           "takes about a minute, from the plan to the report.",
-           &StartView::try_without_hardware},
+    StartChoice{
+        "startDemo", "Try without hardware",
+        "The emulated laboratory is a camera, a black body and a plate stage on this computer. A whole measurement "
+        "takes about a minute, from the plan to the report.",
+        &StartView::try_without_hardware},
     StartChoice{
         "startCamera", "Connect a camera",
         "Looks for cameras on the network, on USB and behind the kernel's drivers, and shows the live picture of the "
         "one that is chosen.",
         &StartView::connect_camera},
-    StartChoice{"startSession", "Open a session",
-           "Shows the curves, the ratios and the verdict of a measurement on disk. A session or a plan can also be "
-           "dropped onto this window.",
-           &StartView::open_session},
+    StartChoice{
+        "startSession", "Open a session",
+        "Shows the curves, the ratios and the verdict of a measurement on disk. A session or a plan can also be "
+        "dropped onto this window.",
+        &StartView::open_session},
 };
 
 }  // namespace
