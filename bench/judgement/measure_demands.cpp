@@ -1,5 +1,7 @@
 #include "bench/judgement/measure_demands.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -67,8 +69,8 @@ Interval expanded(double value, const Interval& statistical, double relative_u) 
 }
 
 std::string words_of(const Interval& interval, std::string_view unit) {
-  return "95 % interval " + (interval.low ? number_text(*interval.low) : std::string("open")) + " to " +
-         (interval.high ? number_text(*interval.high) : std::string("open")) + " " + std::string(unit);
+  const auto side = [](const std::optional<double>& value) { return value ? fmt::format("{:.4g}", *value) : "open"; };
+  return fmt::format("95 % interval {} to {} {}", side(interval.low), side(interval.high), unit);
 }
 
 const MeasuredQuantity* quantity_of(const Evidence& evidence, LimitedMeasure measure) {

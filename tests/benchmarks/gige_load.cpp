@@ -134,7 +134,13 @@ int measure(const Load& load, const GvspCameraCounts& camera) {
   double next_line = begin + 10;
   while (cpu_s(CLOCK_MONOTONIC) - begin < load.seconds) {
     const auto frame = (*source)->next(std::chrono::seconds(2));
-    if (!frame) return std::fprintf(stderr, "%s\n", frame.error().message.c_str()), EXIT_FAILURE;
+    if (!frame) {
+      ::usleep(500000);
+      counts_agree(sum, camera);
+      std::printf("controllers lost: %llu\n", static_cast<unsigned long long>(camera.controls_lost));
+      std::fflush(stdout);
+      return std::fprintf(stderr, "%s\n", frame.error().message.c_str()), EXIT_FAILURE;
+    }
     ++sum.frames;
     if (last) sum.lost += frame->sequence - *last - 1;
     const std::uint64_t exposure = exposure_index(*frame, load.rate_hz);

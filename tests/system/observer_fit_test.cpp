@@ -72,11 +72,12 @@ TEST_F(ObserverFitCommand, WritesAnObserverThatPlansTakeWithTheHashesOfItsSessio
   const Json json = one_object(ended);
   EXPECT_EQ(json["parameter_file"], "anna.toml");
   for (const auto& [key, truth] : {std::pair("blur_sigma_samples", 0.5), std::pair("internal_noise", 0.1)}) {
-    // 64 answers; how often intervals hold the truth is what observer_fit_study asks.
+    // 64 answers say little; how often intervals hold the truth is what observer_fit_study asks.
     const Json& estimate = json["estimates"][key];
-    EXPECT_GT(estimate["value"].get<double>(), truth / 3) << key;
-    EXPECT_LT(estimate["value"].get<double>(), 3 * truth) << key;
-    EXPECT_GT(estimate["ci95"][1].get<double>(), estimate["value"].get<double>()) << key;
+    EXPECT_GT(estimate["value"].get<double>(), truth / 4) << key;
+    EXPECT_LT(estimate["value"].get<double>(), 4 * truth) << key;
+    EXPECT_GT(estimate["value"].get<double>(), estimate["ci95"][0].get<double>()) << key;
+    EXPECT_LT(estimate["value"].get<double>(), estimate["ci95"][1].get<double>()) << key;
   }
   EXPECT_EQ(json["correlations"].size(), 1u);
   EXPECT_GT(json["goodness"]["p"], 0.01);
