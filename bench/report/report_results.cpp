@@ -315,9 +315,10 @@ Section limits_section(const ReportData& data) {
     if (expanded) rows.rows.back().insert(rows.rows.back().begin() + 4, statistical_cell(demand));
   }
   section.blocks.emplace_back(std::move(rows));
-  if (data.verdict->not_stated && !data.verdict->not_stated->empty())
-    section.blocks.emplace_back(
-        Paragraph{plain("The budget of the plan is not complete: " + data.verdict->reason + ".")});
+  if (data.verdict->not_stated && !data.verdict->not_stated->empty()) {
+    section.blocks.emplace_back(Paragraph{
+        plain(fmt::format("The budget of the plan does not state: {}.", fmt::join(*data.verdict->not_stated, ", ")))});
+  }
   section.blocks.emplace_back(note(plain(one_sided_note)));
   return section;
 }

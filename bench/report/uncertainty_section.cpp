@@ -1,5 +1,8 @@
 #include "bench/report/uncertainty_section.h"
 
+#include <fmt/format.h>
+
+#include <string_view>
 #include <utility>
 
 #include "bench/report/number_format.h"
@@ -63,17 +66,21 @@ Table summary_table(const CurveUncertainty& uncertainty) {
 Table rows_table(const PointUncertainty& point) {
   Table rows;
   rows.caption = "Budget of ln acuity at a set contrast of " + stated(point.set_delta_t_k) + " K";
-  rows.header = {"Row",         "Enters",           "Value",     "Distribution",        "Divisor",  "ν",
-                 "Sensitivity", "Contribution (%)", "Share (%)", "Source, certificate", "Common to"};
+  rows.header = {"Row", "Value", "ν", "Sensitivity", "Contribution (%)", "Share (%)", "Source; common to"};
   for (const AppliedRow& applied : point.rows) {
     const BudgetRow& row = applied.row;
     const std::string unit = row.unit.empty() || row.unit == "1" ? "" : " " + row.unit;
-    rows.rows.push_back({plain(row.name), plain(to_string(applied.input)), unbroken(significant(row.value, 3) + unit),
-                         plain(to_string(row.distribution)), plain(divisor_of(row)),
-                         plain(row.degrees_of_freedom ? significant(*row.degrees_of_freedom, 3) : "very many"),
-                         row.sensitivity ? plain(significant(*row.sensitivity, 3)) : missing("not known"),
-                         plain(significant(100 * applied.contribution, 3)), plain(shown(applied.share_percent, 1)),
-                         text_or_missing(source_of(row), "not stated"), text_or_missing(common_of(row), "none")});
+    const std::string_view enters = to_string(applied.input);
+    const std::string divisor = divisor_of(row), common = common_of(row);
+    RichText source = text_or_missing(source_of(row), "not stated");
+    if (!common.empty()) source += plain("; " + common);
+    rows.rows.push_back(
+        {plain(row.name == enters ? row.name : row.name + fmt::format(" (enters: {})", enters)),
+         unbroken(significant(row.value, 3) + unit) +
+             plain(fmt::format(", {}{}", to_string(row.distribution), divisor == "1" ? "" : ": / " + divisor)),
+         plain(row.degrees_of_freedom ? significant(*row.degrees_of_freedom, 3) : "very many"),
+         row.sensitivity ? plain(significant(*row.sensitivity, 3)) : missing("not known"),
+         plain(significant(100 * applied.contribution, 3)), plain(shown(applied.share_percent, 1)), std::move(source)});
   }
   return rows;
 }
