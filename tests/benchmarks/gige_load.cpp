@@ -11,6 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -155,8 +156,10 @@ int measure(const Load& load, const GvspCameraCounts& camera) {
         return std::memcmp(truth.data, frame->counts.data, truth.total() * truth.elemSize()) == 0;
       };
       if (!shows(exposure)) {
-        // A frozen picture is that of an exposure before it.
-        const bool earlier = load.fault_share > 0 && exposure > 0 && shows(exposure - 1);
+        // A frozen picture is that of the frame before it, which may be frozen too.
+        bool earlier = false;
+        for (std::uint64_t back = 1; load.fault_share > 0 && back <= std::min<std::uint64_t>(exposure, 8); ++back)
+          earlier = earlier || shows(exposure - back);
         ++(earlier ? sum.repeated : sum.false_pixels);
         if (!earlier && sum.false_pixels <= 5)
           std::printf("frame %llu, exposure %llu is false: its first pixel counts %d\n",
