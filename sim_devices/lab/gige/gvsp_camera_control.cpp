@@ -67,20 +67,24 @@ void GvspCamera::State::power_up() {
 
 void GvspCamera::State::serve_control(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
-    const auto request = control.receive(control_patience);
-    device.check_heartbeat(Clock::now());
-    if (!request) continue;
-    {
-      std::unique_lock lock(mutex);
-      if (Clock::now() < link_down_until || Clock::now() < control_down_until) continue;
-      // Slow, and still to be switched off at any moment.
-      if (config.memory_delay > 0ms && asks_for_memory(request->content))
-        changed.wait_for(lock, stop, config.memory_delay, [] { return false; });
-    }
-    if (const auto answer = device.answer(request->content, request->from, Clock::now())) {
-      control.send(*answer, request->from);
+    // A heartbeat that waited while this thread could not run came in time: what has come is heard first.
+    if (const auto request = control.receive(control_patience)) {
+      answer(*request, stop);
+    } else {
+      device.check_heartbeat(Clock::now());
     }
   }
+}
+
+void GvspCamera::State::answer(const GvcpDatagram& request, const std::stop_token& stop) {
+  {
+    std::unique_lock lock(mutex);
+    if (Clock::now() < link_down_until || Clock::now() < control_down_until) return;
+    // Slow, and still to be switched off at any moment.
+    if (config.memory_delay > 0ms && asks_for_memory(request.content))
+      changed.wait_for(lock, stop, config.memory_delay, [] { return false; });
+  }
+  if (const auto reply = device.answer(request.content, request.from, Clock::now())) control.send(*reply, request.from);
 }
 
 void GvspCamera::State::on_write(std::uint32_t address, std::uint32_t value) {

@@ -61,6 +61,7 @@ struct GvspCamera::State {
   [[nodiscard]] std::string description_served() const;
   void power_up();
   void serve_control(const std::stop_token& stop);
+  void answer(const GvcpDatagram& request, const std::stop_token& stop);
   void serve_stream(const std::stop_token& stop);
   void on_write(std::uint32_t address, std::uint32_t value);
   void on_control_lost();
