@@ -6,10 +6,11 @@
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
+#include "acquisition/core/normal.h"
+
 namespace todbench {
 namespace {
 
-constexpr double z95 = 1.959963984540054;
 constexpr double days_per_year = 365.25;
 
 double below(double z) {
@@ -172,7 +173,7 @@ std::optional<Crossing> crossing(const std::vector<ChartValue>& values, double s
   const double best = t_mean - d / b;
   if (b != 0 && best > now) out.best_days = best;
   // A s^2 + 2 B s + C <= 0 with s = t - t_mean.
-  const double a2 = b * b - z95 * z95 * var_b, b2 = d * b, c2 = d * d - z95 * z95 / w;
+  const double a2 = b * b - normal_z95 * normal_z95 * var_b, b2 = d * b, c2 = d * d - normal_z95 * normal_z95 / w;
   const double discriminant = b2 * b2 - a2 * c2;
   if (a2 > 0) {
     // Significant: between the roots.

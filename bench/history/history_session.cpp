@@ -7,6 +7,7 @@
 #include <map>
 #include <system_error>
 
+#include "acquisition/core/normal.h"
 #include "bench/session/manifest.h"
 #include "bench/text/csv_table.h"
 #include "bench/text/files.h"
@@ -15,8 +16,6 @@
 
 namespace todbench {
 namespace {
-
-constexpr double normal_z95 = 1.959963984540054;
 
 /// A file of a session that the manifest vouches for.
 Result<std::string> vouched_text(const std::filesystem::path& folder, const std::string& name) {

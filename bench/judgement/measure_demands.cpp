@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "acquisition/core/normal.h"
 #include "bench/judgement/limit_decision.h"
 #include "bench/text/text.h"
 
@@ -60,8 +61,7 @@ double stated_u(LimitedMeasure measure, const CurveUncertainty* uncertainty) {
 
 /// Each side joined with what is stated, as the root of the sum of squares.
 Interval expanded(double value, const Interval& statistical, double relative_u) {
-  constexpr double z95 = 1.959963984540054;
-  const double stated = z95 * relative_u * std::abs(value);
+  const double stated = normal_z95 * relative_u * std::abs(value);
   Interval out;
   if (statistical.low) out.low = value - std::hypot(value - *statistical.low, stated);
   if (statistical.high) out.high = value + std::hypot(*statistical.high - value, stated);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "acquisition/core/normal.h"
 #include "bench/report/number_format.h"
 #include "tod/psychometric/acuity.h"
 #include "tod/psychometric/twin_shape.h"
@@ -139,7 +140,7 @@ std::vector<AnswersAtSize> answers_by_size(std::span<const Level> levels) {
 
 Interval wilson_interval(double correct, double total) {
   if (!(total > 0)) return {};
-  constexpr double z = 1.959963984540054;
+  constexpr double z = normal_z95;
   const double p = correct / total;
   const double middle = (p + z * z / (2 * total)) / (1 + z * z / total);
   const double half = z / (1 + z * z / total) * std::sqrt(p * (1 - p) / total + z * z / (4 * total * total));

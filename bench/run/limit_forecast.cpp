@@ -5,13 +5,12 @@
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
+#include "acquisition/core/normal.h"
 #include "bench/judgement/acuity_uncertainty.h"
 #include "bench/text/text.h"
 
 namespace todbench {
 namespace {
-
-constexpr double z95 = 1.959963984540054;
 
 /// The curve that is expected, as far as a budget looks at it.
 TodCurve expected_curve(const PlanPrediction& prediction) {
@@ -33,7 +32,7 @@ TodCurve expected_curve(const PlanPrediction& prediction) {
 /// Guard band over standard uncertainty.
 double guard_of(const LimitsPlan& limits) {
   if (limits.rule == ConformityRule::simple) return 0;
-  return limits.guard_band_risk ? guard_band_for_risk(*limits.guard_band_risk, {.value = 0, .u = 1}) : z95;
+  return limits.guard_band_risk ? guard_band_for_risk(*limits.guard_band_risk, {.value = 0, .u = 1}) : normal_z95;
 }
 
 Result<LimitOutlook> outlook(const LimitsPlan& limits, double u, double ln_acuity, double ln_limit) {
@@ -66,7 +65,7 @@ Result<std::vector<LimitForecast>> limit_forecasts(const Plan& plan, const PlanP
   for (const AcuityLimit& limit : plan.limits.acuity) {
     const TodPoint* point = point_at(curve, limit.delta_t_k);
     if (point == nullptr || !point->fit.threshold || !point->fit.ci95.high) continue;
-    const double trials = std::log(*point->fit.ci95.high / *point->fit.threshold) / z95;
+    const double trials = std::log(*point->fit.ci95.high / *point->fit.threshold) / normal_z95;
     const PointUncertainty* stated = *budget ? point_at(**budget, limit.delta_t_k) : nullptr;
     const double u_stated = stated != nullptr ? stated->u_stated : 0;
     const double ln_acuity = -std::log(*point->fit.threshold), ln_limit = std::log(limit.least_acuity_per_mrad);
