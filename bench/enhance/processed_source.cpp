@@ -4,19 +4,22 @@
 #include <cmath>
 #include <utility>
 
+#include "acquisition/core/forwarding_source.h"
+
 namespace todbench {
 namespace {
 
-class ProcessedSource final : public FrameSource {
+class ProcessedSource final : public ForwardingSource {
  public:
   ProcessedSource(std::unique_ptr<FrameSource> camera, std::vector<std::unique_ptr<ChainStage>> stages,
                   std::size_t picture_frame, ProcessingRecord& record)
-      : camera_(std::move(camera)), stages_(std::move(stages)), picture_frame_(picture_frame), record_(record) {}
+      : ForwardingSource(std::move(camera)),
+        stages_(std::move(stages)),
+        picture_frame_(picture_frame),
+        record_(record) {}
 
-  [[nodiscard]] const SourceInfo& info() const override { return camera_->info(); }
-  [[nodiscard]] Result<void> start() override { return camera_->start(); }
   [[nodiscard]] Result<Frame> next(std::chrono::milliseconds timeout) override {
-    auto frame = camera_->next(timeout);
+    auto frame = ForwardingSource::next(timeout);
     if (!frame || frame->status != FrameStatus::complete) return frame;
     auto counts = processed(*frame);
     if (!counts) return tl::unexpected(counts.error());
@@ -24,12 +27,6 @@ class ProcessedSource final : public FrameSource {
     if (record_.handed_out) frame->counts = *counts;
     return frame;
   }
-  void stop() override { camera_->stop(); }
-  [[nodiscard]] Result<std::string> get(const std::string& feature) override { return camera_->get(feature); }
-  [[nodiscard]] Result<void> set(const std::string& feature, const std::string& value) override {
-    return camera_->set(feature, value);
-  }
-  [[nodiscard]] Result<void> correct_nonuniformity() override { return camera_->correct_nonuniformity(); }
 
  private:
   Result<cv::Mat1w> processed(const Frame& frame) {
@@ -60,7 +57,6 @@ class ProcessedSource final : public FrameSource {
     return counts;
   }
 
-  std::unique_ptr<FrameSource> camera_;
   std::vector<std::unique_ptr<ChainStage>> stages_;
   std::size_t picture_frame_;
   ProcessingRecord& record_;
