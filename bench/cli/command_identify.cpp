@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "bench/cli/chain_options.h"
 #include "bench/judgement/verdict.h"
 #include "bench/plan/descriptions.h"
 #include "bench/studies/identification_study.h"
@@ -12,35 +13,24 @@ namespace todbench {
 namespace {
 
 struct IdentifyArguments {
-  std::string set, sensor, observer = "hvs-1", atmosphere = "clear", haze = "rural-23km", accuracy = "normal";
+  std::string set;
+  ChainOptions chain;
   std::vector<double> ranges_m;
-  double extinction_per_km = 0, m75 = 5.1;
-  int decisions = 2000, microscan = 0;
+  double m75 = 5.1;
+  int decisions = 2000;
 };
 
 Result<IdentificationStudyTask> identification_task(const IdentifyArguments& a, const Program& program) {
   IdentificationStudyTask task;
   auto set = load_target_set(a.set);
   if (!set) return tl::unexpected(set.error());
-  auto sensor = load_sensor(a.sensor);
-  if (!sensor) return tl::unexpected(sensor.error());
-  if (a.microscan > 0) sensor->microscan = a.microscan;
-  auto observer = load_observer(a.observer);
-  if (!observer) return tl::unexpected(observer.error());
-  const auto accuracy = Accuracy::named(a.accuracy);
-  if (!accuracy) return tl::unexpected(accuracy.error());
-  const bool beer = a.extinction_per_km > 0 && a.atmosphere == "clear";
-  auto air = load_atmosphere(beer ? "beer-lambert" : a.atmosphere,
-                             {.band = {sensor->wavelength_min_um, sensor->wavelength_max_um},
-                              .haze = a.haze,
-                              .weight_temperature_k = sensor->scene_temperature_k,
-                              .extinction_per_km = a.extinction_per_km});
-  if (!air) return tl::unexpected(air.error());
+  auto chain = a.chain.load();
+  if (!chain) return tl::unexpected(chain.error());
   task.set = *std::move(set);
-  task.sensor = *std::move(sensor);
-  task.observer = *std::move(observer);
-  task.air = *std::move(air);
-  task.accuracy = *accuracy;
+  task.sensor = std::move(chain->sensor);
+  task.observer = std::move(chain->observer);
+  task.air = std::move(chain->air);
+  task.accuracy = chain->accuracy;
   task.ranges_m = a.ranges_m;
   task.decisions = a.decisions;
   task.m75 = a.m75;
@@ -148,31 +138,17 @@ void add_identify_command(CLI::App& app, Program& program) {
       app.add_subcommand("identify", "an observer tells the targets of a set apart: right answers by range, M75, V50");
   auto a = std::make_shared<IdentifyArguments>();
   command->add_option("SET.toml", a->set, "name or file")->required();
-  command->add_option("--sensor", a->sensor, "name or file")->required();
+  a->chain.add_sensor_to(*command);
   command->add_option("--ranges", a->ranges_m, "in m, increasing, separated by commas")
       ->required()
       ->delimiter(',')
       ->check(number_in(1e-3, 1e6));
-  command
-      ->add_option(
-          "--atmosphere", a->atmosphere,
-          "clear, us-standard, midlatitude-summer, midlatitude-winter, subarctic-winter, tropical, beer-lambert "
-          "(with --extinction-per-km); or FILE.csv, or a MODTRAN tape7")
-      ->capture_default_str();
-  command->add_option("--haze", a->haze, "aerosol of the shipped tables")->capture_default_str();
-  command->add_option("--extinction-per-km", a->extinction_per_km, "of the contrast")
-      ->check(number_in(0, 1e4))
-      ->capture_default_str();
-  command->add_option("--observer", a->observer, "name or file")->capture_default_str();
-  command->add_option("--microscan", a->microscan, "in place of the sensor's")->check(whole_number(1, 4));
+  a->chain.add_to(*command, "name or file");
   command->add_option("--decisions", a->decisions, "for every target at every range")
       ->check(whole_number(16, 1000000))
       ->capture_default_str();
   command->add_option("--m75", a->m75, "of the range that the TOD curve predicts")
       ->check(number_in(1e-6, 1e6))
-      ->capture_default_str();
-  command->add_option("--accuracy", a->accuracy, "draft, normal or reference")
-      ->check(CLI::IsMember({"draft", "normal", "reference"}))
       ->capture_default_str();
   finish_command(*command, program, [a, &program](Console& console) { return run_identify(console, *a, program); });
 }

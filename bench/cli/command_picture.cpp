@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "bench/cli/chain_options.h"
 #include "bench/cli/scene_files.h"
 #include "bench/plan/descriptions.h"
 #include "bench/report/picture_page.h"
@@ -16,9 +17,10 @@ namespace todbench {
 namespace {
 
 struct PictureArguments {
-  std::string scene, sensor, observer = "hvs-1", atmosphere = "clear", haze = "rural-23km", accuracy = "normal", out;
-  double range_m = 0, extinction_per_km = 0, rotation_deg = 0, x_pitch = 0, y_pitch = 0, tolerance_percent = 1;
-  int microscan = 0, field_pitch = 0;
+  std::string scene, out;
+  ChainOptions chain;
+  double range_m = 0, rotation_deg = 0, x_pitch = 0, y_pitch = 0, tolerance_percent = 1;
+  int field_pitch = 0;
   bool overwrite = false;
 };
 
@@ -26,27 +28,14 @@ Result<ScenePicturesTask> picture_task(const PictureArguments& a, std::uint64_t 
   ScenePicturesTask task;
   auto scene = scene_with_pictures(a.scene);
   if (!scene) return tl::unexpected(scene.error());
-  auto sensor = load_sensor(a.sensor);
-  if (!sensor) return tl::unexpected(sensor.error());
-  if (a.microscan > 0) sensor->microscan = a.microscan;
-  auto observer = load_observer(a.observer);
-  if (!observer) return tl::unexpected(observer.error());
-  const auto accuracy = Accuracy::named(a.accuracy);
-  if (!accuracy) return tl::unexpected(accuracy.error());
-  AtmosphereRequest request;
-  request.band = {sensor->wavelength_min_um, sensor->wavelength_max_um};
-  request.haze = a.haze;
-  request.weight_temperature_k = sensor->scene_temperature_k;
-  request.extinction_per_km = a.extinction_per_km;
-  auto air =
-      load_atmosphere(a.extinction_per_km > 0 && a.atmosphere == "clear" ? "beer-lambert" : a.atmosphere, request);
-  if (!air) return tl::unexpected(air.error());
+  auto chain = a.chain.load();
+  if (!chain) return tl::unexpected(chain.error());
   task.scene = *std::move(scene);
-  task.sensor = *std::move(sensor);
-  task.observer = *std::move(observer);
-  task.air = *std::move(air);
+  task.sensor = std::move(chain->sensor);
+  task.observer = std::move(chain->observer);
+  task.air = std::move(chain->air);
+  task.accuracy = chain->accuracy;
   task.view = {.range_m = a.range_m, .rotation_deg = a.rotation_deg, .centre_pitch = {a.x_pitch, a.y_pitch}};
-  task.accuracy = *accuracy;
   task.effects.tolerance_percent = a.tolerance_percent;
   task.seed = seed;
   task.field_pitch = a.field_pitch;
@@ -201,21 +190,10 @@ void add_picture_command(CLI::App& app, Program& program) {
   auto* command = app.add_subcommand("picture", "a scene through air and camera: the picture after every stage");
   auto a = std::make_shared<PictureArguments>();
   command->add_option("SCENE.toml", a->scene, "name or file")->required();
-  command->add_option("--sensor", a->sensor, "name or file")->required();
+  a->chain.add_sensor_to(*command);
   command->add_option("--range-m", a->range_m, "from camera to scene")->required()->check(number_in(1e-3, 1e6));
   command->add_option("--out", a->out, "folder for pictures and page")->required();
-  command
-      ->add_option(
-          "--atmosphere", a->atmosphere,
-          "clear, us-standard, midlatitude-summer, midlatitude-winter, subarctic-winter, tropical, beer-lambert "
-          "(with --extinction-per-km); or FILE.csv, or a MODTRAN tape7")
-      ->capture_default_str();
-  command->add_option("--haze", a->haze, "aerosol of the shipped tables")->capture_default_str();
-  command->add_option("--extinction-per-km", a->extinction_per_km, "of the contrast")
-      ->check(number_in(0, 1e4))
-      ->capture_default_str();
-  command->add_option("--microscan", a->microscan, "in place of the sensor's")->check(whole_number(1, 4));
-  command->add_option("--observer", a->observer, "name or file, of the last stage")->capture_default_str();
+  a->chain.add_to(*command, "name or file, of the last stage");
   command->add_option("--rotation-deg", a->rotation_deg, "of the scene, clockwise")->check(number_in(-360, 360));
   command->add_option("--x-pitch", a->x_pitch, "of the scene's origin from the middle of the frame, to the right")
       ->check(number_in(-1e5, 1e5));
@@ -224,9 +202,6 @@ void add_picture_command(CLI::App& app, Program& program) {
       ->check(whole_number(8, 4096));
   command->add_option("--tolerance-percent", a->tolerance_percent, "of the acuity, for effects that are left out")
       ->check(number_in(0.01, 50))
-      ->capture_default_str();
-  command->add_option("--accuracy", a->accuracy, "draft, normal or reference")
-      ->check(CLI::IsMember({"draft", "normal", "reference"}))
       ->capture_default_str();
   command->add_flag("--force", a->overwrite, "overwrite what is in the folder");
   finish_command(*command, program,

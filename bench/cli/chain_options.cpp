@@ -1,0 +1,48 @@
+#include "bench/cli/chain_options.h"
+
+#include <utility>
+
+#include "bench/cli/commands.h"
+
+namespace todbench {
+
+void ChainOptions::add_sensor_to(CLI::App& command) {
+  command.add_option("--sensor", sensor, "name or file")->required();
+}
+
+void ChainOptions::add_to(CLI::App& command, const std::string& sentence_of_observer) {
+  command
+      .add_option("--atmosphere", atmosphere,
+                  "clear, us-standard, midlatitude-summer, midlatitude-winter, subarctic-winter, tropical, "
+                  "beer-lambert (with --extinction-per-km); or FILE.csv, or a MODTRAN tape7")
+      ->capture_default_str();
+  command.add_option("--haze", haze, "aerosol of the shipped tables")->capture_default_str();
+  command.add_option("--extinction-per-km", extinction_per_km, "of the contrast")
+      ->check(number_in(0, 1e4))
+      ->capture_default_str();
+  command.add_option("--microscan", microscan, "in place of the sensor's")->check(whole_number(1, 4));
+  command.add_option("--observer", observer, sentence_of_observer)->capture_default_str();
+  command.add_option("--accuracy", accuracy, "draft, normal or reference")
+      ->check(CLI::IsMember({"draft", "normal", "reference"}))
+      ->capture_default_str();
+}
+
+Result<SeeingChain> ChainOptions::load() const {
+  auto spec = load_sensor(sensor);
+  if (!spec) return tl::unexpected(spec.error());
+  if (microscan > 0) spec->microscan = microscan;
+  auto seeing = load_observer(observer);
+  if (!seeing) return tl::unexpected(seeing.error());
+  const auto level = Accuracy::named(accuracy);
+  if (!level) return tl::unexpected(level.error());
+  const bool beer = extinction_per_km > 0 && atmosphere == "clear";
+  auto air =
+      load_atmosphere(beer ? "beer-lambert" : atmosphere, {.band = {spec->wavelength_min_um, spec->wavelength_max_um},
+                                                           .haze = haze,
+                                                           .weight_temperature_k = spec->scene_temperature_k,
+                                                           .extinction_per_km = extinction_per_km});
+  if (!air) return tl::unexpected(air.error());
+  return SeeingChain{*std::move(spec), *std::move(seeing), *level, *std::move(air)};
+}
+
+}  // namespace todbench
