@@ -197,10 +197,6 @@ Result<SpectralBand> RangeOptions::band_of(const std::optional<SensorSpec>& spec
 }
 
 Result<Atmosphere> RangeOptions::air(const std::optional<SensorSpec>& spec, double extinction_per_km) const {
-  if (!atmosphere.empty() && atmosphere != "beer-lambert" && extinction_per_km > 0) {
-    return fail(ErrorCode::invalid_input, "--atmosphere " + one_line(atmosphere) +
-                                              ": has its own extinction, --extinction-per-km may not stand beside it");
-  }
   const auto wavelengths = band_of(spec);
   if (!wavelengths) return tl::unexpected(wavelengths.error());
   const AtmosphereRequest request{.band = *wavelengths,

@@ -222,6 +222,10 @@ std::vector<std::string> haze_names() {
 
 Result<Atmosphere> load_atmosphere(std::string_view reference, const AtmosphereRequest& request) {
   if (auto valid = validate(request.band); !valid) return tl::unexpected(valid.error());
+  if (request.extinction_per_km > 0 && reference != "beer-lambert") {
+    return fail(ErrorCode::invalid_input,
+                one_line(reference) + ": has its own extinction, --extinction-per-km may not stand beside it");
+  }
   if (reference == "clear") return Atmosphere{.name = "clear", .source = "no air"};
   if (reference == "beer-lambert") {
     return Atmosphere{.name = "beer-lambert",

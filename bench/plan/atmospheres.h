@@ -37,7 +37,8 @@ struct Atmosphere {
 /// A name, or a file: a reference with a slash or a dot. A CSV file has a header with range_km or range_m, and
 /// transmittance or tau; or wavelength_um and extinction_per_km. Any other ending is read as MODTRAN's tape7. Of the
 /// shipped table the band nearest to that of the camera is taken where both ends are within 0.6 um.
-/// `invalid_input` in one sentence with the file, and the line where there is one.
+/// `invalid_input` in one sentence with the file, and the line where there is one; also where an extinction is asked
+/// for beside air that has its own.
 [[nodiscard]] Result<Atmosphere> load_atmosphere(std::string_view reference, const AtmosphereRequest& request);
 
 /// A file's text; its name says how it is read. Errors: as load_atmosphere().

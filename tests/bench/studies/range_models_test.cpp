@@ -127,6 +127,8 @@ TEST(Atmospheres, EveryShippedTableCanBeRead) {
   }
   EXPECT_FALSE(load_atmosphere("tropical", {.band = {1, 2}})) << "no band near";
   EXPECT_FALSE(load_atmosphere("tropical", {.haze = "smoke"}));
+  EXPECT_FALSE(load_atmosphere("tropical", {.extinction_per_km = 1})) << "two extinctions";
+  EXPECT_FALSE(load_atmosphere("clear", {.extinction_per_km = 1})) << "clear air with an extinction";
 }
 
 TEST(Atmospheres, FromFilesAreReadOrRefusedWithTheirName) {
