@@ -51,16 +51,14 @@ void read_row(TomlReader& row, std::size_t number, TargetPlate& plate) {
 /// The fallback of a key that may be missing is what the parameter is without it.
 void read_key(TomlReader& reader, const SensorKey& key, SensorSpec& spec) {
   const bool required = key.presence == KeyPresence::required;
-  const auto& [low, high, edge] = key.range;
   if (const auto* number = std::get_if<double SensorSpec::*>(&key.member)) {
     double& value = spec.*(*number);
-    const auto low_edge = edge == KeyRange::Edge::included ? NumberRange::Edge::included : NumberRange::Edge::excluded;
-    value = reader.number(key.name, NumberRange{low, high, low_edge}, required ? std::nullopt : std::optional(value));
+    value = reader.number(key.name, key.range, required ? std::nullopt : std::optional(value));
   } else if (const auto* whole = std::get_if<int SensorSpec::*>(&key.member)) {
     int& value = spec.*(*whole);
     const auto fallback = required ? std::nullopt : std::optional<std::int64_t>(value);
-    value = static_cast<int>(
-        reader.whole(key.name, static_cast<std::int64_t>(low), static_cast<std::int64_t>(high), fallback));
+    const auto low = static_cast<std::int64_t>(key.range.low), high = static_cast<std::int64_t>(key.range.high);
+    value = static_cast<int>(reader.whole(key.name, low, high, fallback));
   } else {
     static const std::vector<std::string> words = {std::string(to_string(DisplayReconstruction::sample_and_hold)),
                                                    std::string(to_string(DisplayReconstruction::bilinear))};

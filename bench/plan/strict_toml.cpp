@@ -11,21 +11,6 @@
 
 namespace todbench {
 
-bool NumberRange::contains(double value) const {
-  if (!std::isfinite(value)) return false;
-  return (low_edge == Edge::excluded ? value > low : value >= low) && value <= high;
-}
-
-std::string NumberRange::describe() const {
-  const bool no_low = low == std::numeric_limits<double>::lowest();
-  const bool no_high = high == std::numeric_limits<double>::max();
-  const std::string from = low_edge == Edge::excluded ? "a number above " : "a number from ";
-  if (no_low) return no_high ? "a finite number" : "a number up to " + number_text(high);
-  if (no_high)
-    return low_edge == Edge::excluded ? from + number_text(low) : "a number of " + number_text(low) + " or more";
-  return from + number_text(low) + (low_edge == Edge::excluded ? " up to " : " to ") + number_text(high);
-}
-
 /// One table being read. Tables live as long as their document, so readers may point to them.
 struct TomlReader::Table {
   const toml::table* node = nullptr;  ///< null: the file has no such table

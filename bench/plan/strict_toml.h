@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -12,25 +11,10 @@
 #include <string_view>
 #include <vector>
 
+#include "acquisition/core/number_range.h"
 #include "acquisition/core/result.h"
 
 namespace todbench {
-
-/// Which numbers are allowed, and how a message says so. Never NaN or infinite.
-struct NumberRange {
-  enum class Edge { included, excluded };
-  double low = std::numeric_limits<double>::lowest();
-  double high = std::numeric_limits<double>::max();
-  Edge low_edge = Edge::included;
-  [[nodiscard]] static NumberRange any() { return {}; }
-  [[nodiscard]] static NumberRange positive() { return {0, std::numeric_limits<double>::max(), Edge::excluded}; }
-  [[nodiscard]] static NumberRange not_negative() { return {0, std::numeric_limits<double>::max(), Edge::included}; }
-  [[nodiscard]] static NumberRange between(double low, double high) { return {low, high, Edge::included}; }
-  [[nodiscard]] static NumberRange above_to(double low, double high) { return {low, high, Edge::excluded}; }
-  [[nodiscard]] bool contains(double value) const;
-  /// "a number above 0", "a number from 0 to 0.1".
-  [[nodiscard]] std::string describe() const;
-};
 
 /// A table of a TOML document while it is read. Mistakes are collected, so that reading code is a plain list of
 /// assignments: after a mistake a reader hands out the fallback (or an empty value), and finish() says that nothing

@@ -78,8 +78,8 @@ Result<void> set_sensor(const SweepParameter& parameter, const SensorKey& key, S
   if (!number || !key.range.contains(*number) || (whole != nullptr && *number != std::floor(*number)) ||
       std::abs(*number) > 1e9) {
     return fail_at(ErrorCode::invalid_input, parameter.key,
-                   std::string("expected a ") + (whole != nullptr ? "whole " : "") + "number, " + key.range.describe() +
-                       ", found '" + one_line(parameter.value) + "'");
+                   "expected " + key.range.describe() + (whole != nullptr ? ", whole" : "") + ", found '" +
+                       one_line(parameter.value) + "'");
   }
   if (whole != nullptr) {
     spec.*(*whole) = static_cast<int>(*number);

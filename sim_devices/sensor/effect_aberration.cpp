@@ -11,7 +11,7 @@ namespace todbench {
 EffectRow effect_rows::aberration() {
   EffectRow row;
   row.title = "Aberration of the lens";
-  row.keys = {{"aberration_sigma_pitch", &SensorSpec::aberration_sigma_pitch, KeyRange::between(0, 10),
+  row.keys = {{"aberration_sigma_pitch", &SensorSpec::aberration_sigma_pitch, NumberRange::between(0, 10),
                KeyPresence::optional, "sigma of the blur per axis, in detector pitches"}};
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) { return spec.aberration_sigma_pitch == 0; };
   row.neutralise = [](SensorSpec& spec) { spec.aberration_sigma_pitch = 0; };

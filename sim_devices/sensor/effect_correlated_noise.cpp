@@ -61,7 +61,8 @@ double excess(const SensorSpec& spec) {
 EffectRow effect_rows::correlated_noise() {
   EffectRow row;
   row.title = "Noise that remembers";
-  row.keys = {{"noise_correlation", &SensorSpec::noise_correlation, KeyRange::between(0, 0.99), KeyPresence::optional,
+  row.keys = {{"noise_correlation", &SensorSpec::noise_correlation, NumberRange::between(0, 0.99),
+               KeyPresence::optional,
                "correlation of a sample's temporal noise in successive exposures, of first order"}};
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) { return spec.noise_correlation == 0 || spec.netd_k == 0; };
   row.neutralise = [](SensorSpec& spec) { spec.noise_correlation = 0; };

@@ -45,7 +45,7 @@ void replace_dead(cv::Mat1f& picture, const cv::Mat1b& dead, int samples_per_pit
 EffectRow effect_rows::dead_pixels() {
   EffectRow row;
   row.title = "Dead pixels";
-  row.keys = {{"dead_pixel_share", &SensorSpec::dead_pixel_share, KeyRange::between(0, 0.1), KeyPresence::optional,
+  row.keys = {{"dead_pixel_share", &SensorSpec::dead_pixel_share, NumberRange::between(0, 0.1), KeyPresence::optional,
                "of the detectors; the camera shows the mean of the live neighbours instead"}};
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) { return spec.dead_pixel_share == 0; };
   row.neutralise = [](SensorSpec& spec) { spec.dead_pixel_share = 0; };

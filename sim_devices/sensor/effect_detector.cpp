@@ -22,7 +22,7 @@ double detector_mtf(double u_per_pitch, double w_per_pitch, double detector_pitc
 EffectRow effect_rows::detector() {
   EffectRow row;
   row.title = "Detector footprint";
-  row.keys = {{"detector_um", &SensorSpec::detector_um, KeyRange::positive(), KeyPresence::required,
+  row.keys = {{"detector_um", &SensorSpec::detector_um, NumberRange::positive(), KeyPresence::required,
                "sensitive side of a detector"}};
   row.impossible = [](const SensorSpec& spec) -> std::string {
     return spec.detector_um > spec.pitch_um ? "detector_um is larger than pitch_um: detectors cannot overlap" : "";

@@ -60,8 +60,8 @@ std::vector<WavelengthNode> wavelength_nodes(const SensorSpec& spec, int count) 
 EffectRow effect_rows::diffraction() {
   EffectRow row;
   row.title = "Diffraction";
-  row.keys = {
-      {"f_number", &SensorSpec::f_number, KeyRange::positive(), KeyPresence::required, "focal length over aperture"}};
+  row.keys = {{"f_number", &SensorSpec::f_number, NumberRange::positive(), KeyPresence::required,
+               "focal length over aperture"}};
   row.stage = stage::Optics{factor};
   row.band = [](const SensorSpec& spec, const Accuracy&) {
     return spec.pitch_um / (spec.wavelength_min_um * spec.f_number);

@@ -57,9 +57,9 @@ cv::Mat1f filtered(const cv::Mat1f& picture, const std::vector<double>& taps) {
 EffectRow effect_rows::display() {
   EffectRow row;
   row.title = "Display reconstruction";
-  row.keys = {{"display", &SensorSpec::display, KeyRange::any(), KeyPresence::optional,
+  row.keys = {{"display", &SensorSpec::display, NumberRange::any(), KeyPresence::optional,
                "sample_and_hold or bilinear: how the display makes a picture of samples"},
-              {"display_blur_samples", &SensorSpec::display_blur_samples, KeyRange::between(0, 3),
+              {"display_blur_samples", &SensorSpec::display_blur_samples, NumberRange::between(0, 3),
                KeyPresence::optional, "sigma of the display's blur per axis, in displayed samples"}};
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) { return !has_display(spec); };
   row.neutralise = [](SensorSpec& spec) {

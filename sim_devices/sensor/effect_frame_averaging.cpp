@@ -6,7 +6,7 @@ namespace todbench {
 EffectRow effect_rows::frame_averaging() {
   EffectRow row;
   row.title = "Frame averaging";
-  row.keys = {{"frames_averaged", &SensorSpec::frames_averaged, KeyRange::between(1, 1024), KeyPresence::optional,
+  row.keys = {{"frames_averaged", &SensorSpec::frames_averaged, NumberRange::between(1, 1024), KeyPresence::optional,
                "exposures averaged into one frame"}};
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) { return spec.frames_averaged == 1; };
   row.neutralise = [](SensorSpec& spec) { spec.frames_averaged = 1; };

@@ -6,7 +6,7 @@ namespace todbench {
 EffectRow effect_rows::microscan() {
   EffectRow row;
   row.title = "Microscan";
-  row.keys = {{"microscan", &SensorSpec::microscan, KeyRange::between(1, 4), KeyPresence::optional,
+  row.keys = {{"microscan", &SensorSpec::microscan, NumberRange::between(1, 4), KeyPresence::optional,
                "samples per detector pitch and axis: the array is displaced so often squared for a picture"}};
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) { return spec.microscan == 1; };
   row.neutralise = [](SensorSpec& spec) { spec.microscan = 1; };

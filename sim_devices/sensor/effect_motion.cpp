@@ -30,7 +30,7 @@ cv::Point2d smear_pitch(const SensorSpec& spec, SceneMotion motion) {
 EffectRow effect_rows::motion() {
   EffectRow row;
   row.title = "Motion and time constant";
-  row.keys = {{"time_constant_ms", &SensorSpec::time_constant_ms, KeyRange::between(0, 1000), KeyPresence::optional,
+  row.keys = {{"time_constant_ms", &SensorSpec::time_constant_ms, NumberRange::between(0, 1000), KeyPresence::optional,
                "of the bolometer; 0 for a detector without memory"}};
   row.is_neutral = [](const SensorSpec& spec, SceneMotion motion) {
     return spec.time_constant_ms == 0 || !motion.moving();

@@ -48,7 +48,7 @@ Quantiser::Reading Quantiser::reading(double kelvin, double sd_k) const {
 EffectRow effect_rows::quantisation() {
   EffectRow row;
   row.title = "Quantisation";
-  row.keys = {{"kelvin_per_count", &SensorSpec::kelvin_per_count, KeyRange::positive(), KeyPresence::optional,
+  row.keys = {{"kelvin_per_count", &SensorSpec::kelvin_per_count, NumberRange::positive(), KeyPresence::optional,
                "linear temperature output: a step of one count"}};
   row.stage = stage::Counts{};
   row.white_variance_k2 = [](const SensorSpec& spec, double /*noise_factor*/) {

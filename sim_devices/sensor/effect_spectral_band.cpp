@@ -6,9 +6,9 @@ namespace todbench {
 EffectRow effect_rows::spectral_band() {
   EffectRow row;
   row.title = "Spectral band";
-  row.keys = {{"wavelength_min_um", &SensorSpec::wavelength_min_um, KeyRange::positive(), KeyPresence::required,
+  row.keys = {{"wavelength_min_um", &SensorSpec::wavelength_min_um, NumberRange::positive(), KeyPresence::required,
                "where the band begins"},
-              {"wavelength_max_um", &SensorSpec::wavelength_max_um, KeyRange::positive(), KeyPresence::required,
+              {"wavelength_max_um", &SensorSpec::wavelength_max_um, NumberRange::positive(), KeyPresence::required,
                "where the band ends"}};
   row.impossible = [](const SensorSpec& spec) -> std::string {
     return spec.wavelength_max_um > spec.wavelength_min_um ? "" : "wavelength_min_um must be below wavelength_max_um";

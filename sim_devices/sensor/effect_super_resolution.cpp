@@ -6,7 +6,7 @@ namespace todbench {
 EffectRow effect_rows::super_resolution() {
   EffectRow row;
   row.title = "Dynamic super-resolution";
-  row.keys = {{"super_resolution_frames", &SensorSpec::super_resolution_frames, KeyRange::between(0, 1024),
+  row.keys = {{"super_resolution_frames", &SensorSpec::super_resolution_frames, NumberRange::between(0, 1024),
                KeyPresence::optional,
                "exposures, displaced by half a pitch, on a grid twice as fine; a multiple of 4"}};
   row.impossible = [](const SensorSpec& spec) -> std::string {

@@ -1,30 +1,14 @@
 // The keys of a sensor description: name, unit, range, default and what they mean, once for reader, check and tests.
 #pragma once
 
-#include <limits>
-#include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "acquisition/core/number_range.h"
 #include "sim_devices/sensor/sensor_spec.h"
 
 namespace todbench {
-
-/// Which numbers a key takes. Never NaN or infinite.
-struct KeyRange {
-  enum class Edge { included, excluded };
-  double low = std::numeric_limits<double>::lowest();
-  double high = std::numeric_limits<double>::max();
-  Edge low_edge = Edge::included;
-  [[nodiscard]] static constexpr KeyRange any() { return {}; }
-  [[nodiscard]] static constexpr KeyRange positive() { return {0, std::numeric_limits<double>::max(), Edge::excluded}; }
-  [[nodiscard]] static constexpr KeyRange not_negative() { return {.low = 0}; }
-  [[nodiscard]] static constexpr KeyRange between(double low, double high) { return {.low = low, .high = high}; }
-  [[nodiscard]] bool contains(double value) const;
-  /// "above 0", "from 0 to 0.1", "0 or more", "a number".
-  [[nodiscard]] std::string describe() const;
-};
 
 /// The parameter that a key sets: a number, a whole number, or the name of a display.
 using KeyMember = std::variant<double SensorSpec::*, int SensorSpec::*, DisplayReconstruction SensorSpec::*>;
@@ -35,7 +19,7 @@ enum class KeyPresence { required, optional };
 struct SensorKey {
   std::string_view name;  ///< as in the file; its ending is the unit
   KeyMember member;
-  KeyRange range;
+  NumberRange range;
   KeyPresence presence = KeyPresence::optional;
   std::string_view meaning;  ///< a sentence without its full stop
 };
