@@ -189,6 +189,8 @@ HistoryIndex& HistoryIndex::operator=(HistoryIndex&&) noexcept = default;
 HistoryIndex::~HistoryIndex() = default;
 
 Result<HistoryIndex> HistoryIndex::open(const std::filesystem::path& file) {
+  if (std::error_code problem; std::filesystem::is_directory(file, problem))
+    return fail(ErrorCode::invalid_input, file.string() + ": is a folder, expected the file of a history");
   const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
   if (auto made = make_folder(folder); !made) return tl::unexpected(made.error());
   if (on_network_disk(folder)) {

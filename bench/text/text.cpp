@@ -5,12 +5,14 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <sstream>
 #include <system_error>
 
 namespace todbench {
 
 namespace {
+
+/// Some files never end: devices, a pipe from a program that does not stop.
+constexpr std::size_t largest_text = std::size_t{512} << 20U;
 
 /// Insertions, deletions, substitutions and swaps of neighbours (optimal string alignment) that turn `a` into `b`.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -84,11 +86,14 @@ Result<std::string> read_text_file(const std::filesystem::path& file) {
   }
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return fail(ErrorCode::invalid_input, file.string() + ": cannot be opened for reading");
-  std::ostringstream content;
-  // Copying an empty file sets failbit on the copy, which is not an error of reading.
-  if (stream.peek() != std::ifstream::traits_type::eof()) content << stream.rdbuf();
-  if (stream.bad() || content.bad()) return fail(ErrorCode::invalid_input, file.string() + ": cannot be read");
-  return content.str();
+  std::string content;
+  std::vector<char> piece(std::size_t{1} << 20U);
+  while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())), stream.gcount() > 0) {
+    content.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
+    if (content.size() > largest_text) return fail(ErrorCode::invalid_input, file.string() + ": larger than 512 MiB");
+  }
+  if (stream.bad()) return fail(ErrorCode::invalid_input, file.string() + ": cannot be read");
+  return content;
 }
 
 Result<std::vector<std::string>> split_csv(std::string_view line) {

@@ -28,7 +28,8 @@ namespace todbench {
 /// The words, each in single quotes, with commas.
 [[nodiscard]] std::string quoted_list(std::span<const std::string> words);
 
-/// A configuration or input file, whole. `invalid_input` with one sentence when it cannot be read.
+/// A configuration or input file, whole. `invalid_input` with one sentence when it cannot be read or is larger than
+/// 512 MiB.
 [[nodiscard]] Result<std::string> read_text_file(const std::filesystem::path& file);
 
 /// Splits one RFC 4180 record without its line end; `invalid_input` for a quote in the wrong place.

@@ -105,5 +105,12 @@ TEST(ReadTextFile, ReadsAnEmptyFile) {
   EXPECT_EQ(*text, "");
 }
 
+TEST(ReadTextFile, EndsWhereAFileDoesNot) {
+  const auto endless = read_text_file("/dev/zero");
+
+  ASSERT_FALSE(endless);
+  EXPECT_EQ(endless.error().code, ErrorCode::invalid_input);
+}
+
 }  // namespace
 }  // namespace todbench
