@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <optional>
 
@@ -232,7 +233,9 @@ double read_frame_rate(ArvCamera* camera, const CameraFamily& family) {
     const auto entry = get_feature(device, feature);
     if (!entry) continue;
     const auto digit = std::find_if(entry->begin(), entry->end(), [](unsigned char c) { return std::isdigit(c); });
-    if (digit != entry->end()) return std::atof(&*digit);
+    double rate = 0;
+    if (digit != entry->end()) std::from_chars(&*digit, entry->data() + entry->size(), rate);
+    if (std::isfinite(rate) && rate > 0) return rate;
   }
   return 0;
 }

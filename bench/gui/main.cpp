@@ -3,6 +3,7 @@
 #include <QCommandLineParser>
 #include <QDir>
 #include <algorithm>
+#include <clocale>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -88,6 +89,9 @@ int main(int argc, char** argv) {
   if (std::any_of(argv + 1, argv + argc, needs_no_screen) && !qEnvironmentVariableIsSet("QT_QPA_PLATFORM"))
     qputenv("QT_QPA_PLATFORM", "offscreen");
   const QApplication application(argc, argv);
+  // An application takes the user's locale for the C library as well; libraries that read numbers of cameras and files
+  // with strtod() would then expect a comma.
+  std::setlocale(LC_NUMERIC, "C");
   QApplication::setApplicationName("todbench-gui");
   const auto version = todbench::build_info().version;
   QApplication::setApplicationVersion(QString::fromUtf8(version.data(), static_cast<qsizetype>(version.size())));
