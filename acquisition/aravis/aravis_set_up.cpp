@@ -123,7 +123,7 @@ Result<void> AravisSource::refresh() {
   ArvDevice* device = arv_camera_get_device(camera_.get());
   auto format = read_stream_format(camera_.get());
   if (!format) return tl::unexpected(format.error());
-  format_ = std::move(*format);
+  format_ = *format;
   if (bytes_swapped_) format_.big_endian = !format_.big_endian;
   RadiometricScale scale = read_scale(device, family_);
   if (stated_kelvin_per_count_) {

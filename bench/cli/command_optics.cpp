@@ -63,8 +63,9 @@ cv::Mat1d as_exposed(SensorSpec spec, const SensorPlan& plan, const Accuracy& ac
   spec.width = spec.height = (a.window + n - 1) / n + 2 * margin;
   const SensorModel camera(spec, plan, accuracy, seed);
   const int before = (camera.size().width - a.window) / 2;
+  const int centre = before + a.window / 2;
   const double step = 1.0 / n;
-  const double first = -step * (before + a.window / 2);
+  const double first = -step * centre;
   const Polygon shape = triangle(a.size_pitch, *apex_from(a.apex), {a.x_pitch, a.y_pitch});
   cv::Mat1f signal;
   ImageChain(spec, plan, accuracy)
