@@ -232,20 +232,25 @@ std::vector<float> IdentificationBank::project(const cv::Mat1f& patch) const {
 
 std::size_t IdentificationBank::best(std::span<const float> signal, std::span<const float> first, float first_scale,
                                      std::span<const float> second, float second_scale) const {
-  CV_Assert(signal.size() == scores() && first.size() == scores() && second.size() == scores());
-  const auto per_aspect = static_cast<std::size_t>(places_ * places_);
+  std::vector<float> largest(alternatives());
+  largest_of_each(signal, first, first_scale, second, second_scale, largest);
   std::size_t winner = 0;
-  float top = -1e30F;
-  for (std::size_t o = 0; o + 1 < first_aspect_.size(); ++o) {
-    const std::size_t from = first_aspect_[o] * per_aspect;
-    const std::size_t count = (first_aspect_[o + 1] - first_aspect_[o]) * per_aspect;
-    const float own = largest_sum(&signal[from], &first[from], first_scale, &second[from], second_scale, count);
-    if (own > top) {
-      top = own;
-      winner = o;
-    }
+  for (std::size_t o = 1; o < largest.size(); ++o) {
+    if (largest[o] > largest[winner]) winner = o;
   }
   return winner;
+}
+
+void IdentificationBank::largest_of_each(std::span<const float> signal, std::span<const float> first, float first_scale,
+                                         std::span<const float> second, float second_scale,
+                                         std::span<float> largest) const {
+  CV_Assert(signal.size() == scores() && first.size() == scores() && second.size() == scores());
+  const auto per_aspect = static_cast<std::size_t>(places_ * places_);
+  for (std::size_t o = 0; o < alternatives(); ++o) {
+    const std::size_t from = first_aspect_[o] * per_aspect;
+    const std::size_t count = (first_aspect_[o + 1] - first_aspect_[o]) * per_aspect;
+    largest[o] = largest_sum(&signal[from], &first[from], first_scale, &second[from], second_scale, count);
+  }
 }
 
 }  // namespace todbench

@@ -56,6 +56,9 @@ class IdentificationBank {
   /// The alternative with the largest of signal + first_scale * first + second_scale * second, element by element.
   [[nodiscard]] std::size_t best(std::span<const float> signal, std::span<const float> first, float first_scale,
                                  std::span<const float> second, float second_scale) const;
+  /// The largest of every alternative, one after the other.
+  void largest_of_each(std::span<const float> signal, std::span<const float> first, float first_scale,
+                       std::span<const float> second, float second_scale, std::span<float> largest) const;
 
  private:
   struct Aspect {

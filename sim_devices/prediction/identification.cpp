@@ -8,11 +8,11 @@
 #include <thread>
 
 #include "hvs/observer/identification_bank.h"
+#include "sim_devices/prediction/window_noise.h"
 #include "sim_devices/sensor/effect_display.h"
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/effect_row.h"
 #include "sim_devices/sensor/scene_image.h"
-#include "sim_devices/sensor/sensor_model.h"
 #include "sim_devices/sensor/transfer_functions.h"
 
 namespace todbench {
@@ -191,20 +191,11 @@ class RangeTrial {
 
   /// The same numbers for every range but for the size of the window.
   Result<void> draw_noise(std::size_t draws) {
-    const int margin = static_cast<int>(taps_.size()), n = spec_.samples_per_pitch();
-    const int window = bank_->window_samples();
-    SensorSpec small = spec_;
-    small.width = small.height = (window + 2 * margin) / n + 1;
-    small.dead_pixel_share = 0;
-    const RandomStream white(task_.seed, "identification.white");
+    const WindowNoise noise(spec_, task_.plan, task_.accuracy, bank_->window_samples(), task_.seed);
     for (std::size_t d = 0; d < draws; ++d) {
       if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-      const SensorModel model(small, task_.plan, task_.accuracy, task_.seed + 1000003 * (d + 1));
-      const cv::Mat1f picture = model.picture(cv::Mat1f::zeros(model.size()), 1, task_.sensor.scene_temperature_k, 0);
-      sensor_noise_.push_back(bank_->project(centred(picture(cv::Rect(margin, margin, window, window)))));
-      cv::Mat1f own(window, window);
-      white.sub(d).fill_normal(std::span(own.ptr<float>(), own.total()));
-      white_.push_back(bank_->project(centred(own)));
+      sensor_noise_.push_back(bank_->project(centred(noise.sensor_k(d))));
+      white_.push_back(bank_->project(centred(noise.white(d))));
     }
     return {};
   }
