@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 
 #include "bench/cli/chain_options.h"
@@ -18,6 +19,8 @@ struct IdentifyArguments {
   std::vector<double> ranges_m;
   double m75 = 5.1;
   int decisions = 2000;
+  bool plan = false;
+  std::string templates = "camera", cues = "all";
 };
 
 Result<IdentificationStudyTask> identification_task(const IdentifyArguments& a, const Program& program) {
@@ -33,6 +36,8 @@ Result<IdentificationStudyTask> identification_task(const IdentifyArguments& a, 
   task.accuracy = chain->accuracy;
   task.ranges_m = a.ranges_m;
   task.decisions = a.decisions;
+  task.knowledge = a.templates == "ideal" ? TemplateKnowledge::ideal : TemplateKnowledge::behind_camera;
+  task.cues = a.cues == "shape" ? TargetCues::shape : TargetCues::all;
   task.m75 = a.m75;
   task.seed = program.common.seed;
   task.stop = program.stop->token();
@@ -48,7 +53,19 @@ Interval interval_of(const IdentificationPoint& point) {
   return {std::max(0.0, p - reach), std::min(1.0, p + reach)};
 }
 
-Json identification_json(const IdentificationStudyTask& task, const IdentificationStudy& study) {
+Json effort_json(const IdentificationEffort& effort) {
+  return {{"decisions", json_number(effort.decisions)},
+          {"templates_mb", json_number(effort.largest_bytes / 1e6)},
+          {"predicted_s", json_number(effort.processor_s)}};
+}
+
+std::string effort_text(const IdentificationEffort& effort) {
+  return fmt::format("{:.0f} decisions, templates of {:.0f} MB a range, about {:.0f} s of processor time",
+                     effort.decisions, effort.largest_bytes / 1e6, std::ceil(effort.processor_s));
+}
+
+Json identification_json(const IdentificationStudyTask& task, const IdentificationEffort& effort,
+                         const IdentificationStudy& study) {
   Json ranges = Json::array(), names = Json::array(), tod = Json::array();
   for (const auto& target : task.set.targets) names.push_back(target.name);
   for (const auto& point : study.points) {
@@ -76,7 +93,10 @@ Json identification_json(const IdentificationStudyTask& task, const Identificati
           {"sensor", task.sensor.name},
           {"samples_per_pitch", task.sensor.samples_per_pitch()},
           {"observer", task.observer.name},
+          {"templates", task.knowledge == TemplateKnowledge::ideal ? "ideal" : "camera"},
+          {"cues", task.cues == TargetCues::shape ? "shape" : "all"},
           {"atmosphere", {{"name", task.air.name}, {"source", task.air.source}}},
+          {"planned", effort_json(effort)},
           {"targets", names},
           {"azimuths_deg", task.set.azimuths_deg},
           {"chance", study.chance},
@@ -118,13 +138,26 @@ int run_identify(Console& console, const IdentifyArguments& a, const Program& pr
   const auto task = identification_task(a, program);
   if (!task) return report_error(console, task.error());
   for (const auto& sentence : task->air.notes) console.note(sentence);
+  const auto experiment = experiment_of(*task);
+  if (!experiment) return report_error(console, experiment.error());
+  const auto effort = planned_effort(*experiment);
+  if (!effort) return report_error(console, effort.error());
+  if (a.plan) {
+    if (console.json()) {
+      console.object({{"planned", effort_json(*effort)}});
+    } else {
+      console.text(effort_text(*effort));
+    }
+    return exit_code(VerdictKind::pass);
+  }
+  console.note("planned: " + effort_text(*effort));
   console.phase("identifying");
   const auto study = study_identification(*task);
   console.end_progress();
   if (!study) return report_error(console, study.error());
   for (const auto& sentence : study->notes) console.note(sentence);
   if (console.json()) {
-    console.object(identification_json(*task, *study));
+    console.object(identification_json(*task, *effort, *study));
   } else {
     print_identification(console, *task, *study);
   }
@@ -147,6 +180,16 @@ void add_identify_command(CLI::App& app, Program& program) {
   command->add_option("--decisions", a->decisions, "for every target at every range")
       ->check(whole_number(16, 1000000))
       ->capture_default_str();
+  command
+      ->add_option("--templates", a->templates,
+                   "what the observer knows: camera (the targets behind this camera) or ideal (without any blur of it)")
+      ->check(CLI::IsMember({"camera", "ideal"}))
+      ->capture_default_str();
+  command
+      ->add_option("--cues", a->cues, "what differs between targets: all, or shape (one size, one temperature a view)")
+      ->check(CLI::IsMember({"all", "shape"}))
+      ->capture_default_str();
+  command->add_flag("--plan", a->plan, "say what it would take, and end");
   command->add_option("--m75", a->m75, "of the range that the TOD curve predicts")
       ->check(number_in(1e-6, 1e6))
       ->capture_default_str();

@@ -15,6 +15,7 @@
 #include "bench/cli/command_identify.h"
 #include "bench/cli/command_line.h"
 #include "bench/cli/command_module.h"
+#include "bench/cli/command_mrtd.h"
 #include "bench/cli/command_picture.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/exit_codes.h"
@@ -174,6 +175,7 @@ int run(int argc, char** argv) {
   add_pattern_command(app, program);
   add_picture_command(app, program);
   add_identify_command(app, program);
+  add_mrtd_command(app, program);
   add_sfr_command(app, program);
   add_sitf_command(app, program);
   add_conformity_command(app, program);

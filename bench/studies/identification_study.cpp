@@ -133,41 +133,50 @@ Result<void> check_ranges(const IdentificationStudyTask& task) {
 
 }  // namespace
 
-Result<IdentificationStudy> study_identification(const IdentificationStudyTask& task) {
+Result<IdentificationTask> experiment_of(const IdentificationStudyTask& task) {
   if (auto fine = check_ranges(task); !fine) return tl::unexpected(fine.error());
-  const RadianceScale scale{{task.sensor.wavelength_min_um, task.sensor.wavelength_max_um},
-                            task.sensor.scene_temperature_k};
   IdentificationTask experiment;
   experiment.sensor = task.sensor;
   experiment.plan = full_plan(task.sensor, {}, {});
   experiment.observer = task.observer;
   experiment.accuracy = task.accuracy;
+  experiment.knowledge = task.knowledge;
+  experiment.cues = task.cues;
   experiment.decisions = task.decisions;
   experiment.seed = task.seed;
   experiment.stop = task.stop;
+  for (std::size_t t = 0; t < task.set.targets.size(); ++t) {
+    auto& target = experiment.targets.emplace_back(IdentificationTarget{task.set.targets[t].name, {}});
+    for (const double azimuth_deg : task.set.azimuths_deg) target.aspects.push_back(scene_of(task.set, t, azimuth_deg));
+  }
+  for (const double range_m : task.ranges_m) experiment.ranges.push_back({range_m, *task.air.air.at(range_m)});
+  return experiment;
+}
+
+Result<IdentificationStudy> study_identification(const IdentificationStudyTask& task) {
+  const auto experiment = experiment_of(task);
+  if (!experiment) return tl::unexpected(experiment.error());
+  const RadianceScale scale{{task.sensor.wavelength_min_um, task.sensor.wavelength_max_um},
+                            task.sensor.scene_temperature_k};
   IdentificationStudy study;
   double views = 0;
-  for (std::size_t t = 0; t < task.set.targets.size(); ++t) {
-    IdentificationTarget target{task.set.targets[t].name, {}};
-    for (const double azimuth_deg : task.set.azimuths_deg) {
-      target.aspects.push_back(scene_of(task.set, t, azimuth_deg));
-      if (const auto signature = target_signature(target.aspects.back(), scale)) {
+  for (const auto& target : experiment->targets) {
+    for (const auto& aspect : target.aspects) {
+      if (const auto signature = target_signature(aspect, scale)) {
         study.size_m += signature->size_m();
         study.dt_rss_k += signature->dt_rss_k();
       }
       views += 1;
     }
-    experiment.targets.push_back(std::move(target));
   }
   study.size_m /= views;
   study.dt_rss_k /= views;
   study.chance = 1 / static_cast<double>(task.set.targets.size());
-  for (const double range_m : task.ranges_m) experiment.ranges.push_back({range_m, *task.air.air.at(range_m)});
-  auto points = identify(experiment);
+  auto points = identify(*experiment);
   if (!points) return tl::unexpected(points.error());
   study.points = *std::move(points);
   study.r75_m = range_of_75_percent(task, study.points);
-  auto curve = tod_curve_for(task, study.dt_rss_k, experiment.ranges.back().transmittance, study.notes);
+  auto curve = tod_curve_for(task, study.dt_rss_k, experiment->ranges.back().transmittance, study.notes);
   if (!curve) return tl::unexpected(curve.error());
   study.tod = *std::move(curve);
   if (study.tod.empty()) return study;

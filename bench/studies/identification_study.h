@@ -18,8 +18,10 @@ struct IdentificationStudyTask {
   Atmosphere air{};
   Accuracy accuracy{};
   std::vector<double> ranges_m;  ///< at least two, increasing
-  int decisions = 2000;          ///< for every target at every range
-  double m75 = 5.1;              ///< of the range that is predicted
+  TemplateKnowledge knowledge = TemplateKnowledge::behind_camera;
+  TargetCues cues = TargetCues::all;
+  int decisions = 2000;  ///< for every target at every range
+  double m75 = 5.1;      ///< of the range that is predicted
   std::uint64_t seed = 1;
   std::stop_token stop{};
 };
@@ -41,6 +43,9 @@ struct IdentificationStudy {
   std::optional<RangePrediction> predicted;  ///< by the TOD curve with the m75 of the task; nothing: no curve
   std::vector<std::string> notes;
 };
+
+/// The experiment of a study: views, ranges with their air. Errors as study_identification().
+[[nodiscard]] Result<IdentificationTask> experiment_of(const IdentificationStudyTask& task);
 
 /// The proportion over range is made monotone (pool adjacent violators) and taken as linear in ln range.
 /// `invalid_input`: ranges that do not increase or lie beyond the air's table, and what identify() refuses;

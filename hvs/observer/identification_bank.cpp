@@ -63,6 +63,46 @@ double reach_of(std::span<const AlternativeAspects> alternatives) {
   return reach;
 }
 
+/// Where a window of samples lies on the fine picture of a target, at every node of the search.
+struct PlacedWindow {
+  int side = 0, search = 0;  ///< in samples; in steps each way
+  int per_sample = 1;        ///< points of the fine picture to the sample
+  int stride = 1;            ///< and to the step of the search
+  int period = 1;            ///< of the fine picture, in points
+  std::span<const int> nodes;
+
+  /// One row per node, each without its mean.
+  [[nodiscard]] cv::Mat1d centred(const cv::Mat1d& fine) const {
+    const auto on_axis = static_cast<int>(nodes.size());
+    cv::Mat1d out(on_axis * on_axis, side * side);
+    for (int node = 0; node < out.rows; ++node) {
+      const int dx = nodes[static_cast<std::size_t>(node % on_axis)] - search;
+      const int dy = nodes[static_cast<std::size_t>(node / on_axis)] - search;
+      double* values = out[node];
+      double mean = 0;
+      for (int j = 0; j < side; ++j) {
+        const int y = ((2 * j - side + 1) * per_sample / 2 - dy * stride + 2 * period) % period;
+        for (int i = 0; i < side; ++i) {
+          const int x = ((2 * i - side + 1) * per_sample / 2 - dx * stride + 2 * period) % period;
+          mean += * values++ = fine(y, x);
+        }
+      }
+      out.row(node) -= mean / (static_cast<double>(side) * side);
+    }
+    return out;
+  }
+};
+
+/// The product at a place of the search from those at the nodes.
+double interpolated_product(const cv::Mat1f& weights, const cv::Mat1d& gram, int x, int y) {
+  const int on_axis = weights.cols;
+  cv::Mat1d own(gram.rows, 1);
+  for (int node = 0; node < own.rows; ++node) {
+    own(node) = static_cast<double>(weights(x, node % on_axis)) * static_cast<double>(weights(y, node / on_axis));
+  }
+  return own.dot(cv::Mat1d(gram * own));
+}
+
 TODBENCH_MULTIVERSION
 float largest_sum(const float* signal, const float* first, float first_scale, const float* second, float second_scale,
                   std::size_t count) {
@@ -87,7 +127,7 @@ float largest_sum(const float* signal, const float* first, float first_scale, co
 
 Result<IdentificationBank> IdentificationBank::build(const TemplateObserverSpec& spec,
                                                      std::span<const AlternativeAspects> alternatives,
-                                                     int samples_per_pitch) {
+                                                     int samples_per_pitch, const std::optional<KnownCamera>& camera) {
   if (alternatives.size() < 2) return fail(ErrorCode::invalid_input, "identification needs at least two alternatives");
   const int steps = static_cast<int>(std::lround(1 / spec.search_step_samples));
   const int search = static_cast<int>(std::lround(spec.search_range_samples * steps));
@@ -116,45 +156,31 @@ Result<IdentificationBank> IdentificationBank::build(const TemplateObserverSpec&
   }
   bank.nodes_.assign(bank.blocks_ * identification_block * samples, 0.0F);
 
-  const double band = std::sqrt(27.631 / 2) / (std::numbers::pi * spec.blur_sigma_samples);
+  const double band =
+      camera ? camera->band_per_sample : std::sqrt(27.631 / 2) / (std::numbers::pi * spec.blur_sigma_samples);
   const int period = cv::getOptimalDFTSize(
       static_cast<int>(std::ceil(half + spec.search_range_samples + reach + 7 * spec.blur_sigma_samples + 1)));
   const FrequencyLattice lattice{.period = period, .band = static_cast<int>(std::ceil(band * period))};
   int per_sample = steps % 2 == 0 ? steps : 2 * steps;
   while (period * per_sample <= 2 * lattice.band) per_sample *= 2;
-  const FilterTable filter(lattice, eye_filter(spec.blur_sigma_samples));
-  const int stride = per_sample / steps, n = period * per_sample;
+  const FilterTable filter(lattice, camera ? camera->transfer : eye_filter(spec.blur_sigma_samples));
+  const PlacedWindow window{.side = bank.window_,
+                            .search = search,
+                            .per_sample = per_sample,
+                            .stride = per_sample / steps,
+                            .period = period * per_sample,
+                            .nodes = nodes};
   std::size_t index = 0;
   for (const auto& alternative : alternatives) {
     for (const auto& edges : alternative) {
       if (edges.empty()) return fail(ErrorCode::invalid_input, "an alternative cannot be told from its background");
-      const cv::Mat1d fine = fine_step_image(edges, filter, per_sample);
-      cv::Mat1d shown(static_cast<int>(per_aspect), static_cast<int>(samples));
-      for (std::size_t node = 0; node < per_aspect; ++node) {
-        const int dx = nodes[node % nodes.size()] - search, dy = nodes[node / nodes.size()] - search;
-        double* values = shown[static_cast<int>(node)];
-        double mean = 0;
-        for (int j = 0; j < bank.window_; ++j) {
-          const int y = ((2 * (j - half) + 1) * per_sample / 2 - dy * stride + 2 * n) % n;
-          for (int i = 0; i < bank.window_; ++i) {
-            const int x = ((2 * (i - half) + 1) * per_sample / 2 - dx * stride + 2 * n) % n;
-            mean += * values++ = fine(y, x);
-          }
-        }
-        shown.row(static_cast<int>(node)) -= mean / static_cast<double>(samples);
-      }
+      const cv::Mat1d shown = window.centred(fine_step_image(edges, filter, per_sample));
       // Norms at every place from the products of the nodes.
       cv::Mat1d gram;
       cv::mulTransposed(shown, gram, false);
       Aspect aspect;
-      const int on_axis = static_cast<int>(nodes.size());
       for (int place = 0; place < bank.places_ * bank.places_; ++place) {
-        cv::Mat1d own(static_cast<int>(per_aspect), 1);
-        for (int node = 0; node < own.rows; ++node) {
-          own(node) = static_cast<double>(bank.weights_(place % bank.places_, node % on_axis)) *
-                      static_cast<double>(bank.weights_(place / bank.places_, node / on_axis));
-        }
-        const double square = own.dot(cv::Mat1d(gram * own));
+        const double square = interpolated_product(bank.weights_, gram, place % bank.places_, place / bank.places_);
         if (!(square > 0)) return fail(ErrorCode::invalid_input, "an alternative cannot be told from its background");
         aspect.inverse_norms.push_back(static_cast<float>(1 / std::sqrt(square)));
       }
@@ -206,20 +232,25 @@ std::vector<float> IdentificationBank::project(const cv::Mat1f& patch) const {
 
 std::size_t IdentificationBank::best(std::span<const float> signal, std::span<const float> first, float first_scale,
                                      std::span<const float> second, float second_scale) const {
-  CV_Assert(signal.size() == scores() && first.size() == scores() && second.size() == scores());
-  const auto per_aspect = static_cast<std::size_t>(places_ * places_);
+  std::vector<float> largest(alternatives());
+  largest_of_each(signal, first, first_scale, second, second_scale, largest);
   std::size_t winner = 0;
-  float top = -1e30F;
-  for (std::size_t o = 0; o + 1 < first_aspect_.size(); ++o) {
-    const std::size_t from = first_aspect_[o] * per_aspect;
-    const std::size_t count = (first_aspect_[o + 1] - first_aspect_[o]) * per_aspect;
-    const float own = largest_sum(&signal[from], &first[from], first_scale, &second[from], second_scale, count);
-    if (own > top) {
-      top = own;
-      winner = o;
-    }
+  for (std::size_t o = 1; o < largest.size(); ++o) {
+    if (largest[o] > largest[winner]) winner = o;
   }
   return winner;
+}
+
+void IdentificationBank::largest_of_each(std::span<const float> signal, std::span<const float> first, float first_scale,
+                                         std::span<const float> second, float second_scale,
+                                         std::span<float> largest) const {
+  CV_Assert(signal.size() == scores() && first.size() == scores() && second.size() == scores());
+  const auto per_aspect = static_cast<std::size_t>(places_ * places_);
+  for (std::size_t o = 0; o < alternatives(); ++o) {
+    const std::size_t from = first_aspect_[o] * per_aspect;
+    const std::size_t count = (first_aspect_[o + 1] - first_aspect_[o]) * per_aspect;
+    largest[o] = largest_sum(&signal[from], &first[from], first_scale, &second[from], second_scale, count);
+  }
 }
 
 }  // namespace todbench

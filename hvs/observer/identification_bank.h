@@ -3,21 +3,34 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "acquisition/core/result.h"
 #include "hvs/observer/template_observer.h"
 #include "hvs/shape/painted_shapes.h"
+#include "hvs/shape/polygon_image.h"
 
 namespace todbench {
 
 /// One alternative: its edges from every side, in displayed samples, near the origin. Levels in any unit.
 using AlternativeAspects = std::vector<std::vector<StepEdge>>;
 
+/// A camera that the observer knows: its transfer function in cycles per displayed sample, and where it is cut.
+struct KnownCamera {
+  TransferFunction transfer;
+  double band_per_sample = 3;
+};
+
 /// The template observer generalised from triangles: as there a template is the ideal picture behind display and blur
 /// of the eye, without its mean and of unit norm, at every place of the search; an alternative's score is the largest
 /// over its sides and places.
+///
+/// Blur harms the four orientations of one triangle alike; of different shapes it makes one look like another. So an
+/// observer may know what its alternatives look like behind a camera: a template is then the picture behind the camera
+/// in place of display and eye, and without noise the alternative that is shown has the largest score (Cauchy and
+/// Schwarz).
 ///
 /// Templates of one picture at places next to each other are smooth functions of the place. Projections are computed at
 /// up to nine places per axis and interpolated in between (polynomials of Lagrange, nodes near those of Chebyshev and
@@ -25,11 +38,13 @@ using AlternativeAspects = std::vector<std::vector<StepEdge>>;
 /// (IdentificationBank.ScoresTrianglesAsTheTemplateObserverDoes). Immutable, thread-safe.
 class IdentificationBank {
  public:
+  /// `camera`: nothing: ideal templates, as of triangles.
   /// `invalid_input`: fewer than two alternatives, one without sides or without edges, or templates that need over 1
   /// GiB.
   [[nodiscard]] static Result<IdentificationBank> build(const TemplateObserverSpec& spec,
                                                         std::span<const AlternativeAspects> alternatives,
-                                                        int samples_per_pitch);
+                                                        int samples_per_pitch,
+                                                        const std::optional<KnownCamera>& camera = std::nullopt);
 
   /// Side of the square window, in samples, even.
   [[nodiscard]] int window_samples() const { return window_; }
@@ -41,6 +56,9 @@ class IdentificationBank {
   /// The alternative with the largest of signal + first_scale * first + second_scale * second, element by element.
   [[nodiscard]] std::size_t best(std::span<const float> signal, std::span<const float> first, float first_scale,
                                  std::span<const float> second, float second_scale) const;
+  /// The largest of every alternative, one after the other.
+  void largest_of_each(std::span<const float> signal, std::span<const float> first, float first_scale,
+                       std::span<const float> second, float second_scale, std::span<float> largest) const;
 
  private:
   struct Aspect {

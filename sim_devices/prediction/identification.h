@@ -25,6 +25,17 @@ struct IdentificationRange {
   double transmittance = 1;
 };
 
+/// What the observer knows of its targets.
+enum class TemplateKnowledge {
+  behind_camera,  ///< what they look like behind this camera, as people do who have learnt on its pictures
+  ideal           ///< their ideal pictures only: blur then makes one target look like another
+};
+/// What differs between targets.
+enum class TargetCues {
+  all,   ///< shape, size and pattern of temperatures
+  shape  ///< every view has its dT_RSS all over and the mean size of the set
+};
+
 struct IdentificationTask {
   SensorSpec sensor;
   SensorPlan plan;  ///< of the effects
@@ -32,6 +43,8 @@ struct IdentificationTask {
   Accuracy accuracy{};
   std::vector<IdentificationTarget> targets;
   std::vector<IdentificationRange> ranges;
+  TemplateKnowledge knowledge = TemplateKnowledge::behind_camera;
+  TargetCues cues = TargetCues::all;
   int decisions = 2000;  ///< for every target at every range, in all aspects together
   std::uint64_t seed = 1;
   std::stop_token stop{};
@@ -45,6 +58,15 @@ struct IdentificationPoint {
   [[nodiscard]] double proportion() const;
   [[nodiscard]] double standard_error() const;
 };
+
+/// What an experiment will take.
+struct IdentificationEffort {
+  double decisions = 0;      ///< of all targets and ranges
+  double largest_bytes = 0;  ///< of the templates of one range
+  double processor_s = 0;    ///< on one core of about 2 x 10^10 template samples a second, to a factor of two
+};
+/// Before anything is computed. Errors: those of identify() that targets are refused with.
+[[nodiscard]] Result<IdentificationEffort> planned_effort(const IdentificationTask& task);
 
 /// One point per range, in their order. Every draw of sensor and internal noise is met by every target in every aspect,
 /// in one of 16 sampling phases that all draws take in turn; internal noise and the noise that an observer sees

@@ -259,6 +259,45 @@ TEST(IdentifyCommand, SaysWhereASetIsToldApartAndWhatTheTodCurveWouldHaveSaid) {
   expect_refused(identify("no-such-set", "500,800"), 2, "small-craft");
 }
 
+TEST(MrtdCommand, TellsWhatIsAnMrtdFromWhatAMachineDoesBeyond) {
+  const TemporaryFolder folder;
+  const auto mrtd = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments{"mrtd", "--sensor", "sc2000", "--draws", "128", "--accuracy", "draft", "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return todbench(arguments, {.folder = folder.path()});
+  };
+
+  const Ended ended = mrtd({"--of-nyquist", "0.4,1.2", "--page", "mrtd.html", "--svg", "mrtd.svg"});
+
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Json json = one_object(ended);
+  EXPECT_EQ(json["criterion"], "four-or-five");
+  for (const char* axis : {"horizontal", "vertical"}) {
+    const Json& points = json["axes"][axis];
+    ASSERT_EQ(points.size(), 2u);
+    EXPECT_GT(points[0]["mrtd_k"].get<double>(), points[0]["ideal_k"].get<double>() * 0.8);
+    EXPECT_TRUE(points[0]["formula_mrtd_k"].is_number());
+    EXPECT_TRUE(points[1]["threshold_k"].is_number());
+    EXPECT_TRUE(points[1]["mrtd_k"].is_null());
+    EXPECT_TRUE(points[1]["reason"].is_string());
+  }
+  EXPECT_EQ(content(folder.path() / "mrtd.html").find("<script"), std::string::npos);
+  EXPECT_NE(content(folder.path() / "mrtd.svg").find("<svg"), std::string::npos);
+  // Microscan does not make the detectors smaller: next to Nyquist bars are told apart, but not resolved.
+  const std::vector<std::string> resolved{"--axis",      "vertical", "--criterion", "bars-resolved",
+                                          "--microscan", "2",        "--of-nyquist"};
+  const auto at = [&](const std::string& share) {
+    auto arguments = resolved;
+    arguments.push_back(share);
+    return mrtd(arguments).code;
+  };
+  EXPECT_EQ(at("0.4"), 0);
+  EXPECT_EQ(at("0.99"), 3);
+  expect_refused(mrtd({"--frequencies-per-mrad", "50"}), 2, "samples on a side");
+  expect_refused(mrtd({"--criterion", "flir92"}), 2, "four-or-five");
+  expect_refused(mrtd({"--frequencies-per-mrad", "nan"}), 2, "--frequencies-per-mrad");
+}
+
 TEST(SweepCommand, PrintsTaskListsAndRefusesInASentence) {
   const TemporaryFolder folder;
   folder.write("s.toml", "[grid]\nnetd_k = [0.03, 0.05]\n[repeat]\nseeds = 2\n");

@@ -70,6 +70,7 @@ IdentificationTask two_mirror_images() {
   task.sensor = test::sc2000();
   task.plan = full_plan(task.sensor, {}, {});
   task.observer.search_range_samples = 0;
+  task.knowledge = TemplateKnowledge::ideal;
   task.accuracy = Accuracy::draft();
   task.targets = {{"up", {triangle_scene(Apex::up, 1)}}, {"down", {triangle_scene(Apex::down, 1)}}};
   task.ranges = {{350, 1}};  // 2.18 pitches
@@ -127,6 +128,66 @@ TEST(Identification, FallsWithRangeToChance) {
   EXPECT_GT((*found)[0].proportion(), 0.99);
   EXPECT_GT((*found)[1].proportion(), (*found)[2].proportion());
   EXPECT_NEAR((*found)[3].proportion(), 0.5, 0.12);
+}
+
+FieldScene rectangle_scene(cv::Size2d size_m) {
+  FieldScene scene;
+  scene.background_k = 300;
+  const double x = size_m.width / 2, y = size_m.height / 2;
+  scene.regions = {{"rectangle", {{-x, -y}, {x, -y}, {x, y}, {-x, y}}, 310, 1, true}};
+  return scene;
+}
+
+// Without noise what is shown has the largest score. Ideal templates take blur for shape: of half a pitch and more,
+// a narrow rectangle then looks like a wider one.
+TEST(Identification, OfAKnownCameraErrsByNoiseOnly) {
+  IdentificationTask task = two_mirror_images();
+  task.sensor.netd_k = 1e-4;
+  task.plan = full_plan(task.sensor, {Effect::quantisation}, {});
+  task.observer.internal_noise = 1e-4;
+  task.observer.search_range_samples = 0.375;  // every phase of the experiment is a place of the search
+  task.targets = {{"narrow", {rectangle_scene({0.25, 2})}},
+                  {"middle", {rectangle_scene({0.5, 2})}},
+                  {"wide", {rectangle_scene({1, 2})}}};
+  task.ranges = {{600, 1}};
+  task.decisions = 64;
+
+  task.knowledge = TemplateKnowledge::behind_camera;
+  const auto known = identify(task);
+  task.knowledge = TemplateKnowledge::ideal;
+  const auto ideal = identify(task);
+
+  ASSERT_TRUE(known && ideal);
+  EXPECT_EQ(known->front().proportion(), 1);
+  EXPECT_LT(ideal->front().proportion(), 0.9);
+}
+
+TEST(Identification, OfShapeAloneDoesNotTellSizesApart) {
+  IdentificationTask task = two_mirror_images();
+  task.targets = {{"small", {triangle_scene(Apex::up, 1)}}, {"large", {triangle_scene(Apex::up, 2)}}};
+  ASSERT_TRUE(planned_effort(task));
+  task.cues = TargetCues::shape;
+
+  const auto found = identify(task);
+
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().code, ErrorCode::invalid_input);
+}
+
+TEST(Identification, PlansAnEffortThatGrowsWithDecisionsAndNearness) {
+  IdentificationTask task = two_mirror_images();
+  const auto once = planned_effort(task);
+  task.decisions *= 2;
+  const auto twice = planned_effort(task);
+  task.ranges = {{50, 1}};
+  const auto near = planned_effort(task);
+
+  ASSERT_TRUE(once && twice && near);
+  EXPECT_EQ(once->decisions, 2 * 4000);
+  EXPECT_EQ(twice->decisions, 2 * once->decisions);
+  EXPECT_GT(twice->processor_s, once->processor_s);
+  EXPECT_GT(near->processor_s, twice->processor_s);
+  EXPECT_GT(near->largest_bytes, once->largest_bytes);
 }
 
 TEST(Identification, RefusesWhatCannotBeToldApart) {

@@ -1,0 +1,187 @@
+#include "bench/cli/command_mrtd.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "bench/judgement/verdict.h"
+#include "bench/plan/descriptions.h"
+#include "bench/report/html.h"
+#include "bench/report/svg.h"
+#include "bench/studies/mrtd_study.h"
+#include "bench/text/files.h"
+
+namespace todbench {
+namespace {
+
+struct MrtdArguments {
+  std::string sensor, observer = "hvs-1", accuracy = "normal", criterion = "four-or-five", axis = "both", page, svg;
+  std::vector<double> frequencies_per_mrad, of_nyquist{0.2, 0.4, 0.6, 0.8, 0.9, 1.0, 1.2};
+  int draws = 2000, microscan = 0;
+  FormulaConditions formula{};
+};
+
+Result<MrtdStudyTask> mrtd_task(const MrtdArguments& a, const Program& program) {
+  MrtdStudyTask task;
+  auto sensor = load_sensor(a.sensor);
+  if (!sensor) return tl::unexpected(sensor.error());
+  if (a.microscan > 0) sensor->microscan = a.microscan;
+  auto observer = load_observer(a.observer);
+  if (!observer) return tl::unexpected(observer.error());
+  const auto accuracy = Accuracy::named(a.accuracy);
+  if (!accuracy) return tl::unexpected(accuracy.error());
+  task.trial.sensor = *std::move(sensor);
+  task.trial.plan = full_plan(task.trial.sensor, {}, {});
+  task.trial.observer = *std::move(observer);
+  task.trial.accuracy = *accuracy;
+  for (const BarCriterion known : {BarCriterion::four_or_five, BarCriterion::bars_resolved, BarCriterion::detection}) {
+    if (a.criterion == to_string(known)) task.trial.criterion = known;
+  }
+  task.trial.draws = a.draws;
+  task.trial.seed = program.common.seed;
+  task.trial.stop = program.stop->token();
+  task.trial.frequencies_per_mrad = a.frequencies_per_mrad;
+  if (a.frequencies_per_mrad.empty()) {
+    const double nyquist = 0.5 * task.trial.sensor.samples_per_pitch() / task.trial.sensor.ifov_mrad();
+    for (const double share : a.of_nyquist) task.trial.frequencies_per_mrad.push_back(share * nyquist);
+  }
+  if (a.axis != "vertical") task.axes.push_back(BarAxis::horizontal);
+  if (a.axis != "horizontal") task.axes.push_back(BarAxis::vertical);
+  task.formula = a.formula;
+  return task;
+}
+
+std::optional<double> sampling_spread(const VirtualMrtdPoint& point) {
+  if (!point.best_phase_k || !point.worst_phase_k) return std::nullopt;
+  return *point.worst_phase_k / *point.best_phase_k;
+}
+
+Json point_json(const MrtdStudyPoint& point) {
+  const VirtualMrtdPoint& found = point.found;
+  return {{"frequency_per_mrad", json_number(found.frequency_per_mrad)},
+          {"frequency_over_nyquist", json_number(found.frequency_over_nyquist)},
+          {"mrtd_k", json_number(point.mrtd_k)},
+          {"reason", point.reason.empty() ? Json() : Json(point.reason)},
+          {"threshold_k", json_number(found.threshold_k)},
+          {"threshold_ci95_k", json_interval(point.threshold_ci95_k)},
+          {"best_phase_k", json_number(found.best_phase_k)},
+          {"worst_phase_k", json_number(found.worst_phase_k)},
+          {"sampling_spread", json_number(sampling_spread(found))},
+          {"highest_k", json_number(found.highest_k)},
+          {"proportion_at_highest", json_number(found.proportion_at_most)},
+          {"formula_mrtd_k", json_number(point.formula_k)},
+          {"ideal_k", json_number(found.ideal_k)},
+          {"modulation_best", json_number(found.modulation_best)},
+          {"modulation_worst", json_number(found.modulation_worst)},
+          {"share_of_phases_with_four_bars", json_number(found.share_of_four)}};
+}
+
+Json mrtd_json(const MrtdStudyTask& task, const MrtdStudy& study) {
+  Json axes = Json::object();
+  for (const auto& curve : study.curves) {
+    Json points = Json::array();
+    for (const auto& point : curve.points) points.push_back(point_json(point));
+    axes[curve.axis == BarAxis::horizontal ? "horizontal" : "vertical"] = points;
+  }
+  return {{"sensor", task.trial.sensor.name},
+          {"samples_per_pitch", task.trial.sensor.samples_per_pitch()},
+          {"observer", task.trial.observer.name},
+          {"criterion", std::string(to_string(task.trial.criterion))},
+          {"draws", task.trial.draws},
+          {"nyquist_per_mrad", json_number(study.nyquist_per_mrad)},
+          {"formula",
+           {{"snr_threshold", task.formula.snr_threshold}, {"eye_integration_s", task.formula.eye_integration_s}}},
+          {"axes", axes}};
+}
+
+void print_mrtd(Console& console, const MrtdStudyTask& task, const MrtdStudy& study) {
+  console.text("virtual MRTD of " + task.trial.sensor.name + ", observer " + task.trial.observer.name + ", " +
+               std::string(to_string(task.trial.criterion)));
+  for (const auto& curve : study.curves) {
+    std::vector<TableRow> rows;
+    for (const auto& p : curve.points) {
+      rows.push_back({fixed(p.found.frequency_per_mrad, 3), fixed(p.found.frequency_over_nyquist, 2),
+                      fixed(p.mrtd_k, 4), range(p.mrtd_k ? p.threshold_ci95_k : Interval{}, 4),
+                      fixed(p.found.best_phase_k, 4), fixed(p.found.worst_phase_k, 4), fixed(p.formula_k, 4),
+                      p.reason});
+    }
+    console.text("");
+    console.text(curve.axis == BarAxis::horizontal ? "horizontal axis" : "vertical axis");
+    console.table({"f [/mrad]", "f/Nyquist", "MRTD [K]", "95 %", "best phase", "worst phase", "formula", "reason"},
+                  rows);
+  }
+}
+
+int run_mrtd(Console& console, const MrtdArguments& a, const Program& program) {
+  const auto task = mrtd_task(a, program);
+  if (!task) return report_error(console, task.error());
+  console.phase("judging bars");
+  const auto study = study_mrtd(*task);
+  console.end_progress();
+  if (!study) return report_error(console, study.error());
+  if (!a.svg.empty()) {
+    const auto figure = drawn(mrtd_plot(*task, *study));
+    if (!figure) return report_error(console, figure.error());
+    if (auto written = write_file_atomically(a.svg, svg_document(std::array{*figure})); !written)
+      return report_error(console, written.error());
+  }
+  if (!a.page.empty()) {
+    if (auto written = write_file_atomically(a.page, render_html(mrtd_page(*task, *study))); !written)
+      return report_error(console, written.error());
+  }
+  if (console.json()) {
+    console.object(mrtd_json(*task, *study));
+  } else {
+    print_mrtd(console, *task, *study);
+  }
+  // What lies beyond Nyquist has no MRTD by rule; anything else that was asked for and has no threshold is open.
+  const bool all = std::all_of(study->curves.begin(), study->curves.end(), [](const auto& curve) {
+    return std::all_of(curve.points.begin(), curve.points.end(), [](const auto& point) {
+      return point.found.threshold_k || point.found.frequency_over_nyquist > 1 + 1e-9;
+    });
+  });
+  return exit_code(all ? VerdictKind::pass : VerdictKind::inconclusive);
+}
+
+}  // namespace
+
+void add_mrtd_command(CLI::App& app, Program& program) {
+  auto* command =
+      app.add_subcommand("mrtd", "four bars before a simulated camera, judged by the observer of the triangles");
+  auto a = std::make_shared<MrtdArguments>();
+  command->add_option("--sensor", a->sensor, "name or file")->required();
+  command->add_option("--microscan", a->microscan, "in place of the sensor's")->check(whole_number(1, 4));
+  command->add_option("--observer", a->observer, "name or file")->capture_default_str();
+  command->add_option("--accuracy", a->accuracy, "draft, normal or reference")
+      ->check(CLI::IsMember({"draft", "normal", "reference"}))
+      ->capture_default_str();
+  command
+      ->add_option("--criterion", a->criterion,
+                   "four-or-five (two intervals, free of bias), bars-resolved (yes or no), or detection (no MRTD)")
+      ->check(CLI::IsMember({"four-or-five", "bars-resolved", "detection"}))
+      ->capture_default_str();
+  command->add_option("--axis", a->axis, "that resolves the bars: horizontal, vertical or both")
+      ->check(CLI::IsMember({"horizontal", "vertical", "both"}))
+      ->capture_default_str();
+  auto* absolute = command->add_option("--frequencies-per-mrad", a->frequencies_per_mrad, "separated by commas")
+                       ->delimiter(',')
+                       ->check(number_in(1e-6, 1e6));
+  command->add_option("--of-nyquist", a->of_nyquist, "frequencies over the Nyquist frequency of the samples")
+      ->delimiter(',')
+      ->check(number_in(1e-3, 4))
+      ->excludes(absolute);
+  command->add_option("--draws", a->draws, "of noise, for every frequency")
+      ->check(whole_number(64, 100000))
+      ->capture_default_str();
+  command->add_option("--snr-threshold", a->formula.snr_threshold, "of the MRTD formula")
+      ->check(number_in(1e-6, 1e6))
+      ->capture_default_str();
+  command->add_option("--eye-integration-s", a->formula.eye_integration_s, "of the MRTD formula")
+      ->check(number_in(1e-4, 10))
+      ->capture_default_str();
+  command->add_option("--svg", a->svg, "writes the figure to this file");
+  command->add_option("--page", a->page, "writes figure and tables to this HTML file");
+  finish_command(*command, program, [a, &program](Console& console) { return run_mrtd(console, *a, program); });
+}
+
+}  // namespace todbench

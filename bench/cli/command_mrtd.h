@@ -1,0 +1,10 @@
+// todbench mrtd
+#pragma once
+
+#include "bench/cli/commands.h"
+
+namespace todbench {
+
+void add_mrtd_command(CLI::App& app, Program& program);
+
+}  // namespace todbench

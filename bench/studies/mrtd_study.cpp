@@ -1,0 +1,176 @@
+#include "bench/studies/mrtd_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "acquisition/core/normal.h"
+#include "bench/report/number_format.h"
+#include "bench/report/report_pieces.h"
+
+namespace todbench {
+namespace {
+
+std::string_view axis_title(BarAxis axis) {
+  return axis == BarAxis::horizontal ? "horizontal" : "vertical";
+}
+
+std::string no_mrtd_reason(const VirtualMrtdPoint& point, BarCriterion criterion) {
+  if (criterion == BarCriterion::detection) return "detection of a pattern is no MRTD";
+  if (!point.threshold_k) {
+    return fmt::format("no contrast up to {:.3g} K is judged 75 % right ({:.0f} % there)", point.highest_k,
+                       100 * point.proportion_at_most);
+  }
+  if (point.frequency_over_nyquist > 1 + 1e-9)
+    return "beyond Nyquist: cut by rule, the observer tells alias patterns apart";
+  if (point.share_of_four == 0) return "no phase shows four bars: the observer tells alias patterns apart";
+  return {};
+}
+
+MrtdStudyPoint study_point(const VirtualMrtdPoint& found, BarCriterion criterion, const LogLinearCurve& formula) {
+  MrtdStudyPoint point;
+  point.found = found;
+  if (found.threshold_k) {
+    const double reach = normal_z95 * found.relative_error;
+    point.threshold_ci95_k = {*found.threshold_k * std::exp(-reach), *found.threshold_k * std::exp(reach)};
+  }
+  point.reason = no_mrtd_reason(found, criterion);
+  if (point.reason.empty()) point.mrtd_k = found.threshold_k;
+  point.formula_k = formula.at(found.frequency_per_mrad);
+  return point;
+}
+
+PlotSeries series(const std::string& label, PlotTone tone, PlotMarker marker, PlotLine line) {
+  return {.label = label, .tone = tone, .marker = marker, .line = line, .legend_line = line, .points = {}};
+}
+
+std::string criterion_text(BarCriterion criterion) {
+  switch (criterion) {
+    case BarCriterion::four_or_five:
+      return "two intervals, four bars in one and five in the other, 75 % right: free of bias";
+    case BarCriterion::bars_resolved:
+      return "yes or no, every gap lower than the bars beside it: 75 % yes where 5 % of empty pictures get a yes";
+    case BarCriterion::detection:
+      break;
+  }
+  return "two intervals, four bars in one, nothing in the other, 75 % right: detection, no MRTD";
+}
+
+Table axis_table(const MrtdAxisCurve& curve) {
+  Table table;
+  table.caption = fmt::format("Bars that the {} axis resolves", axis_title(curve.axis));
+  table.header = {"f (cycles/mrad)",        "f / Nyquist",          "MRTD (K), 95 %", "Threshold (K)",
+                  "Best phase (K)",         "Worst phase (K)",      "Formula (K)",    "Ideal (K)",
+                  "Modulation best, worst", "Phases with four bars"};
+  const auto number = [](const std::optional<double>& value, std::string_view why) {
+    return value ? plain(significant(*value, 3)) : missing(why);
+  };
+  for (const auto& p : curve.points) {
+    const auto& f = p.found;
+    table.rows.push_back({plain(significant(f.frequency_per_mrad, 3)), plain(significant(f.frequency_over_nyquist, 3)),
+                          interval_or_missing(p.mrtd_k, p.threshold_ci95_k, p.reason), number(f.threshold_k, "none"),
+                          number(f.best_phase_k, "none"), number(f.worst_phase_k, "not at every phase"),
+                          number(p.formula_k, "beyond Nyquist"), plain(significant(f.ideal_k, 3)),
+                          plain(significant(f.modulation_best, 2) + ", " + significant(f.modulation_worst, 2)),
+                          plain(fmt::format("{:.0f} %", 100 * f.share_of_four))});
+  }
+  return table;
+}
+
+}  // namespace
+
+Result<MrtdStudy> study_mrtd(const MrtdStudyTask& task) {
+  const auto formula = mrtd_curves(task.trial.sensor, task.formula);
+  if (!formula) return tl::unexpected(formula.error());
+  MrtdStudy study;
+  study.nyquist_per_mrad = 0.5 * task.trial.sensor.samples_per_pitch() / task.trial.sensor.ifov_mrad();
+  for (const BarAxis axis : task.axes) {
+    VirtualMrtdTask trial = task.trial;
+    trial.axis = axis;
+    const auto found = virtual_mrtd(trial);
+    if (!found) return tl::unexpected(found.error());
+    auto& curve = study.curves.emplace_back(MrtdAxisCurve{axis, {}});
+    for (const auto& point : *found) {
+      curve.points.push_back(
+          study_point(point, trial.criterion, axis == BarAxis::horizontal ? formula->horizontal : formula->vertical));
+    }
+  }
+  return study;
+}
+
+Plot mrtd_plot(const MrtdStudyTask& task, const MrtdStudy& study) {
+  Plot plot;
+  plot.id = "mrtd";
+  plot.title = "MRTD against frequency";
+  plot.description =
+      "Contrast for 75 % right answers over the frequency of the bars; beside it the best phase, the formula and an "
+      "ideal observer.";
+  double low = 1e300, high = 0, farthest = study.nyquist_per_mrad;
+  const auto add = [&](PlotSeries& to, double f, const std::optional<double>& y, const Interval& interval = {}) {
+    to.points.push_back({.x = f, .y = y, .x_interval = {}, .y_interval = interval});
+    if (!y) return;
+    low = std::min(low, *y);
+    high = std::max(high, *y);
+  };
+  for (const auto& curve : study.curves) {
+    const bool first = &curve == &study.curves.front();
+    const std::string axis(axis_title(curve.axis));
+    auto found =
+        series(std::string(to_string(task.trial.criterion)) + ", " + axis, first ? PlotTone::first : PlotTone::second,
+               first ? PlotMarker::disc : PlotMarker::square, PlotLine::solid);
+    auto beyond = series(first ? "no MRTD" : "", PlotTone::muted, PlotMarker::bar, PlotLine::none);
+    auto best = series(first ? "best phase" : "", first ? PlotTone::first : PlotTone::second, PlotMarker::none,
+                       PlotLine::dotted);
+    auto formula =
+        series("formula, " + axis, PlotTone::third, PlotMarker::none, first ? PlotLine::solid : PlotLine::dashed);
+    auto ideal = series(first ? "ideal observer" : "", PlotTone::muted, PlotMarker::none, PlotLine::dashed);
+    for (const auto& p : curve.points) {
+      const double f = p.found.frequency_per_mrad;
+      farthest = std::max(farthest, f);
+      add(found, f, p.mrtd_k, p.mrtd_k ? p.threshold_ci95_k : Interval{});
+      if (!p.mrtd_k) add(beyond, f, p.found.threshold_k);
+      add(best, f, p.found.best_phase_k);
+      add(formula, f, p.formula_k);
+      add(ideal, f, p.found.ideal_k);
+    }
+    for (auto* s : {&ideal, &formula, &best, &beyond, &found}) plot.series.push_back(std::move(*s));
+  }
+  plot.bands.push_back({.label = "beyond Nyquist", .tone = PlotTone::muted, .x = {study.nyquist_per_mrad, {}}});
+  plot.x = {
+      .label = "Frequency (cycles/mrad)", .scale = AxisScale::linear, .low = 0, .high = 1.05 * farthest, .ticks = {}};
+  plot.y = {.label = "Contrast for 75 % (K)",
+            .scale = AxisScale::logarithmic,
+            .low = low / 1.5,
+            .high = 1.5 * high,
+            .ticks = {}};
+  return plot;
+}
+
+Document mrtd_page(const MrtdStudyTask& task, const MrtdStudy& study) {
+  const auto& trial = task.trial;
+  Document document;
+  document.title = "Virtual MRTD";
+  document.heading = "Virtual MRTD";
+  document.subtitle = trial.sensor.name + ", observer " + trial.observer.name;
+  document.page_label = "Virtual MRTD, " + trial.sensor.name;
+  Section section{"Four bars before the observer of the triangles", {}};
+  section.blocks.emplace_back(Paragraph{plain("Criterion: " + criterion_text(trial.criterion) + ".")});
+  section.blocks.emplace_back(
+      Figure{drawn(mrtd_plot(task, study)),
+             "Contrast for 75 % at random phase with its 95 % interval. Grey marks: thresholds that are no MRTD."});
+  for (const auto& curve : study.curves) section.blocks.emplace_back(axis_table(curve));
+  section.blocks.emplace_back(list_of(std::vector<std::string>{
+      fmt::format("{} draws of noise, seed {}; eight phases across the bars, two along them.", trial.draws, trial.seed),
+      fmt::format("Nyquist frequency of the samples: {} cycles/mrad. An MRTD is cut there by rule.",
+                  significant(study.nyquist_per_mrad, 3)),
+      fmt::format("Formula: structure after FLIR92, SNR {} and {} s set its scale; no output of that program.",
+                  stated(task.formula.snr_threshold), stated(task.formula.eye_integration_s)),
+      "Ideal: knows the phase, white noise of the camera alone, the same two intervals (detection and bars-resolved: "
+      "four bars against a uniform square). A bound.",
+      "The observer is a model of the eye's answers to triangles; people were not asked."}));
+  document.sections.push_back(std::move(section));
+  return document;
+}
+
+}  // namespace todbench

@@ -1,0 +1,367 @@
+#include "sim_devices/prediction/virtual_mrtd.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/math/special_functions/erf.hpp>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "hvs/observer/identification_bank.h"
+#include "sim_devices/prediction/bar_pattern.h"
+#include "sim_devices/prediction/bar_profile.h"
+#include "sim_devices/prediction/window_noise.h"
+#include "sim_devices/sensor/effect_display.h"
+#include "sim_devices/sensor/effect_quantisation.h"
+#include "sim_devices/sensor/scene_image.h"
+#include "sim_devices/sensor/transfer_functions.h"
+#include "tod/range/bars_sampled.h"
+
+namespace todbench {
+namespace {
+
+constexpr std::size_t across = 8, along = 2, bar_phases = across * along;
+constexpr double wanted_share = 0.75, false_alarms = 0.05;
+constexpr double contrast_step = 1.25;
+constexpr int most_steps = 36;  ///< to 2500 times where the ideal observer is right half of the time or so
+constexpr double known_band_per_pitch = 3;
+
+/// What an observer makes of intervals with a pattern: [phase][draw].
+using Responses = std::vector<std::vector<float>>;
+
+struct Share {
+  double mean = 0, standard_error = 0;
+};
+
+/// Of pairs of different draws, one with the pattern and one with the other: how many have the larger response to the
+/// pattern. The error as DeLong et al. (1988), Biometrics 44.
+Share share_of_pairs(const Responses& pattern, const Responses& other) {
+  const std::size_t draws = pattern.front().size();
+  std::vector<float> all_pattern, all_other;
+  for (const auto& row : pattern) all_pattern.insert(all_pattern.end(), row.begin(), row.end());
+  for (const auto& row : other) all_other.insert(all_other.end(), row.begin(), row.end());
+  std::sort(all_pattern.begin(), all_pattern.end());
+  std::sort(all_other.begin(), all_other.end());
+  const auto below = [](const std::vector<float>& sorted, float value) {
+    const auto range = std::equal_range(sorted.begin(), sorted.end(), value);
+    return static_cast<double>(range.first - sorted.begin()) + static_cast<double>(range.second - range.first) / 2;
+  };
+  const auto pairs = static_cast<double>(pattern.size() * other.size() * (draws - 1));
+  Share out;
+  double squares_pattern = 0, squares_other = 0, sum_other = 0;
+  for (std::size_t d = 0; d < draws; ++d) {
+    double own = 0, wins = 0, losses = 0;
+    for (const auto& p : pattern) {
+      wins += below(all_other, p[d]);
+      for (const auto& o : other) own += p[d] > o[d] ? 1 : p[d] == o[d] ? 0.5 : 0;
+    }
+    for (const auto& o : other) losses += static_cast<double>(all_pattern.size()) - below(all_pattern, o[d]);
+    const double by_pattern = (wins - own) / pairs, by_other = (losses - own) / pairs;
+    out.mean += by_pattern;
+    sum_other += by_other;
+    squares_pattern += by_pattern * by_pattern;
+    squares_other += by_other * by_other;
+  }
+  const auto n = static_cast<double>(draws);
+  out.mean /= n;
+  sum_other /= n;
+  const double variance =
+      (squares_pattern / n - out.mean * out.mean + squares_other / n - sum_other * sum_other) / (n - 1);
+  out.standard_error = std::sqrt(std::max(0.0, variance));
+  return out;
+}
+
+/// Of yes to the pattern where 5 % of the responses to nothing are yes.
+Share share_of_yes(const Responses& pattern, const Responses& nothing) {
+  std::vector<float> sorted;
+  for (const auto& row : nothing) sorted.insert(sorted.end(), row.begin(), row.end());
+  const auto at = static_cast<std::size_t>((1 - false_alarms) * static_cast<double>(sorted.size() - 1));
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(at), sorted.end());
+  const float limit = sorted[at];
+  const std::size_t draws = pattern.front().size();
+  double sum = 0, squares = 0;
+  for (std::size_t d = 0; d < draws; ++d) {
+    double yes = 0;
+    for (const auto& row : pattern) yes += row[d] > limit ? 1 : 0;
+    yes /= static_cast<double>(pattern.size());
+    sum += yes;
+    squares += yes * yes;
+  }
+  const auto n = static_cast<double>(draws);
+  const double mean = sum / n;
+  return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1))};
+}
+
+double probit(double p) {
+  return std::numbers::sqrt2 * boost::math::erf_inv(2 * std::clamp(p, 1e-6, 1 - 1e-6) - 1);
+}
+
+/// Where proportions over rising contrasts pass 75 % for the first time, probit over ln contrast.
+struct PassedContrast {
+  std::optional<double> contrast_k;
+  double relative_error = 0;
+};
+PassedContrast passed_contrast(const std::vector<double>& contrasts_k, const std::vector<Share>& shares) {
+  for (std::size_t i = 1; i < shares.size(); ++i) {
+    if (shares[i].mean < wanted_share || shares[i - 1].mean >= wanted_share) continue;
+    const double low = probit(shares[i - 1].mean), high = probit(shares[i].mean);
+    const double step = std::log(contrasts_k[i] / contrasts_k[i - 1]);
+    const double place = (probit(wanted_share) - low) / (high - low);
+    const double slope = (shares[i].mean - shares[i - 1].mean) / step;
+    return {contrasts_k[i - 1] * std::exp(place * step), shares[i].standard_error / slope};
+  }
+  return {};
+}
+
+/// One frequency before the observer.
+class BarTrial {
+ public:
+  static Result<BarTrial> create(const VirtualMrtdTask& task, const SensorSpec& spec, const SceneImager& imager,
+                                 double frequency_per_mrad) {
+    BarTrial trial(task, spec, frequency_per_mrad * spec.ifov_mrad());
+    std::vector<AlternativeAspects> alternatives;
+    for (const BarPattern pattern : {BarPattern::four_bars, BarPattern::five_bars})
+      alternatives.push_back({trial.edges(pattern)});
+    auto bank = IdentificationBank::build(task.observer, alternatives, spec.samples_per_pitch());
+    if (!bank) return tl::unexpected(bank.error());
+    trial.bank_.emplace(*std::move(bank));
+    for (std::size_t phase = 0; phase < bar_phases; ++phase) {
+      trial.four_.push_back(trial.seen(imager, BarPattern::four_bars, phase));
+      if (task.criterion == BarCriterion::four_or_five)
+        trial.other_.push_back(trial.seen(imager, BarPattern::five_bars, phase));
+    }
+    if (auto drawn = trial.draw_noise(); !drawn) return tl::unexpected(drawn.error());
+    return trial;
+  }
+
+  Result<void> measure(VirtualMrtdPoint& point) {
+    if (!(noise_k_ > 0)) {
+      return fail(ErrorCode::invalid_input,
+                  "a camera without noise has no MRTD: the noise of the observer grows with the contrast");
+    }
+    std::vector<double> contrasts_k;
+    std::vector<Share> all;
+    std::array<std::vector<Share>, across> by_phase;
+    const auto passed = [](const std::vector<Share>& shares) {
+      return !shares.empty() && shares.back().mean >= wanted_share;
+    };
+    for (int step = -2; step <= most_steps; ++step) {
+      if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+      contrasts_k.push_back(point.ideal_k * std::pow(contrast_step, step));
+      answer(contrasts_k.back(), all, by_phase);
+      if (passed(all) && std::all_of(by_phase.begin(), by_phase.end(), passed)) break;
+    }
+    const PassedContrast found = passed_contrast(contrasts_k, all);
+    point.threshold_k = found.contrast_k;
+    point.relative_error = found.relative_error;
+    point.highest_k = contrasts_k.back();
+    point.proportion_at_most = all.back().mean;
+    bool every_phase = true;
+    for (const auto& shares : by_phase) {
+      const auto own = passed_contrast(contrasts_k, shares).contrast_k;
+      every_phase = every_phase && own.has_value();
+      if (!own) continue;
+      point.best_phase_k = std::min(point.best_phase_k.value_or(*own), *own);
+      point.worst_phase_k = std::max(point.worst_phase_k.value_or(*own), *own);
+    }
+    if (!every_phase) point.worst_phase_k.reset();
+    return {};
+  }
+
+ private:
+  /// A picture in every form that a criterion asks for.
+  struct Seen {
+    std::vector<float> scores, profile;
+  };
+
+  BarTrial(const VirtualMrtdTask& task, const SensorSpec& spec, double frequency_per_pitch)
+      : task_(task), spec_(spec), frequency_per_pitch_(frequency_per_pitch) {
+    if (has_display(spec_)) taps_ = taps_of([this](double f) { return display_response(spec_, f); });
+  }
+
+  [[nodiscard]] std::vector<StepEdge> edges(BarPattern pattern) const {
+    return placed(bar_edges(pattern, frequency_per_pitch_, task_.axis), spec_.samples_per_pitch(), 0, {0, 0});
+  }
+  [[nodiscard]] double frequency_per_sample() const { return frequency_per_pitch_ / spec_.samples_per_pitch(); }
+
+  /// Of the pattern's middle from that of the window, in samples: across the bars, and along them.
+  [[nodiscard]] static double offset_across(std::size_t phase) {
+    return (static_cast<double>(phase % across) + 0.5) / across - 0.5;
+  }
+  [[nodiscard]] static double offset_along(std::size_t phase) {
+    return (static_cast<double>(phase / across) + 0.5) / along - 0.5;
+  }
+
+  [[nodiscard]] Seen of(cv::Mat1f window) const {
+    Seen out;
+    if (task_.criterion == BarCriterion::bars_resolved) {
+      out.profile = bar_profile(window, frequency_per_sample(), task_.axis);
+      return out;
+    }
+    window = window.clone();
+    window -= cv::mean(window)[0];
+    out.scores = bank_->project(window);
+    return out;
+  }
+
+  [[nodiscard]] Seen seen(const SceneImager& imager, BarPattern pattern, std::size_t phase) const {
+    const int margin = static_cast<int>(taps_.size()) / 2, window = bank_->window_samples();
+    const int side = window + 2 * margin;
+    const double centre = (side - 1) / 2.0;
+    cv::Point2d middle(centre + offset_across(phase), centre + offset_along(phase));
+    if (task_.axis == BarAxis::vertical) std::swap(middle.x, middle.y);
+    cv::Mat1f picture;
+    imager.image(placed(edges(pattern), 1, 0, middle), {side, side}).convertTo(picture, CV_32F);
+    if (!taps_.empty()) picture = filtered(picture, taps_);
+    return of(picture(cv::Rect(margin, margin, window, window)));
+  }
+
+  Result<void> draw_noise() {
+    const int window = bank_->window_samples();
+    const WindowNoise noise(spec_, task_.plan, task_.accuracy, window, task_.seed);
+    double squares = 0;
+    for (int d = 0; d < task_.draws; ++d) {
+      if (d % 64 == 0 && task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+      const cv::Mat1f sensor = noise.sensor_k(static_cast<std::uint64_t>(d));
+      squares += cv::norm(sensor, cv::NORM_L2SQR) / static_cast<double>(sensor.total());
+      sensor_.push_back(of(sensor));
+      white_.push_back(of(noise.white(static_cast<std::uint64_t>(d))));
+    }
+    noise_k_ = std::sqrt(squares / task_.draws);
+    return {};
+  }
+
+  /// Of the observer, per sample and relative to the contrast.
+  [[nodiscard]] float own_noise(double contrast_k) const {
+    const double enlarged = task_.observer.sensor_noise_factor * task_.observer.sensor_noise_factor - 1;
+    return static_cast<float>(std::hypot(task_.observer.internal_noise,
+                                         std::sqrt(enlarged * white_variance_k2(spec_, task_.plan, 1)) / contrast_k));
+  }
+
+  /// The number that the criterion asks for, of a pattern (none: nothing) with one draw.
+  [[nodiscard]] float response(const Seen* pattern, std::size_t phase, std::size_t draw, float noise_scale,
+                               float own) const {
+    const Seen& sensor = sensor_[draw];
+    const Seen& white = white_[draw];
+    if (task_.criterion == BarCriterion::bars_resolved) {
+      std::vector<double> profile(sensor.profile.size());
+      for (std::size_t i = 0; i < profile.size(); ++i) {
+        profile[i] = static_cast<double>((pattern != nullptr ? pattern->profile[i] : 0.0F) +
+                                         noise_scale * sensor.profile[i] + own * white.profile[i]);
+      }
+      return static_cast<float>(shallowest_gap(profile, frequency_per_sample(), offset_across(phase)));
+    }
+    const std::vector<float>& signal = pattern != nullptr ? pattern->scores : nothing_;
+    std::array<float, 2> largest{};
+    bank_->largest_of_each(signal, sensor.scores, noise_scale, white.scores, own, largest);
+    return task_.criterion == BarCriterion::detection ? largest[0] : largest[0] - largest[1];
+  }
+
+  void answer(double contrast_k, std::vector<Share>& all, std::array<std::vector<Share>, across>& by_phase) {
+    const auto scale = static_cast<float>(1 / contrast_k);
+    const float own = own_noise(contrast_k);
+    if (nothing_.empty()) nothing_.assign(bank_->scores(), 0.0F);
+    const auto draws = static_cast<std::size_t>(task_.draws);
+    Responses pattern(bar_phases, std::vector<float>(draws)), other = pattern;
+    for (std::size_t phase = 0; phase < bar_phases; ++phase) {
+      for (std::size_t d = 0; d < draws; ++d) {
+        pattern[phase][d] = response(&four_[phase], phase, d, scale, own);
+        other[phase][d] = response(other_.empty() ? nullptr : &other_[phase], phase, d, scale, own);
+      }
+    }
+    const auto share = task_.criterion == BarCriterion::bars_resolved ? share_of_yes : share_of_pairs;
+    all.push_back(share(pattern, other));
+    for (std::size_t a = 0; a < across; ++a) {
+      Responses some, others;
+      for (std::size_t phase = a; phase < bar_phases; phase += across) {
+        some.push_back(pattern[phase]);
+        others.push_back(other[phase]);
+      }
+      by_phase[a].push_back(share(some, others));
+    }
+  }
+
+  const VirtualMrtdTask& task_;
+  SensorSpec spec_;
+  double frequency_per_pitch_;
+  std::vector<double> taps_;
+  std::optional<IdentificationBank> bank_;
+  std::vector<Seen> four_, other_;    ///< by phase
+  std::vector<Seen> sensor_, white_;  ///< by draw
+  std::vector<float> nothing_;
+  double noise_k_ = 0;
+};
+
+Result<void> check(const VirtualMrtdTask& task, const SensorSpec& spec) {
+  if (task.frequencies_per_mrad.empty()) return fail(ErrorCode::invalid_input, "there is no frequency");
+  if (task.draws < 64) return fail(ErrorCode::invalid_input, "there must be at least 64 draws");
+  for (const double f : task.frequencies_per_mrad) {
+    const double side = 3.5 / (f * spec.ifov_mrad()) * spec.samples_per_pitch();
+    if (!(f > 0) || !(side >= 4 && side <= 400)) {
+      return fail(ErrorCode::invalid_input,
+                  fmt::format("bars of {:g} cycles/mrad: their square must have 4 to 400 samples on a side, {:.4g} to "
+                              "{:.4g} cycles/mrad",
+                              f, 3.5 * spec.samples_per_pitch() / 400 / spec.ifov_mrad(),
+                              3.5 * spec.samples_per_pitch() / 4 / spec.ifov_mrad()));
+    }
+  }
+  if (task.plan.simulates(Effect::quantisation) && rounds_coarsely(spec)) {
+    return fail(ErrorCode::invalid_input,
+                "the camera's counts are coarser than its noise: what becomes of small contrasts is not computed");
+  }
+  return {};
+}
+
+/// What is known of a frequency without trials.
+VirtualMrtdPoint point_before_trials(const VirtualMrtdTask& task, const SensorSpec& spec, double frequency_per_mrad) {
+  VirtualMrtdPoint point;
+  point.frequency_per_mrad = frequency_per_mrad;
+  const int n = spec.samples_per_pitch();
+  const double per_sample = frequency_per_mrad * spec.ifov_mrad() / n;
+  point.frequency_over_nyquist = 2 * per_sample;
+  const TransferFunction camera = sensor_transfer(spec, task.plan, task.accuracy.wavelengths);
+  const auto in_samples = [&](double u, double w) { return camera(u * n, w * n); };
+  const BarPattern other = task.criterion == BarCriterion::four_or_five ? BarPattern::five_bars : BarPattern::uniform;
+  const auto energies = bar_energies(per_sample, other, in_samples, known_band_per_pitch / n, 4);
+  const double noise_k = std::sqrt(std::max(white_variance_k2(spec, task.plan, 1), 1e-12));
+  point.ideal_k = noise_k * ideal_two_interval_contrast(energies, wanted_share);
+  const BlurredBars bars(
+      per_sample, [&](double u) { return camera(u * n, 0).real(); }, 4.0 / n);
+  const BarModulation left = bar_modulation(bars);
+  point.share_of_four = left.share_of_four;
+  point.modulation_best = left.best;
+  point.modulation_worst = left.worst;
+  return point;
+}
+
+}  // namespace
+
+std::string_view to_string(BarCriterion criterion) {
+  switch (criterion) {
+    case BarCriterion::four_or_five:
+      return "four-or-five";
+    case BarCriterion::bars_resolved:
+      return "bars-resolved";
+    case BarCriterion::detection:
+      break;
+  }
+  return "detection";
+}
+
+Result<std::vector<VirtualMrtdPoint>> virtual_mrtd(const VirtualMrtdTask& task) {
+  const SensorSpec spec = as_planned(task.sensor, task.plan);
+  if (auto fine = check(task, spec); !fine) return tl::unexpected(fine.error());
+  const SceneImager imager(spec, task.plan, task.accuracy);
+  std::vector<VirtualMrtdPoint> points;
+  for (const double frequency : task.frequencies_per_mrad) {
+    points.push_back(point_before_trials(task, spec, frequency));
+    auto trial = BarTrial::create(task, spec, imager, frequency);
+    if (!trial) return tl::unexpected(trial.error());
+    if (auto measured = trial->measure(points.back()); !measured) return tl::unexpected(measured.error());
+  }
+  return points;
+}
+
+}  // namespace todbench

@@ -1,0 +1,33 @@
+#include "sim_devices/prediction/window_noise.h"
+
+#include <span>
+
+#include "acquisition/core/rng.h"
+#include "sim_devices/sensor/effect_display.h"
+#include "sim_devices/sensor/sensor_model.h"
+
+namespace todbench {
+
+WindowNoise::WindowNoise(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy, int window_samples,
+                         std::uint64_t seed)
+    : small_(spec), plan_(plan), accuracy_(accuracy), window_(window_samples), seed_(seed) {
+  if (has_display(spec)) {
+    margin_ = static_cast<int>(taps_of([&](double f) { return display_response(spec, f); }).size());
+  }
+  small_.width = small_.height = (window_ + 2 * margin_) / spec.samples_per_pitch() + 1;
+  small_.dead_pixel_share = 0;
+}
+
+cv::Mat1f WindowNoise::sensor_k(std::uint64_t draw) const {
+  const SensorModel model(small_, plan_, accuracy_, seed_ + 1000003 * (draw + 1));
+  const cv::Mat1f picture = model.picture(cv::Mat1f::zeros(model.size()), 1, small_.scene_temperature_k, 0);
+  return picture(cv::Rect(margin_, margin_, window_, window_)).clone();
+}
+
+cv::Mat1f WindowNoise::white(std::uint64_t draw) const {
+  cv::Mat1f out(window_, window_);
+  RandomStream(seed_, "identification.white").sub(draw).fill_normal(std::span(out.ptr<float>(), out.total()));
+  return out;
+}
+
+}  // namespace todbench

@@ -1,0 +1,197 @@
+// Four bars: the ideal observer against exact answers, the template observer against the closed form of known
+// positions.
+#include "sim_devices/prediction/virtual_mrtd.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "hvs/observer/identification_bank.h"
+#include "sim_devices/prediction/bar_pattern.h"
+#include "sim_devices/prediction/bar_profile.h"
+#include "sim_devices/sensor/scene_image.h"
+#include "tests/sim_devices/reference.h"
+#include "tests/support/source_file.h"
+#include "tod/range/bars_sampled.h"
+
+namespace todbench {
+namespace {
+
+double sinc_of(double x) {
+  return x == 0 ? 1.0 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x);
+}
+
+double gauss_and_detector(double f, double sigma, double detector) {
+  return sinc_of(detector * f) * std::exp(-2 * std::pow(std::numbers::pi * sigma * f, 2));
+}
+
+TEST(IdealBars, AreTheExactAnswersOfTheReference) {
+  std::ifstream file(source_file("tests/golden/reference_mrtd_ttp_shared.json"));
+  const auto reference = nlohmann::json::parse(file);
+  int cases = 0;
+  for (const auto& c : reference["cases"]["four_bar"]) {
+    const double sigma = c["blur_sigma_pitch"], detector = c["detector_pitch"];
+    const BarPattern other = c["alternative"] == "five_bars" ? BarPattern::five_bars : BarPattern::uniform;
+
+    const auto energies = bar_energies(
+        c["frequency_cycles_per_pitch"], other,
+        [&](double u, double w) -> std::complex<double> {
+          return gauss_and_detector(u, sigma, detector) * gauss_and_detector(w, sigma, detector);
+        },
+        4, 16);
+
+    double mean = 0;
+    for (const double energy : energies) mean += energy / static_cast<double>(energies.size());
+    EXPECT_NEAR(mean / c["energy_mean_over_phases"].get<double>(), 1, 1e-6) << c;
+    EXPECT_NEAR(ideal_two_interval_contrast(energies, 0.75) / c["contrast_over_noise_75_two_interval"].get<double>(), 1,
+                1e-6)
+        << c;
+    for (const auto& [contrast, proportion] : c["proportion_correct_two_interval"].items())
+      EXPECT_NEAR(ideal_two_interval_proportion(energies, std::stod(contrast)), proportion.get<double>(), 1e-7) << c;
+    ++cases;
+  }
+  EXPECT_GE(cases, 12);
+}
+
+TEST(BarProfile, SeesFourBarsAtThePhasesAtWhichTheSampledModulationDoes) {
+  for (const double frequency : {0.2, 0.35, 0.45, 0.5, 0.55}) {
+    const BlurredBars bars(
+        frequency, [](double f) { return gauss_and_detector(f, 0.3, 0.895); }, 4);
+    const int half = static_cast<int>(std::ceil(1.75 / frequency)) + 2;
+    double share = 0;
+    for (int i = 0; i < 64; ++i) {
+      const double offset = (i + 0.5) / 64 - 0.5;
+      std::vector<double> profile;
+      for (int k = 0; k < 2 * half; ++k) profile.push_back(bars.at(k - half + 0.5 - offset));
+      share += shallowest_gap(profile, frequency, offset) > 0 ? 1.0 / 64 : 0;
+    }
+    EXPECT_NEAR(share, bar_modulation(bars, 64).share_of_four, 1e-9) << frequency;
+  }
+}
+
+VirtualMrtdTask sc2000_bars(std::vector<double> of_nyquist) {
+  VirtualMrtdTask task;
+  task.sensor = test::sc2000();
+  task.sensor.fixed_pattern_k = 0;
+  task.plan = full_plan(task.sensor, {}, {});
+  task.accuracy = Accuracy::draft();
+  for (const double share : of_nyquist) task.frequencies_per_mrad.push_back(share * 0.5 / task.sensor.ifov_mrad());
+  task.draws = 800;
+  return task;
+}
+
+// Without a search the difference of two scores is normal: P = Phi((m4 - m5) / (sd |T4 - T5| sqrt 2)), averaged over
+// the phases of both intervals.
+TEST(VirtualMrtd, OfKnownPositionsIsTheClosedForm) {
+  VirtualMrtdTask task = sc2000_bars({0.7});
+  task.observer.search_range_samples = 0;
+  task.observer.internal_noise = 0;
+  task.draws = 3000;
+  const double f = 0.35;
+  std::vector<AlternativeAspects> alternatives;
+  for (const auto pattern : {BarPattern::four_bars, BarPattern::five_bars})
+    alternatives.push_back({bar_edges(pattern, f, BarAxis::horizontal)});
+  const auto bank = IdentificationBank::build(task.observer, alternatives, 1);
+  ASSERT_TRUE(bank);
+  const int side = bank->window_samples();
+  double length = 0;
+  for (int i = 0; i < side * side; ++i) {
+    cv::Mat1f one = cv::Mat1f::zeros(side, side);
+    one(i / side, i % side) = 1;
+    const auto scores = bank->project(one);
+    length += std::pow(static_cast<double>(scores[0] - scores[1]), 2);
+  }
+  const double noise_k = std::sqrt(task.sensor.netd_k * task.sensor.netd_k +
+                                   task.sensor.kelvin_per_count * task.sensor.kelvin_per_count / 12);
+  const SceneImager imager(task.sensor, task.plan, task.accuracy);
+  std::vector<double> responses[2];
+  for (int phase = 0; phase < 16; ++phase) {
+    const cv::Point2d middle((side - 1) / 2.0 + (phase % 8 + 0.5) / 8 - 0.5,
+                             (side - 1) / 2.0 + (phase / 8 + 0.5) / 2 - 0.5);
+    for (std::size_t p = 0; p < 2; ++p) {
+      cv::Mat1f seen;
+      imager.image(placed(alternatives[p][0], 1, 0, middle), {side, side}).convertTo(seen, CV_32F);
+      seen -= cv::mean(seen)[0];
+      const auto scores = bank->project(seen);
+      responses[p].push_back(static_cast<double>(scores[0] - scores[1]));
+    }
+  }
+  const auto proportion = [&](double contrast_k) {
+    double sum = 0;
+    for (const double four : responses[0]) {
+      for (const double five : responses[1])
+        sum += 0.5 * std::erfc(-contrast_k * (four - five) / (noise_k * std::sqrt(length)) / 2);
+    }
+    return sum / 256;
+  };
+  double low = 1e-6, high = 10;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = std::sqrt(low * high);
+    (proportion(middle) < 0.75 ? low : high) = middle;
+  }
+
+  const auto found = virtual_mrtd(task);
+
+  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_TRUE(found->front().threshold_k);
+  EXPECT_LT(found->front().relative_error, 0.05);
+  // Four standard errors, and 2 % for the interpolation between contrasts.
+  EXPECT_NEAR(std::log(*found->front().threshold_k / high), 0, 4 * found->front().relative_error + 0.02);
+}
+
+TEST(VirtualMrtd, IsBoundedByTheIdealObserverAndSpreadsWithThePhase) {
+  const auto found = virtual_mrtd(sc2000_bars({0.3, 0.9}));
+
+  ASSERT_TRUE(found) << found.error().message;
+  for (const auto& point : *found) {
+    ASSERT_TRUE(point.threshold_k && point.best_phase_k);
+    EXPECT_GT(*point.threshold_k, point.ideal_k * (1 - 4 * point.relative_error));
+    EXPECT_LE(*point.best_phase_k, *point.threshold_k * (1 + 4 * point.relative_error));
+  }
+  EXPECT_LT(*(*found)[0].worst_phase_k / *(*found)[0].best_phase_k, 1.3);
+  // Next to Nyquist bars beat with the samples: the best phase is far from the worst.
+  EXPECT_GT((*found)[1].worst_phase_k.value_or(1e9) / *(*found)[1].best_phase_k, 1.5);
+}
+
+TEST(VirtualMrtd, NeedsMoreContrastToResolveThanToTellApart) {
+  VirtualMrtdTask task = sc2000_bars({0.4, 1.4});
+  const auto told = virtual_mrtd(task);
+  task.criterion = BarCriterion::bars_resolved;
+  const auto resolved = virtual_mrtd(task);
+
+  ASSERT_TRUE(told && resolved);
+  EXPECT_GT(*(*resolved)[0].threshold_k, *(*told)[0].threshold_k);
+  // Beyond Nyquist a machine still tells alias patterns apart, but nobody sees four bars at a random phase.
+  EXPECT_TRUE((*told)[1].threshold_k);
+  EXPECT_FALSE((*resolved)[1].threshold_k);
+}
+
+TEST(VirtualMrtd, OfLinesAcrossDependsOnTheAxis) {
+  VirtualMrtdTask task = sc2000_bars({0.4});
+  task.sensor.column_noise_k = 0.2;
+  task.plan = full_plan(task.sensor, {}, {});
+  const auto horizontal = virtual_mrtd(task);
+  task.axis = BarAxis::vertical;
+  const auto vertical = virtual_mrtd(task);
+
+  ASSERT_TRUE(horizontal && vertical);
+  EXPECT_GT(*horizontal->front().threshold_k, 2 * *vertical->front().threshold_k);
+}
+
+TEST(VirtualMrtd, RefusesWhatHasNone) {
+  VirtualMrtdTask silent = sc2000_bars({0.4});
+  silent.sensor.netd_k = silent.sensor.row_noise_k = silent.sensor.column_noise_k = 0;
+  silent.plan = full_plan(silent.sensor, {Effect::quantisation}, {});
+  for (const auto& task : {silent, sc2000_bars({}), sc2000_bars({0.001}), sc2000_bars({4}), sc2000_bars({-1})}) {
+    const auto found = virtual_mrtd(task);
+
+    ASSERT_FALSE(found);
+    EXPECT_EQ(found.error().code, ErrorCode::invalid_input);
+  }
+}
+
+}  // namespace
+}  // namespace todbench
