@@ -344,6 +344,8 @@ const auto& table() {
       measure_row(DemandKind::noise_tvh),
       measure_row(DemandKind::temperature_scale_at_least),
       measure_row(DemandKind::temperature_scale_at_most),
+      measure_row(DemandKind::mtf_x),
+      measure_row(DemandKind::mtf_y),
   };
   return rows;
 }

@@ -43,6 +43,10 @@ constexpr std::array measure_demands{
                   "temperature_scale_at_least", "K/K", "contrast seen over contrast shown at least "},
     MeasureDemand{DemandKind::temperature_scale_at_most, LimitedMeasure::transfer_slope, LimitSide::at_most,
                   "temperature_scale_at_most", "K/K", "contrast seen over contrast shown at most "},
+    MeasureDemand{DemandKind::mtf_x, LimitedMeasure::mtf_x, LimitSide::at_least, "mtf_x", "1",
+                  "MTF along x at the frequency of the plan at least "},
+    MeasureDemand{DemandKind::mtf_y, LimitedMeasure::mtf_y, LimitSide::at_least, "mtf_y", "1",
+                  "MTF along y at the frequency of the plan at least "},
 };
 
 const MeasureDemand& demand_of(DemandKind kind) {
@@ -55,6 +59,8 @@ const MeasureDemand& demand_of(DemandKind kind) {
 /// Relative standard uncertainty of a measure from the budget.
 double stated_u(LimitedMeasure measure, const CurveUncertainty* uncertainty) {
   if (uncertainty == nullptr) return 0;
+  // A ratio of modulations: what is common to both frequencies cancels.
+  if (measure == LimitedMeasure::mtf_x || measure == LimitedMeasure::mtf_y) return 0;
   const bool of_scale = measure == LimitedMeasure::transfer_slope || measure == LimitedMeasure::netd;
   return of_scale ? uncertainty->u_scale : uncertainty->u_camera_scale;
 }
@@ -68,9 +74,14 @@ Interval expanded(double value, const Interval& statistical, double relative_u) 
   return out;
 }
 
+/// Behind a number; a ratio has none.
+std::string unit_words(std::string_view unit) {
+  return unit == "1" ? std::string() : " " + std::string(unit);
+}
+
 std::string words_of(const Interval& interval, std::string_view unit) {
   const auto side = [](const std::optional<double>& value) { return value ? fmt::format("{:.4g}", *value) : "open"; };
-  return fmt::format("95 % interval {} to {} {}", side(interval.low), side(interval.high), unit);
+  return fmt::format("95 % interval {} to {}{}", side(interval.low), side(interval.high), unit_words(unit));
 }
 
 const MeasuredQuantity* quantity_of(const Evidence& evidence, LimitedMeasure measure) {
@@ -119,8 +130,8 @@ std::vector<Demand> judge_measure(const Evidence& evidence) {
 
 std::string measure_in_words(const Demand& demand) {
   const MeasureDemand& asked = demand_of(demand.kind);
-  return std::string(asked.words) + (demand.limit ? number_text(*demand.limit) : "(no number)") + " " +
-         std::string(asked.unit);
+  return std::string(asked.words) + (demand.limit ? number_text(*demand.limit) : "(no number)") +
+         unit_words(asked.unit);
 }
 
 template <DemandKind kind>
@@ -155,6 +166,10 @@ DemandKindRow measure_row(DemandKind kind) {
       return row<DemandKind::temperature_scale_at_least>();
     case DemandKind::temperature_scale_at_most:
       return row<DemandKind::temperature_scale_at_most>();
+    case DemandKind::mtf_x:
+      return row<DemandKind::mtf_x>();
+    case DemandKind::mtf_y:
+      return row<DemandKind::mtf_y>();
     case DemandKind::acuity:
     case DemandKind::identified:
     case DemandKind::equivalence:

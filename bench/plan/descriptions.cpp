@@ -48,6 +48,17 @@ void read_row(TomlReader& row, std::size_t number, TargetPlate& plate) {
   }
 }
 
+PlateRectangle read_rectangle(TomlReader& table, std::size_t number) {
+  PlateRectangle rectangle;
+  rectangle.name = table.text("name", "rectangle " + std::to_string(number));
+  rectangle.position_mm.x = table.number("x_mm", NumberRange::any(), std::nullopt);
+  rectangle.position_mm.y = table.number("y_mm", NumberRange::any(), std::nullopt);
+  rectangle.size_mm.width = table.number("width_mm", NumberRange::positive(), std::nullopt);
+  rectangle.size_mm.height = table.number("height_mm", NumberRange::positive(), std::nullopt);
+  rectangle.angle_deg = table.number("angle_deg", NumberRange::between(-90, 90), 0.0);
+  return rectangle;
+}
+
 /// The fallback of a key that may be missing is what the parameter is without it.
 void read_key(TomlReader& reader, const SensorKey& key, SensorSpec& spec) {
   const bool required = key.presence == KeyPresence::required;
@@ -147,6 +158,8 @@ Result<TargetPlate> parse_plate(const Resource& resource) {
   plate.height_mm = reader->number("height_mm", NumberRange::positive(), std::nullopt);
   std::size_t number = 0;
   for (TomlReader& row : reader->sections("row")) read_row(row, ++number, plate);
+  number = 0;
+  for (TomlReader& table : reader->sections("rectangle")) plate.rectangles.push_back(read_rectangle(table, ++number));
   return checked(*reader, resource, std::move(plate));
 }
 

@@ -16,7 +16,8 @@ namespace todbench {
 [[nodiscard]] Result<SensorSpec> load_sensor(std::string_view reference);
 [[nodiscard]] Result<TemplateObserverSpec> load_observer(std::string_view reference);
 /// Rows of cut-outs: [[row]] size_mm, y_mm, x_mm = [...], apex = ["up", ...], optionally names = [...]; without them
-/// triangles are called "row R, triangle T", counted from 1.
+/// triangles are called "row R, triangle T", counted from 1. [[rectangle]] x_mm, y_mm, width_mm, height_mm, optionally
+/// name and angle_deg.
 [[nodiscard]] Result<TargetPlate> load_plate(std::string_view reference);
 
 /// The same from text already read.

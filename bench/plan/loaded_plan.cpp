@@ -40,6 +40,10 @@ std::vector<ValueMistake> read_plates(const std::vector<std::string>& references
       mistakes.push_back({i, plate.error().message});
       continue;
     }
+    if (plate->triangles.empty()) {
+      mistakes.push_back({i, *here + ": the plate has no triangles, and trials are made with triangles"});
+      continue;
+    }
     for (const TargetPlate& other : parts.plates) {
       if (other.name != plate->name) continue;
       mistakes.push_back({i, *here + ": a second plate with the name '" + other.name + "'"});
@@ -49,15 +53,33 @@ std::vector<ValueMistake> read_plates(const std::vector<std::string>& references
   return mistakes;
 }
 
+std::vector<ValueMistake> read_mtf_plate(const Plan& plan, const ResourceFinder& find, PlanParts& parts) {
+  parts.mtf_plate.reset();
+  if (!plan.measures.mtf) return {};
+  Result<TargetPlate> plate = read_part(ResourceKind::plate, plan.measures.mtf_plate, find, parts, parse_plate);
+  if (!plate) return {{std::nullopt, plate.error().message}};
+  if (plate->rectangles.empty())
+    return {{std::nullopt, plan.measures.mtf_plate + ": the plate has no rectangles, and an MTF needs straight edges"}};
+  for (std::size_t i = 0; i < parts.plates.size(); ++i) {
+    if (parts.plates[i].name == plate->name && i < plan.target.plates.size() &&
+        plan.target.plates[i] != plan.measures.mtf_plate)
+      return {{std::nullopt, plan.measures.mtf_plate + ": a plate of the trials has the name '" + plate->name + "'"}};
+  }
+  parts.mtf_plate = *std::move(plate);
+  return {};
+}
+
 /// The parts whose names are not those of `known`.
 Result<void> read_changed(const Plan& plan, const Plan* known, const ResourceFinder& find, PlanParts& parts) {
   for (const PlanSection& section : plan_sections()) {
     for (const PlanKey& key : section.keys) {
       const auto* one = std::get_if<ResourceKey>(&key.type);
-      const auto* many = std::get_if<ResourcesKey>(&key.type);
-      if (one == nullptr && many == nullptr) continue;
-      if (known != nullptr && key.place.get(plan, 0) == key.place.get(*known, 0)) continue;
-      const auto mistakes = read_parts(one != nullptr ? one->kind : many->kind, plan, find, parts);
+      if (one == nullptr && !std::holds_alternative<ResourcesKey>(key.type)) continue;
+      const bool of_mtf = one != nullptr && one->kind == ResourceKind::plate;
+      const bool same = known != nullptr && key.place.get(plan, 0) == key.place.get(*known, 0) &&
+                        (!of_mtf || plan.measures.mtf == known->measures.mtf);
+      if (same) continue;
+      const auto mistakes = read_parts(key.type, plan, find, parts);
       if (!mistakes.empty()) return tl::unexpected(error_of({.at = {&section, &key, 0}, .mistake = mistakes.front()}));
     }
   }
@@ -66,11 +88,13 @@ Result<void> read_changed(const Plan& plan, const Plan* known, const ResourceFin
 
 }  // namespace
 
-std::vector<ValueMistake> read_parts(ResourceKind kind, const Plan& plan, const ResourceFinder& find,
+std::vector<ValueMistake> read_parts(const KeyType& type, const Plan& plan, const ResourceFinder& find,
                                      PlanParts& parts) {
+  const auto* const many = std::get_if<ResourcesKey>(&type);
+  const ResourceKind kind = many != nullptr ? many->kind : std::get<ResourceKey>(type).kind;
   switch (kind) {
     case ResourceKind::plate:
-      return read_plates(plan.target.plates, find, parts);
+      return many != nullptr ? read_plates(plan.target.plates, find, parts) : read_mtf_plate(plan, find, parts);
     case ResourceKind::observer:
       return keep(read_part(kind, plan.observer, find, parts, parse_observer), parts.observer);
     case ResourceKind::sensor:

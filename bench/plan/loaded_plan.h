@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -22,7 +23,8 @@ namespace todbench {
 struct PlanParts {
   std::vector<TargetPlate> plates;  ///< in the order of the plan, each with a name of its own
   TemplateObserverSpec observer;
-  SensorSpec sensor;  ///< with its own microscan
+  SensorSpec sensor;                       ///< with its own microscan
+  std::optional<TargetPlate> mtf_plate{};  ///< where [measures] asks for an MTF
   /// The texts they were read from, by kind and reference.
   std::map<std::pair<ResourceKind, std::string>, Resource> sources{};
 };
@@ -63,8 +65,8 @@ class LoadedPlan {
 /// The plan with the files that it names as absolute paths; relative ones are relative to `folder`.
 [[nodiscard]] Plan with_absolute_references(Plan plan, const std::filesystem::path& folder);
 
-/// Reads the parts of one kind that `plan` names into `parts`; what cannot be used, by element of the list.
-[[nodiscard]] std::vector<ValueMistake> read_parts(ResourceKind kind, const Plan& plan, const ResourceFinder& find,
+/// Reads the parts that keys of a type name in `plan` into `parts`; what cannot be used, by element of the list.
+[[nodiscard]] std::vector<ValueMistake> read_parts(const KeyType& type, const Plan& plan, const ResourceFinder& find,
                                                    PlanParts& parts);
 
 }  // namespace todbench

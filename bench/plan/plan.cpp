@@ -57,8 +57,21 @@ std::string_view to_string(LimitedMeasure measure) {
       return "noise_tvh";
     case LimitedMeasure::transfer_slope:
       return "transfer_slope";
+    case LimitedMeasure::mtf_x:
+      return "mtf_x";
+    case LimitedMeasure::mtf_y:
+      return "mtf_y";
   }
   return "";
+}
+
+bool takes_at_least(LimitedMeasure measure) {
+  return measure == LimitedMeasure::transfer_slope || measure == LimitedMeasure::mtf_x ||
+         measure == LimitedMeasure::mtf_y;
+}
+
+bool takes_at_most(LimitedMeasure measure) {
+  return measure != LimitedMeasure::mtf_x && measure != LimitedMeasure::mtf_y;
 }
 
 double relative_u_of_scale(const Plan& plan) {

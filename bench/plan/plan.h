@@ -115,6 +115,8 @@ enum class DemandKind {
   noise_tvh,
   temperature_scale_at_least,  ///< contrast seen over contrast shown
   temperature_scale_at_most,
+  mtf_x,
+  mtf_y,
 };
 
 /// [[limits.acuity]]: the 75 % acuity demanded at a contrast.
@@ -136,17 +138,22 @@ enum class LimitedMeasure {
   noise_vh,
   noise_tvh,
   transfer_slope,  ///< the temperature scale
+  mtf_x,           ///< at the frequency of [measures]
+  mtf_y,
 };
 inline constexpr std::array limited_measures{
     LimitedMeasure::netd,      LimitedMeasure::temporal_noise, LimitedMeasure::noise_t,  LimitedMeasure::noise_v,
     LimitedMeasure::noise_h,   LimitedMeasure::noise_tv,       LimitedMeasure::noise_th, LimitedMeasure::noise_vh,
-    LimitedMeasure::noise_tvh, LimitedMeasure::transfer_slope};
+    LimitedMeasure::noise_tvh, LimitedMeasure::transfer_slope, LimitedMeasure::mtf_x,    LimitedMeasure::mtf_y};
 [[nodiscard]] std::string_view to_string(LimitedMeasure measure);
+/// Which limits a measure can have.
+[[nodiscard]] bool takes_at_least(LimitedMeasure measure);
+[[nodiscard]] bool takes_at_most(LimitedMeasure measure);
 
 /// [[limits.measure]]: limits on a physical measure, in its unit.
 struct MeasureLimit {
   LimitedMeasure measure = LimitedMeasure::netd;
-  std::optional<double> at_least{};  ///< of the temperature scale only
+  std::optional<double> at_least{};  ///< of the temperature scale and of an MTF
   std::optional<double> at_most{};
   bool operator==(const MeasureLimit&) const = default;
 };
@@ -186,6 +193,11 @@ struct MeasuresPlan {
   int noise_frames = 64;  ///< of the cube
   bool transfer = false;  ///< contrast seen over contrast shown
   std::vector<double> transfer_steps_k{-4, -2, -1, 1, 2, 4};
+  bool mtf = false;                       ///< along both axes, from the edges of a plate of its own
+  std::string mtf_plate = "edge";         ///< name or file
+  double mtf_delta_t_k = 10;              ///< at which it is shown
+  int mtf_frames = 64;                    ///< averaged
+  double mtf_frequency_per_pitch = 0.25;  ///< at which the MTF is stated and limited
   bool operator==(const MeasuresPlan&) const = default;
 };
 

@@ -93,6 +93,11 @@ ValueMistakes check_transfer_steps(const Plan& plan, std::size_t /*row*/) {
   return {{std::nullopt, "expected three steps or more that differ, found " + std::to_string(steps.size())}};
 }
 
+ValueMistakes check_mtf_contrast(const Plan& plan, std::size_t /*row*/) {
+  if (!plan.measures.mtf || plan.measures.mtf_delta_t_k != 0) return {};
+  return {{std::nullopt, "an edge without contrast has no MTF"}};
+}
+
 ValueMistakes check_limit_contrast(const Plan& plan, std::size_t row) {
   ValueMistakes mistakes;
   const double limit = plan.limits.acuity[row].delta_t_k;
@@ -119,8 +124,9 @@ ValueMistakes check_margin(const Plan& plan, std::size_t /*row*/) {
 
 ValueMistakes check_limited_measure(const Plan& plan, std::size_t row) {
   const LimitedMeasure measure = plan.limits.measures[row].measure;
-  const bool noise = measure != LimitedMeasure::transfer_slope;
-  const bool transfer = !noise || measure == LimitedMeasure::netd;
+  const bool mtf = measure == LimitedMeasure::mtf_x || measure == LimitedMeasure::mtf_y;
+  const bool noise = !mtf && measure != LimitedMeasure::transfer_slope;
+  const bool transfer = measure == LimitedMeasure::transfer_slope || measure == LimitedMeasure::netd;
   ValueMistakes mistakes;
   if (noise && !plan.measures.noise)
     mistakes.push_back(
@@ -128,6 +134,9 @@ ValueMistakes check_limited_measure(const Plan& plan, std::size_t row) {
   if (transfer && !plan.measures.transfer)
     mistakes.push_back(
         {std::nullopt, "a limit on " + std::string(to_string(measure)) + " needs transfer = true in [measures]"});
+  if (mtf && !plan.measures.mtf)
+    mistakes.push_back(
+        {std::nullopt, "a limit on " + std::string(to_string(measure)) + " needs mtf = true in [measures]"});
   for (std::size_t other = 0; other < row; ++other) {
     if (plan.limits.measures[other].measure == measure)
       mistakes.push_back({std::nullopt, "a second row for " + std::string(to_string(measure))});
@@ -139,8 +148,10 @@ ValueMistakes check_measure_limits(const Plan& plan, std::size_t row) {
   const MeasureLimit& limits = plan.limits.measures[row];
   const std::string name(to_string(limits.measure));
   if (!limits.at_least && !limits.at_most) return {{std::nullopt, "there is no limit on " + name}};
-  if (limits.at_least && limits.measure != LimitedMeasure::transfer_slope)
-    return {{std::nullopt, name + " has no lower limit: only transfer_slope has both"}};
+  if (limits.at_least && !takes_at_least(limits.measure))
+    return {{std::nullopt, name + " has no lower limit, only an upper one"}};
+  if (limits.at_most && !takes_at_most(limits.measure))
+    return {{std::nullopt, name + " has no upper limit, only a lower one"}};
   if (!limits.at_least || !limits.at_most) return {};
   if (*limits.at_least >= *limits.at_most)
     return {{std::nullopt, "nothing can pass: the lower limit of " + name + " is not below the upper one"}};

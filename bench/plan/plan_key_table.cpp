@@ -378,7 +378,30 @@ PlanSection measures_section() {
                     .sentence = "contrasts of the signal transfer; the largest also shows where the plate is",
                     .place = of(&MeasuresPlan::transfer_steps_k),
                     .form = {"Steps of the transfer", "planTransferSteps"},
-                    .check = check_transfer_steps}}};
+                    .check = check_transfer_steps},
+                   {.name = "mtf",
+                    .type = FlagKey{},
+                    .sentence = "MTF along both axes, from the edges of mtf_plate",
+                    .place = of(&MeasuresPlan::mtf),
+                    .form = {"Measure the MTF", "planMtf"}},
+                   {.name = "mtf_plate",
+                    .type = ResourceKey{ResourceKind::plate},
+                    .sentence = "name or file of a plate with slanted rectangles",
+                    .place = of(&MeasuresPlan::mtf_plate)},
+                   {.name = "mtf_delta_t_k",
+                    .type = NumberKey{NumberRange::between(-500, 500)},
+                    .unit = "K",
+                    .sentence = "contrast at which mtf_plate is shown",
+                    .place = of(&MeasuresPlan::mtf_delta_t_k),
+                    .check = check_mtf_contrast},
+                   {.name = "mtf_frames",
+                    .type = WholeKey{1, 10000},
+                    .sentence = "averaged for the MTF",
+                    .place = of(&MeasuresPlan::mtf_frames)},
+                   {.name = "mtf_frequency_per_pitch",
+                    .type = NumberKey{NumberRange::above_to(0, 1)},
+                    .sentence = "cycles per pixel pitch at which the MTF is stated and limited",
+                    .place = of(&MeasuresPlan::mtf_frequency_per_pitch)}}};
 }
 
 PlanSection limits_section() {
@@ -413,24 +436,26 @@ PlanSection measure_limits_section() {
   const auto rows = [](auto& plan) -> auto& {
     return plan.limits.measures;
   };
-  return {.name = "limits.measure",
-          .sentence = "Limits on a physical measure of [measures], in its unit (K; K/K for transfer_slope).",
-          .keys = {{.name = "measure",
-                    .type = ChoiceKey{names_of(limited_measures)},
-                    .sentence = "by its name in measures.json",
-                    .place = in_row(rows, &MeasureLimit::measure),
-                    .required = Required::always,
-                    .check = check_limited_measure},
-                   {.name = "at_least",
-                    .type = OptionalNumberKey{positive},
-                    .sentence = "lower limit of transfer_slope",
-                    .place = in_row(rows, &MeasureLimit::at_least)},
-                   {.name = "at_most",
-                    .type = OptionalNumberKey{positive},
-                    .sentence = "upper limit",
-                    .place = in_row(rows, &MeasureLimit::at_most),
-                    .check = check_measure_limits}},
-          .rows = rows_of(rows)};
+  return {
+      .name = "limits.measure",
+      .sentence =
+          "Limits on a physical measure of [measures], in its unit (K; K/K for transfer_slope, 1 for mtf_x and mtf_y).",
+      .keys = {{.name = "measure",
+                .type = ChoiceKey{names_of(limited_measures)},
+                .sentence = "by its name in measures.json",
+                .place = in_row(rows, &MeasureLimit::measure),
+                .required = Required::always,
+                .check = check_limited_measure},
+               {.name = "at_least",
+                .type = OptionalNumberKey{positive},
+                .sentence = "lower limit of transfer_slope, mtf_x or mtf_y",
+                .place = in_row(rows, &MeasureLimit::at_least)},
+               {.name = "at_most",
+                .type = OptionalNumberKey{positive},
+                .sentence = "upper limit; mtf_x and mtf_y have none",
+                .place = in_row(rows, &MeasureLimit::at_most),
+                .check = check_measure_limits}},
+      .rows = rows_of(rows)};
 }
 
 PlanSection acuity_limits_section() {

@@ -82,15 +82,15 @@ class PlanReader {
     }
     const KeyValue fallback = key.fallback.value ? key.fallback.value(plan_, parts_) : key.place.get(plan_, at.row);
     key.place.set(plan_, at.row, read_value(type, table, name, fallback));
-    if (const auto* one = std::get_if<ResourceKey>(&type)) read_named(table, at, one->kind);
-    if (const auto* many = std::get_if<ResourcesKey>(&type)) read_named(table, at, many->kind);
+    if (std::holds_alternative<ResourceKey>(type) || std::holds_alternative<ResourcesKey>(type))
+      read_named(table, at, type);
   }
 
   /// The parts that a key names: absolute in the plan, and read.
-  void read_named(TomlReader& table, const KeyAt& at, ResourceKind kind) {
+  void read_named(TomlReader& table, const KeyAt& at, const KeyType& type) {
     // What is absolute already stays as it is.
     plan_ = with_absolute_references(std::move(plan_), folder_);
-    for (const ValueMistake& mistake : read_parts(kind, plan_, find_, parts_)) reject(table, *at.key, mistake);
+    for (const ValueMistake& mistake : read_parts(type, plan_, find_, parts_)) reject(table, *at.key, mistake);
   }
 
   Tables tables_;

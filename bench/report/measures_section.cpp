@@ -2,15 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <utility>
 
 #include "bench/report/number_format.h"
+#include "bench/report/plot.h"
 #include "bench/report/report_pieces.h"
 
 namespace todbench {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 15> names{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 21> names{{
     {"transfer_slope", "Temperature scale: contrast seen over contrast shown"},
     {"transfer_offset", "Temperature scale: offset"},
     {"transfer_nonlinearity", "Temperature scale: nonlinearity"},
@@ -26,6 +28,12 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 15> names{{
     {"noise_th", "3-D noise th: columns in time"},
     {"noise_vh", "3-D noise vh: fixed pattern"},
     {"noise_tvh", "3-D noise tvh: pixels in time"},
+    {"mtf_x", "MTF along x"},
+    {"mtf50_x", "Frequency of MTF 0.5 along x"},
+    {"mtf_x_model", "MTF along x, closed form of the sensor model"},
+    {"mtf_y", "MTF along y"},
+    {"mtf50_y", "Frequency of MTF 0.5 along y"},
+    {"mtf_y_model", "MTF along y, closed form of the sensor model"},
 }};
 
 std::string name_of(const MeasureLine& line) {
@@ -49,6 +57,79 @@ const MeasureLine* line_of(const std::optional<MeasureLines>& side, std::string_
   return found == side->lines.end() ? nullptr : &*found;
 }
 
+PlotSeries mtf_series(const EdgeMtf& edge, double pitch_mrad, std::string label, PlotTone tone, PlotLine line) {
+  PlotSeries series{.label = std::move(label), .tone = tone, .marker = PlotMarker::none, .line = line, .points = {}};
+  constexpr std::size_t every = 2;  // of 101 frequencies
+  for (std::size_t i = 0; i < edge.mtf.size(); i += every) {
+    series.points.push_back({.x = edge.frequency_per_pitch[i] / pitch_mrad,
+                             .y = std::max(0.0, edge.mtf[i]),
+                             .x_interval = {},
+                             .y_interval = {}});
+  }
+  return series;
+}
+
+/// Intervals every tenth of a cycle.
+PlotSeries mtf_bars(const EdgeMtf& edge, double pitch_mrad, PlotTone tone, PlotMarker marker) {
+  PlotSeries series{.label = "", .tone = tone, .marker = marker, .points = {}};
+  constexpr std::size_t every = 10;
+  for (std::size_t i = every; i < edge.mtf.size(); i += every) {
+    series.points.push_back({.x = edge.frequency_per_pitch[i] / pitch_mrad,
+                             .y = std::max(0.0, edge.mtf[i]),
+                             .x_interval = {},
+                             .y_interval = {std::max(0.0, edge.low[i]), std::max(0.0, edge.high[i])}});
+  }
+  return series;
+}
+
+const EdgeMtf* edge_of(const std::optional<MeasureLines>& side, const EdgeMtf& like) {
+  if (!side || !side->mtf) return nullptr;
+  for (const EdgeMtf& edge : side->mtf->edges)
+    if (edge.place == like.place && edge.axis == like.axis) return &edge;
+  return nullptr;
+}
+
+/// One place and axis: camera with its intervals, twin, closed form.
+Figure mtf_figure(const EdgeMtf& edge, const SessionMeasures& measures, bool camera) {
+  Plot plot;
+  const std::string axis(to_string(edge.axis));
+  plot.id = "mtf-" + axis;
+  for (const char c : edge.place) plot.id += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
+  plot.title = "MTF along " + axis + ", " + edge.place;
+  plot.description = "Modulation transfer over spatial frequency with 95 % intervals";
+  plot.width = 430, plot.height = 320;
+  double highest = 1.1;
+  const std::optional<MeasureLines>* const sides[] = {&measures.twin, &measures.main};
+  for (const auto* side : sides) {
+    const EdgeMtf* found = edge_of(*side, edge);
+    if (found == nullptr) continue;
+    const bool first = side == &measures.main;
+    const double pitch_mrad = (*side)->mtf->pitch_mrad;
+    if (!found->model.empty()) {
+      EdgeMtf model = *found;
+      model.mtf = model.model;
+      plot.series.push_back(mtf_series(model, pitch_mrad, "closed form", PlotTone::muted, PlotLine::dotted));
+    }
+    const PlotTone tone = first ? PlotTone::first : PlotTone::second;
+    const std::string label = first ? (camera ? "camera" : "simulated sensor") : "simulated twin";
+    plot.series.push_back(mtf_series(*found, pitch_mrad, label, tone, first ? PlotLine::solid : PlotLine::dashed));
+    if (first) plot.series.push_back(mtf_bars(*found, pitch_mrad, tone, PlotMarker::disc));
+    for (const double value : found->mtf) highest = std::max(highest, value);
+    plot.x.high = 1 / pitch_mrad;
+  }
+  plot.x.label = "Frequency (1/mrad)";
+  plot.y = {.label = "MTF along " + axis, .low = 0, .high = highest, .ticks = {}};
+  return {drawn(plot), "MTF along " + axis + " at '" + edge.place + "'; up to one cycle per pixel pitch"};
+}
+
+std::optional<FigurePairs> mtf_figures(const SessionMeasures& measures, bool camera) {
+  const auto& side = measures.main ? measures.main : measures.twin;
+  if (!side || !side->mtf) return std::nullopt;
+  FigurePairs figures;
+  for (const EdgeMtf& edge : side->mtf->edges) figures.figures.push_back(mtf_figure(edge, measures, camera));
+  return figures;
+}
+
 }  // namespace
 
 std::optional<Section> measures_section(const ReportData& data) {
@@ -59,7 +140,13 @@ std::optional<Section> measures_section(const ReportData& data) {
   Table table{.caption = "", .header = {"Measure", data.camera ? "camera" : "simulated sensor"}, .rows = {}};
   if (twin) table.header.emplace_back("simulated twin");
   std::vector<std::string> conditions;
-  for (const MeasureLine& line : (main ? main : twin)->lines) {
+  std::vector<MeasureLine> lines = (main ? main : twin)->lines;
+  // What only the twin has, such as its closed form.
+  if (main && twin) {
+    for (const MeasureLine& line : twin->lines)
+      if (line_of(main, line.measure) == nullptr) lines.push_back(line);
+  }
+  for (const MeasureLine& line : lines) {
     std::vector<RichText> row{plain(name_of(line)), value_of(line_of(main, line.measure))};
     if (twin) row.push_back(value_of(line_of(twin, line.measure)));
     table.rows.push_back(std::move(row));
@@ -67,6 +154,8 @@ std::optional<Section> measures_section(const ReportData& data) {
       conditions.push_back(line.conditions);
   }
   if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
+  if (auto figures = mtf_figures(*data.measures, data.camera.has_value()))
+    section.blocks.emplace_back(*std::move(figures));
   if (!conditions.empty()) section.blocks.emplace_back(list_of(conditions));
   std::vector<std::string> reasons;
   if (main) reasons = main->reasons;

@@ -96,6 +96,32 @@ void add_verdict(std::string& table, const ReportData& data) {
   }
 }
 
+void add_measures(std::string& table, const std::string& section, const std::optional<MeasureLines>& side) {
+  if (!side) return;
+  for (const MeasureLine& line : side->lines) {
+    const bool bounded = line.ci95.low || line.ci95.high;
+    add(table, {.section = section,
+                .name = line.measure,
+                .value = line.value,
+                .interval = line.ci95,
+                .interval_percent = bounded ? std::optional(95) : std::nullopt,
+                .unit = line.unit,
+                .text = line.conditions});
+  }
+  if (!side->mtf) return;
+  for (const EdgeMtf& edge : side->mtf->edges) {
+    for (std::size_t i = 0; i < edge.mtf.size(); ++i) {
+      add(table, {.section = section,
+                  .name = "mtf_" + std::string(to_string(edge.axis)) + " at " +
+                          number_text(edge.frequency_per_pitch[i]) + " cycles per pitch, " + edge.place,
+                  .value = edge.mtf[i],
+                  .interval = {edge.low[i], edge.high[i]},
+                  .interval_percent = 95,
+                  .unit = "1"});
+    }
+  }
+}
+
 void add_curve(std::string& table, const std::string& section, const std::optional<TodCurve>& curve) {
   if (!curve) return;
   for (const TodPoint& point : curve->points) {
@@ -187,6 +213,10 @@ std::string report_csv(const ReportData& data) {
   add_curve(table, "measured", data.measured);
   add_curve(table, "simulated", data.simulated);
   add_curve(table, "human", data.human);
+  if (data.measures) {
+    add_measures(table, "measures", data.measures->main);
+    add_measures(table, "measures_twin", data.measures->twin);
+  }
   add_comparison(table, data.comparison);
   add_frames(table, data);
   add_uncertainty(table, data.uncertainty);

@@ -1,5 +1,6 @@
 #include "bench/run/emulation.h"
 
+#include <algorithm>
 #include <optional>
 #include <string_view>
 
@@ -65,6 +66,9 @@ EmulationArguments emulation_for(const Plan& plan) {
   EmulationArguments arguments;
   arguments.sensor = plan.simulation.sensor;
   arguments.plates = plan.target.plates;
+  const std::string& edge = plan.measures.mtf_plate;
+  if (plan.measures.mtf && std::find(arguments.plates.begin(), arguments.plates.end(), edge) == arguments.plates.end())
+    arguments.plates.push_back(edge);
   arguments.distance_m = plan.target.distance_m;
   arguments.black_body_port = 0;
   arguments.stage_port = 0;

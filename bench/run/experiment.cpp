@@ -237,7 +237,7 @@ Result<MeasuredRun> run_measured(const Plan& plan, const ExperimentInputs& input
   if (!result) return tl::unexpected(result.error());
   MeasuredRun run{*std::move(result), std::nullopt};
   if (run.result.ended_by) return run;
-  auto measures = physical_measures(plan, options, bench, {folder, listener}, std::move(stop));
+  auto measures = physical_measures(plan, options, inputs.mtf_plate, bench, {folder, listener}, std::move(stop));
   if (measures)
     run.measures = *std::move(measures);
   else
@@ -320,7 +320,7 @@ Result<ExperimentOutcome> measure_plan(const LoadedPlan& loaded, const Experimen
   if (!inputs) return tl::unexpected(inputs.error());
   if (auto possible = check_tolerance(plan, *inputs); !possible) return tl::unexpected(possible.error());
   if (listener.on_phase) listener.on_phase("opening " + plan.camera.id);
-  auto bench = open_bench(plan, inputs->plates, stop, options.host, listener.on_phase, listener.on_wait);
+  auto bench = open_bench(plan, shown_plates(*inputs), stop, options.host, listener.on_phase, listener.on_wait);
   if (!bench) return tl::unexpected(bench.error());
   return measure_on_bench(loaded, *inputs, *std::move(bench), options, listener, std::move(stop));
 }

@@ -1,5 +1,6 @@
 #include "bench/run/experiment_inputs.h"
 
+#include <algorithm>
 #include <string>
 
 #include "bench/plan/plan_options.h"
@@ -26,6 +27,13 @@ Result<void> check_geometry(const MeasurementOptions& options, const ExperimentI
 
 }  // namespace
 
+std::vector<TargetPlate> shown_plates(const ExperimentInputs& inputs) {
+  std::vector<TargetPlate> plates = inputs.plates;
+  const auto there = [&](const TargetPlate& plate) { return plate.name == inputs.mtf_plate->name; };
+  if (inputs.mtf_plate && std::none_of(plates.begin(), plates.end(), there)) plates.push_back(*inputs.mtf_plate);
+  return plates;
+}
+
 Result<EffectPlan> planned_effects(const Plan& plan, const SensorSpec& sensor, const TemplateObserverSpec& observer,
                                    EffectPlanner& planner) {
   return planner.plan(sensor, observer, {.delta_t_k = plan.target.delta_t_k, .motion = plan.simulation.motion},
@@ -38,6 +46,7 @@ Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlann
   const Plan& plan = loaded.plan();
   ExperimentInputs inputs;
   inputs.plates = loaded.plates();
+  inputs.mtf_plate = loaded.parts().mtf_plate;
   inputs.observer = loaded.observer();
   inputs.motion = plan.simulation.motion;
   auto effects = planned_effects(plan, loaded.sensor(), inputs.observer, planner);

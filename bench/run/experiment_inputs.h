@@ -2,6 +2,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
 #include "bench/plan/loaded_plan.h"
@@ -15,7 +16,8 @@ namespace todbench {
 
 /// What a run works with: the parts of a plan, and what the planner decided about them.
 struct ExperimentInputs {
-  std::vector<TargetPlate> plates;
+  std::vector<TargetPlate> plates;         ///< of the trials
+  std::optional<TargetPlate> mtf_plate{};  ///< where an MTF is asked for
   TemplateObserverSpec observer;
   SensorSpec sensor;                      ///< as planned: parameters of skipped effects at their neutral values
   SensorPlan effects;                     ///< what the scene calls for within the tolerance, and why
@@ -25,6 +27,9 @@ struct ExperimentInputs {
   bool identifiable = true;           ///< a contrast has a threshold
   Accuracy accuracy;
 };
+
+/// Every plate that a target has to be able to show.
+[[nodiscard]] std::vector<TargetPlate> shown_plates(const ExperimentInputs& inputs);
 
 /// The planner's decisions for what a plan shows. Errors as plan_effects().
 [[nodiscard]] Result<EffectPlan> planned_effects(const Plan& plan, const SensorSpec& sensor,

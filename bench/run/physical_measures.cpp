@@ -1,20 +1,42 @@
 #include "bench/run/physical_measures.h"
 
+#include <cmath>
 #include <memory>
+#include <numbers>
 #include <utility>
 
 #include "bench/run/simulated_responses.h"
 #include "sim_devices/sensor/sensor_model.h"
+#include "sim_devices/sensor/transfer_functions.h"
 
 namespace todbench {
+namespace {
+
+/// The transfer of the sensor along the normal of each edge. Its frequencies are per detector pitch, those of a picture
+/// per sample.
+void add_closed_form(MtfMeasure& mtf, const SensorModel& model, const ExperimentInputs& inputs) {
+  const TransferFunction transfer =
+      sensor_transfer(model.spec(), model.plan(), inputs.accuracy.wavelengths, inputs.motion);
+  const int samples = model.spec().samples_per_pitch();
+  for (EdgeMtf& edge : mtf.edges) {
+    const double angle = edge.angle_deg * std::numbers::pi / 180;
+    const double along = std::cos(angle), across = std::sin(angle);
+    for (const double f : edge.frequency_per_pitch) {
+      const double u = f * samples * along, w = f * samples * across;
+      edge.model.push_back(std::abs(edge.axis == EdgeAxis::x ? transfer(u, w) : transfer(w, u)));
+    }
+  }
+}
+
+}  // namespace
 
 bool measures_asked(const Plan& plan) {
-  return plan.measures.noise || plan.measures.transfer;
+  return plan.measures.noise || plan.measures.transfer || plan.measures.mtf;
 }
 
 Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan, const MeasurementOptions& options,
-                                                        OpenedBench& bench, const SessionFrame& frame,
-                                                        std::stop_token stop) {
+                                                        const std::optional<TargetPlate>& mtf_plate, OpenedBench& bench,
+                                                        const SessionFrame& frame, std::stop_token stop) {
   if (!measures_asked(plan)) return std::nullopt;
   phase(frame.folder, frame.listener, "physical measures");
   auto measures = measure_camera(*bench.camera, *bench.target,
@@ -22,6 +44,10 @@ Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan, const 
                                   .noise_frames = plan.measures.noise_frames,
                                   .transfer = plan.measures.transfer,
                                   .transfer_steps_k = plan.measures.transfer_steps_k,
+                                  .mtf_plate = plan.measures.mtf ? mtf_plate : std::nullopt,
+                                  .mtf_delta_t_k = plan.measures.mtf_delta_t_k,
+                                  .mtf_frames = plan.measures.mtf_frames,
+                                  .mtf_frequency_per_pitch = plan.measures.mtf_frequency_per_pitch,
                                   .measurement = options},
                                  *bench.host, std::move(stop));
   if (!measures) return tl::unexpected(measures.error());
@@ -40,8 +66,10 @@ Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loade
   auto response = simulated_responses(*model, plan, inputs.plates, options, stop);
   if (!response) return tl::unexpected(response.error());
   options.contrast_response = *std::move(response);
-  OpenedBench bench = simulated_bench(model, inputs.plates, plan.target.distance_m, {}, inputs.motion);
-  return physical_measures(plan, options, bench, frame, std::move(stop));
+  OpenedBench bench = simulated_bench(model, shown_plates(inputs), plan.target.distance_m, {}, inputs.motion);
+  auto measures = physical_measures(plan, options, inputs.mtf_plate, bench, frame, std::move(stop));
+  if (measures && *measures && (*measures)->mtf) add_closed_form(*(*measures)->mtf, *model, inputs);
+  return measures;
 }
 
 }  // namespace todbench

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
@@ -67,6 +68,36 @@ void add_transfer(MeasureLines& out, const TransferMeasure& transfer) {
   out.lines.push_back({"transfer_nonlinearity", "%", line.nonlinearity_percent, {}, conditions});
 }
 
+/// "mtf_x" of the most central rectangle, "mtf_x (NAME)" of any other.
+void add_edge(MeasureLines& out, const MtfMeasure& mtf, const EdgeMtf& edge, const std::string& name) {
+  const double f = mtf.frequency_per_pitch;
+  const std::string axis(to_string(edge.axis));
+  const std::string frames = fmt::format("{} frames of plate {} at {:g} K, {} {} of '{}', {:.2f} degrees from the axis",
+                                         mtf.frames, mtf.plate, mtf.said_delta_t_k, edge.sides,
+                                         edge.sides == 1 ? "side" : "opposite sides", edge.place, edge.angle_deg);
+  out.lines.push_back({"mtf_" + axis + name,
+                       "1",
+                       edge.at(f),
+                       {edge.low_at(f), edge.high_at(f)},
+                       fmt::format("at {:g} cycles per pitch, {:.4g} per mrad: {}", f, f / mtf.pitch_mrad, frames)});
+  if (edge.mtf50_per_pitch)
+    out.lines.push_back({"mtf50_" + axis + name, "1/mrad", *edge.mtf50_per_pitch / mtf.pitch_mrad, {}, frames});
+  if (edge.model.empty()) return;
+  const auto k = static_cast<std::size_t>(std::lround(f * static_cast<double>(edge.model.size() - 1)));
+  out.lines.push_back(
+      {"mtf_" + axis + name + "_model",
+       "1",
+       edge.model[std::min(k, edge.model.size() - 1)],
+       {},
+       fmt::format("closed form of the sensor model at {:g} cycles per pitch", edge.frequency_per_pitch[k])});
+}
+
+void add_mtf(MeasureLines& out, const MtfMeasure& mtf) {
+  for (const EdgeMtf& edge : mtf.edges)
+    add_edge(out, mtf, edge, edge.place == mtf.edges.front().place ? "" : " (" + edge.place + ")");
+  out.mtf = MtfCurves{mtf.pitch_mrad, mtf.edges};
+}
+
 Json line_json(const MeasureLine& line) {
   return {{"measure", line.measure},
           {"unit", line.unit},
@@ -115,6 +146,71 @@ Json transfer_json(const TransferMeasure& transfer) {
           {"nonlinearity_percent", json_number(transfer.line.nonlinearity_percent)}};
 }
 
+Json list_json(const std::vector<double>& values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(json_number(value));
+  return list;
+}
+
+Json mtf_json(const MtfMeasure& mtf) {
+  Json edges = Json::array();
+  for (const EdgeMtf& edge : mtf.edges) {
+    Json intervals = Json::array();
+    for (std::size_t i = 0; i < edge.mtf.size(); ++i)
+      intervals.push_back({json_number(edge.low[i]), json_number(edge.high[i])});
+    std::vector<double> per_mrad = edge.frequency_per_pitch;
+    for (double& f : per_mrad) f /= mtf.pitch_mrad;
+    edges.push_back({{"place", edge.place},
+                     {"axis", to_string(edge.axis)},
+                     {"sides", edge.sides},
+                     {"middle_px", {json_number(edge.middle_px.x), json_number(edge.middle_px.y)}},
+                     {"angle_deg", json_number(edge.angle_deg)},
+                     {"noise_over_step", json_number(edge.noise_over_step)},
+                     {"frequency_per_pitch", list_json(edge.frequency_per_pitch)},
+                     {"frequency_per_mrad", list_json(per_mrad)},
+                     {"mtf", list_json(edge.mtf)},
+                     {"mtf_ci95", intervals},
+                     {"mtf50_per_pitch", json_number(edge.mtf50_per_pitch)},
+                     {"model", edge.model.empty() ? Json() : list_json(edge.model)}});
+  }
+  return {{"plate", mtf.plate},
+          {"frames", mtf.frames},
+          {"set_delta_t_k", mtf.set_delta_t_k},
+          {"said_delta_t_k", json_number(mtf.said_delta_t_k)},
+          {"pitch_mrad", mtf.pitch_mrad},
+          {"stated_at_per_pitch", mtf.frequency_per_pitch},
+          {"edges", edges}};
+}
+
+std::vector<double> mtf_numbers(const JsonReader& list) {
+  std::vector<double> values;
+  for (const JsonReader& value : list.elements()) values.push_back(value.number());
+  return values;
+}
+
+MtfCurves mtf_from(const JsonReader& mtf) {
+  MtfCurves curves{mtf.at("pitch_mrad").number(), {}};
+  for (const JsonReader& edge : mtf.at("edges").elements()) {
+    EdgeMtf one;
+    one.place = edge.at("place").text();
+    one.axis = edge.at("axis").named(std::array{EdgeAxis::x, EdgeAxis::y});
+    one.sides = static_cast<int>(edge.at("sides").whole());
+    one.angle_deg = edge.at("angle_deg").number();
+    one.noise_over_step = edge.at("noise_over_step").number();
+    one.frequency_per_pitch = mtf_numbers(edge.at("frequency_per_pitch"));
+    one.mtf = mtf_numbers(edge.at("mtf"));
+    for (const JsonReader& sides : edge.at("mtf_ci95").elements()) {
+      const Interval interval = sides.interval();
+      one.low.push_back(interval.low.value_or(0)), one.high.push_back(interval.high.value_or(0));
+    }
+    one.mtf50_per_pitch = edge.at("mtf50_per_pitch").optional_number();
+    const JsonReader model = edge.at("model");
+    if (!model.is_null()) one.model = mtf_numbers(model);
+    curves.edges.push_back(std::move(one));
+  }
+  return curves;
+}
+
 Json side_json(const std::optional<CameraMeasures>& measures) {
   if (!measures) return nullptr;
   const MeasureLines found = measure_lines(*measures);
@@ -123,7 +219,19 @@ Json side_json(const std::optional<CameraMeasures>& measures) {
   return {{"quantities", lines},
           {"noise", measures->noise ? noise_json(*measures->noise) : Json()},
           {"transfer", measures->transfer ? transfer_json(*measures->transfer) : Json()},
+          {"mtf", measures->mtf ? mtf_json(*measures->mtf) : Json()},
           {"reasons", found.reasons}};
+}
+
+/// Each edge has a number at each frequency.
+bool complete(const std::optional<MeasureLines>& side) {
+  if (!side || !side->mtf) return true;
+  const auto whole = [](const EdgeMtf& edge) {
+    const std::size_t count = edge.frequency_per_pitch.size();
+    return count > 1 && edge.mtf.size() == count && edge.low.size() == count && edge.high.size() == count &&
+           (edge.model.empty() || edge.model.size() == count);
+  };
+  return side->mtf->pitch_mrad > 0 && std::all_of(side->mtf->edges.begin(), side->mtf->edges.end(), whole);
 }
 
 std::optional<MeasureLines> side_from(const JsonReader& side) {
@@ -133,6 +241,8 @@ std::optional<MeasureLines> side_from(const JsonReader& side) {
     found.lines.push_back({line.at("measure").text(), line.at("unit").text(), line.at("value").optional_number(),
                            line.at("ci95").interval(), line.at("conditions").text()});
   }
+  const JsonReader mtf = side.at_if_there("mtf");
+  if (!mtf.is_null()) found.mtf = mtf_from(mtf);
   found.reasons = side.at("reasons").texts();
   return found;
 }
@@ -143,6 +253,7 @@ MeasureLines measure_lines(const CameraMeasures& measures) {
   MeasureLines found;
   if (measures.transfer) add_transfer(found, *measures.transfer);
   if (measures.noise) add_noise(found, measures);
+  if (measures.mtf) add_mtf(found, *measures.mtf);
   found.reasons.insert(found.reasons.end(), measures.reasons.begin(), measures.reasons.end());
   return found;
 }
@@ -161,6 +272,8 @@ Result<SessionMeasures> measures_from(const Json& record) {
   const JsonReader reader(record);
   SessionMeasures measures{side_from(reader.at("main")), side_from(reader.at("twin"))};
   if (auto finished = reader.finish(); !finished) return tl::unexpected(finished.error());
+  if (!complete(measures.main) || !complete(measures.twin))
+    return fail(ErrorCode::invalid_input, "'mtf.edges': expected lists of one length and a pitch above 0");
   return measures;
 }
 

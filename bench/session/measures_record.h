@@ -21,9 +21,16 @@ struct MeasureLine {
   std::string conditions{};
 };
 
+/// The MTF of every edge, for figures.
+struct MtfCurves {
+  double pitch_mrad = 0;
+  std::vector<EdgeMtf> edges;
+};
+
 /// Everything that was measured of one camera, and why something was not.
 struct MeasureLines {
   std::vector<MeasureLine> lines;
+  std::optional<MtfCurves> mtf{};
   std::vector<std::string> reasons;
 };
 [[nodiscard]] MeasureLines measure_lines(const CameraMeasures& measures);
@@ -37,7 +44,8 @@ struct SessionMeasures {
   std::optional<MeasureLines> twin;
 };
 
-/// {"main": {"quantities": [...], "noise": {...}, "transfer": {...}, "reasons": [...]}, "twin": the same or null}
+/// {"main": {"quantities": [...], "noise": {...}, "transfer": {...}, "mtf": {...}, "reasons": [...]}, "twin": the same
+/// or null}
 [[nodiscard]] Json measures_json(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin);
 /// `invalid_input`, naming the key, for a record that is not complete or of other types.
 [[nodiscard]] Result<SessionMeasures> measures_from(const Json& record);

@@ -208,6 +208,7 @@ Result<void> SessionFolder::write_plan(const LoadedPlan& loaded) {
   InputCopies copies(folder_);
   std::vector<std::pair<ResourceKind, std::string*>> references{{ResourceKind::observer, &stored.observer},
                                                                 {ResourceKind::sensor, &stored.simulation.sensor}};
+  if (stored.measures.mtf) references.emplace_back(ResourceKind::plate, &stored.measures.mtf_plate);
   for (std::string& plate : stored.target.plates) references.emplace_back(ResourceKind::plate, &plate);
   for (const auto& [kind, reference] : references) {
     Result<std::string> copied = copies.copy(kind, *reference, loaded.parts().sources.at({kind, *reference}).text);

@@ -158,6 +158,13 @@ FieldScene scene_of_plate(const TargetPlate& plate, double delta_t_k, double bac
                              .emissivity = 1,
                              .target = true});
   }
+  for (const auto& r : plate.rectangles) {
+    scene.regions.push_back({.name = r.name,
+                             .outline_m = placed(outline_mm(r), 1e-3, {0, 0}),
+                             .temperature_k = background_k + delta_t_k,
+                             .emissivity = 1,
+                             .target = true});
+  }
   return scene;
 }
 

@@ -12,6 +12,7 @@
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/effect_row.h"
 #include "sim_devices/sensor/image_chain.h"
+#include "sim_devices/sensor/scene_image.h"
 
 namespace todbench {
 namespace {
@@ -52,7 +53,8 @@ struct SensorModel::State {
   mutable std::mutex mutex;
   mutable std::deque<std::pair<PlateScene, std::shared_ptr<const cv::Mat1f>>> scenes;
   mutable std::map<ShapeKey, std::shared_ptr<const PolygonImage>> shapes;
-  mutable std::map<std::pair<double, double>, std::unique_ptr<const ImageChain>> chains;  ///< by motion
+  mutable std::map<std::pair<double, double>, std::unique_ptr<const ImageChain>> chains;    ///< by motion
+  mutable std::map<std::pair<double, double>, std::unique_ptr<const SceneImager>> imagers;  ///< by motion
 
   State(SensorSpec s, SensorPlan p, Accuracy a, std::uint64_t seed_of_all)
       : spec(as_planned(std::move(s), p)), plan(std::move(p)), accuracy(a), seed(seed_of_all) {
@@ -99,6 +101,23 @@ struct SensorModel::State {
   /// Picture `index` before quantisation.
   [[nodiscard]] cv::Mat1f analog(const cv::Mat1f& unit, double delta_t_k, std::uint64_t index) const;
 
+  /// Rectangles may be large against the picture: not each by itself, but the whole frame at once.
+  void draw_rectangles(const PlateScene& scene, cv::Mat1f& picture) const {
+    if (scene.plate.rectangles.empty()) return;
+    std::vector<PaintedPolygon> painted;
+    for (const PlateRectangle& rectangle : scene.plate.rectangles) {
+      Polygon outline = outline_mm(rectangle);
+      for (auto& corner : outline)
+        corner = scene_pixel(scene, corner, spec.ifov_mrad() / spec.samples_per_pitch(), picture.size());
+      painted.push_back({std::move(outline), 1});
+    }
+    auto& imager = imagers[{scene.motion.x_mrad_s, scene.motion.y_mrad_s}];
+    if (imager == nullptr) imager = std::make_unique<const SceneImager>(spec, plan, accuracy, scene.motion);
+    const cv::Mat1d image = imager->image(visible_edges(painted), picture.size());
+    for (int row = 0; row < picture.rows; ++row)
+      for (int x = 0; x < picture.cols; ++x) picture(row, x) += static_cast<float>(image(row, x));
+  }
+
   [[nodiscard]] cv::Mat1f draw(const PlateScene& scene, cv::Size size) const {
     cv::Mat1f picture(size, 0.0F);
     const double sample_pitch = 1.0 / spec.samples_per_pitch();
@@ -113,6 +132,7 @@ struct SensorModel::State {
       const cv::Point2d first((origin.x - centre.x) * sample_pitch, (origin.y - centre.y) * sample_pitch);
       add_clipped(picture, image->sample(first, sample_pitch, {n, n}), origin);
     }
+    draw_rectangles(scene, picture);
     return picture;
   }
 };

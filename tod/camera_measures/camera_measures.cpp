@@ -53,6 +53,14 @@ class Run {
       else if (auto kept = keep("noise", noise.error()); !kept)
         return tl::unexpected(kept.error());
     }
+    // Last: the plate changes.
+    if (options_.mtf_plate) {
+      auto mtf = measure_mtf(measures.reasons);
+      if (mtf)
+        measures.mtf = *std::move(mtf);
+      else if (auto kept = keep("MTF", mtf.error()); !kept)
+        return tl::unexpected(kept.error());
+    }
     return measures;
   }
 
@@ -71,9 +79,11 @@ class Run {
   [[nodiscard]] const TargetPlate& plate() const { return options_.measurement.plates.front(); }
 
   /// Shows the first plate at a contrast; what the target said.
-  Result<PresentedTarget> show(double delta_t_k) {
+  Result<PresentedTarget> show(double delta_t_k) { return show(plate().name, delta_t_k); }
+
+  Result<PresentedTarget> show(const std::string& plate_name, double delta_t_k) {
     if (stop_.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-    auto change = change_target(target_, taker_, host_, {plate().name, Mounting::identity, delta_t_k, {0, 0}}, stop_);
+    auto change = change_target(target_, taker_, host_, {plate_name, Mounting::identity, delta_t_k, {0, 0}}, stop_);
     if (!change) return tl::unexpected(change.error());
     if (!change->frames) return tl::unexpected(change->frames.error());
     if (!change->presented) return fail("presenting the target", change->presented.error());
@@ -122,6 +132,27 @@ class Run {
     if (!line) return tl::unexpected(line.error());
     transfer.line = *std::move(line);
     return transfer;
+  }
+
+  /// Sides that could not be measured are reasons.
+  Result<MtfMeasure> measure_mtf(std::vector<std::string>& reasons) {
+    const TargetPlate& edge_plate = *options_.mtf_plate;
+    const auto shown = show(edge_plate.name, options_.mtf_delta_t_k);
+    if (!shown) return tl::unexpected(shown.error());
+    const auto picture = taker_.average(options_.mtf_frames, stop_);
+    if (!picture) return tl::unexpected(picture.error());
+    auto found = plate_edges(picture->kelvin, edge_plate, where_);
+    if (!found) return tl::unexpected(found.error());
+    MtfMeasure mtf;
+    mtf.plate = edge_plate.name;
+    mtf.frames = options_.mtf_frames;
+    mtf.set_delta_t_k = options_.mtf_delta_t_k, mtf.said_delta_t_k = shown->state.delta_t_k;
+    mtf.pitch_mrad = options_.measurement.ifov_mrad;
+    mtf.frequency_per_pitch = options_.mtf_frequency_per_pitch;
+    mtf.edges = std::move(found->edges);
+    reasons.insert(reasons.end(), found->reasons.begin(), found->reasons.end());
+    if (mtf.edges.empty()) return fail(ErrorCode::calibration, "no edge of the plate could be measured");
+    return mtf;
   }
 
   /// The upright rectangle of the picture that the plate covers, without its rim.

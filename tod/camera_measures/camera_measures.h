@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "acquisition/core/frame_source.h"
+#include "tod/camera_measures/edge_measure.h"
 #include "tod/measurement/measurement.h"
 #include "tod/measures/signal_transfer.h"
 #include "tod/measures/three_d_noise.h"
@@ -15,10 +16,14 @@
 namespace todbench {
 
 struct CameraMeasuresOptions {
-  bool noise = false;                    ///< temporal noise, NETD and 3-D noise, at a contrast of 0
-  int noise_frames = 64;                 ///< of the cube, at least 5
-  bool transfer = false;                 ///< signal transfer from the steps below
-  std::vector<double> transfer_steps_k;  ///< contrasts that are shown, three or more
+  bool noise = false;                      ///< temporal noise, NETD and 3-D noise, at a contrast of 0
+  int noise_frames = 64;                   ///< of the cube, at least 5
+  bool transfer = false;                   ///< signal transfer from the steps below
+  std::vector<double> transfer_steps_k;    ///< contrasts that are shown, three or more
+  std::optional<TargetPlate> mtf_plate{};  ///< in identity mounting; nothing: no MTF
+  double mtf_delta_t_k = 10;               ///< at which it is shown
+  int mtf_frames = 64;                     ///< averaged, at least 1
+  double mtf_frequency_per_pitch = 0.25;   ///< at which the MTF is stated, up to 1
   /// Plates, frames to average, corrections, timeouts and integrity are those of the TOD measurement; the first plate
   /// in identity mounting is shown.
   MeasurementOptions measurement;
@@ -48,10 +53,20 @@ struct TransferMeasure {
   SignalTransfer line;  ///< seen over said: 1 where the camera's temperature scale is right
 };
 
+struct MtfMeasure {
+  std::string plate;
+  int frames = 0;
+  double set_delta_t_k = 0, said_delta_t_k = 0;
+  double pitch_mrad = 0;           ///< IFOV of a pixel, as the measurement has it
+  double frequency_per_pitch = 0;  ///< at which it is stated
+  std::vector<EdgeMtf> edges;      ///< the most central rectangle first
+};
+
 /// What was measured. A measure that was asked for and is not there has its reason in `reasons`.
 struct CameraMeasures {
   std::optional<NoiseMeasure> noise{};
   std::optional<TransferMeasure> transfer{};
+  std::optional<MtfMeasure> mtf{};
   std::vector<std::string> reasons{};  ///< sentences
 
   /// Temporal noise of a pixel in kelvin of the camera's scale, with its 95 % interval.

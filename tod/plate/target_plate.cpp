@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 #include <sstream>
+#include <utility>
 
 namespace todbench {
 namespace {
@@ -44,6 +46,31 @@ std::string number(double value) {
   out << value;
   return out.str();
 }
+
+/// What is asked of every cut-out, one after the other.
+class CutOuts {
+ public:
+  explicit CutOuts(const TargetPlate& plate) : plate_(plate) {}
+
+  Result<void> add(const std::string& name, cv::Point2d position_mm, const Polygon& outline) {
+    if (!names_.insert(name).second) return tl::unexpected(refusal(plate_, "two cut-outs are named \"" + name + "\""));
+    if (!inside(outline, plate_.width_mm / 2, plate_.height_mm / 2)) {
+      return tl::unexpected(refusal(plate_, name + " at (" + number(position_mm.x) + ", " + number(position_mm.y) +
+                                                ") mm leaves the plate of " + number(plate_.width_mm) + " x " +
+                                                number(plate_.height_mm) + " mm"));
+    }
+    for (const auto& [other, there] : outlines_) {
+      if (!(separation(there, outline) > 0)) return tl::unexpected(refusal(plate_, name + " touches " + other));
+    }
+    outlines_.emplace_back(name, outline);
+    return {};
+  }
+
+ private:
+  const TargetPlate& plate_;
+  std::set<std::string> names_;
+  std::vector<std::pair<std::string, Polygon>> outlines_;
+};
 
 /// Whether a mounting turns x and y over: {x, y}. Every mounting is its own inverse, and two of them make the mounting
 /// that turns over what exactly one of them does (the Klein four-group).
@@ -93,28 +120,30 @@ Result<void> validate(const TargetPlate& plate) {
     return tl::unexpected(refusal(plate, "width_mm and height_mm must be positive, they are " + number(plate.width_mm) +
                                              " and " + number(plate.height_mm)));
   }
-  if (plate.triangles.empty()) return tl::unexpected(refusal(plate, "it has no triangles"));
-  std::set<std::string> names;
-  std::vector<Polygon> outlines;
+  if (plate.triangles.empty() && plate.rectangles.empty())
+    return tl::unexpected(refusal(plate, "it has no triangles and no rectangles"));
+  CutOuts cut_outs(plate);
   for (const PlateTriangle& t : plate.triangles) {
-    if (!names.insert(t.name).second)
-      return tl::unexpected(refusal(plate, "two triangles are named \"" + t.name + "\""));
     if (!positive(t.size_mm)) {
       return tl::unexpected(refusal(plate, t.name + ": size_mm must be positive, it is " + number(t.size_mm)));
     }
-    outlines.push_back(triangle(t.size_mm, t.apex, t.position_mm));
-    if (!inside(outlines.back(), plate.width_mm / 2, plate.height_mm / 2)) {
-      return tl::unexpected(refusal(plate, t.name + " at (" + number(t.position_mm.x) + ", " + number(t.position_mm.y) +
-                                               ") mm leaves the plate of " + number(plate.width_mm) + " x " +
-                                               number(plate.height_mm) + " mm"));
-    }
-    for (std::size_t i = 0; i + 1 < outlines.size(); ++i) {
-      if (!(separation(outlines[i], outlines.back()) > 0)) {
-        return tl::unexpected(refusal(plate, t.name + " touches " + plate.triangles[i].name));
-      }
-    }
+    auto added = cut_outs.add(t.name, t.position_mm, triangle(t.size_mm, t.apex, t.position_mm));
+    if (!added) return added;
+  }
+  for (const PlateRectangle& r : plate.rectangles) {
+    if (!positive(r.size_mm.width) || !positive(r.size_mm.height) || !std::isfinite(r.angle_deg))
+      return tl::unexpected(refusal(plate, r.name + ": width_mm and height_mm must be positive"));
+    if (auto added = cut_outs.add(r.name, r.position_mm, outline_mm(r)); !added) return added;
   }
   return {};
+}
+
+Polygon outline_mm(const PlateRectangle& rectangle) {
+  const double angle = rectangle.angle_deg * std::numbers::pi / 180;
+  const cv::Point2d along(std::cos(angle), std::sin(angle)), across(-along.y, along.x);
+  const cv::Point2d a = along * (rectangle.size_mm.width / 2), b = across * (rectangle.size_mm.height / 2);
+  const cv::Point2d at = rectangle.position_mm;
+  return {at - a - b, at + a - b, at + a + b, at - a + b};
 }
 
 Apex mounted(Apex apex, Mounting mounting) {
@@ -150,6 +179,11 @@ TargetPlate mounted(const TargetPlate& plate, Mounting mounting) {
     if (f.x) t.position_mm.x = 0 - t.position_mm.x;
     if (f.y) t.position_mm.y = 0 - t.position_mm.y;
     t.apex = mounted(t.apex, mounting);
+  }
+  for (PlateRectangle& r : result.rectangles) {
+    if (f.x) r.position_mm.x = 0 - r.position_mm.x;
+    if (f.y) r.position_mm.y = 0 - r.position_mm.y;
+    if (f.x != f.y) r.angle_deg = 0 - r.angle_deg;
   }
   result.mounting = combined(plate.mounting, mounting);
   return result;

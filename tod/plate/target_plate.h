@@ -20,6 +20,16 @@ struct PlateTriangle {
   Apex apex = Apex::up;
 };
 
+/// A cut-out for measures beside TOD: an edge or a bar.
+struct PlateRectangle {
+  std::string name;         ///< unique on the plate
+  cv::Point2d position_mm;  ///< of its middle, as of a triangle
+  cv::Size2d size_mm;       ///< before it is turned
+  double angle_deg = 0;     ///< by which it is turned clockwise
+};
+/// Its corners, clockwise from the one that is top left before it is turned.
+[[nodiscard]] Polygon outline_mm(const PlateRectangle& rectangle);
+
 /// How the plate is held. A mounting permutes places *and* apex labels; it is how a bench defeats memory and asymmetry.
 enum class Mounting { identity, rotated_180, mirrored_horizontally, mirrored_vertically };
 inline constexpr std::array all_mountings{Mounting::identity, Mounting::rotated_180, Mounting::mirrored_horizontally,
@@ -34,10 +44,11 @@ struct TargetPlate {
   double width_mm = 0, height_mm = 0;
   std::vector<PlateTriangle> triangles;
   Mounting mounting = Mounting::identity;  ///< in which places and apexes are stated; set by mounted(), never by a file
+  std::vector<PlateRectangle> rectangles{};  ///< no trials are made with them
 };
 
-/// `invalid_input` for an empty plate, a size that is not positive, a repeated name, or a triangle that leaves the
-/// plate or touches another.
+/// `invalid_input` for an empty plate, a size that is not positive, a repeated name, or a cut-out that leaves the plate
+/// or touches another.
 [[nodiscard]] Result<void> validate(const TargetPlate& plate);
 
 /// The mounting that results from both, in either order (the Klein four-group: each is its own inverse).

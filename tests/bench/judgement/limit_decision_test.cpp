@@ -111,6 +111,17 @@ TEST(MeasureLimits, AreDemandsOfTheVerdict) {
   EXPECT_EQ(verdict_json(*back).dump(), verdict_json(verdict).dump());
 }
 
+TEST(MeasureLimits, OnAnMtfAreLowerOnes) {
+  LimitsPlan limits;
+  limits.measures = {{LimitedMeasure::mtf_x, 0.7, std::nullopt}, {LimitedMeasure::mtf_y, 0.8, std::nullopt}};
+
+  const Verdict verdict = judged(limits, {{"mtf_x", 0.75, {0.74, 0.76}}, {"mtf_y", 0.75, {0.74, 0.76}}});
+
+  EXPECT_EQ(demand_of(verdict, DemandKind::mtf_x).decision, VerdictKind::pass);
+  EXPECT_EQ(demand_of(verdict, DemandKind::mtf_y).decision, VerdictKind::fail);
+  EXPECT_EQ(verdict.decision, VerdictKind::fail);
+}
+
 TEST(MeasureLimits, CountTheScaleOfTheBudget) {
   LimitsPlan limits;
   limits.measures = {{LimitedMeasure::netd, std::nullopt, 0.060}, {LimitedMeasure::noise_vh, std::nullopt, 0.060}};

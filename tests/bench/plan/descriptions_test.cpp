@@ -208,6 +208,20 @@ TEST(PlateFile, MistakesAreNamedWithTheirLine) {
               HasSubstr("p.toml: "));  // base 4.4 mm right of the centroid: leaves the plate
 }
 
+TEST(PlateFile, RectanglesAreReadWithTheirTurn) {
+  const auto plate = parse_plate({"e.toml",
+                                  "name = \"e\"\nwidth_mm = 100\nheight_mm = 80\n[[rectangle]]\nx_mm = 1\n"
+                                  "y_mm = 2\nwidth_mm = 20\nheight_mm = 10\nangle_deg = 5\n"});
+
+  ASSERT_TRUE(plate) << plate.error().message;
+  ASSERT_EQ(plate->rectangles.size(), 1u);
+  EXPECT_TRUE(plate->triangles.empty());
+  EXPECT_EQ(plate->rectangles[0].name, "rectangle 1");
+  EXPECT_EQ(plate->rectangles[0].position_mm, cv::Point2d(1, 2));
+  EXPECT_EQ(plate->rectangles[0].size_mm, cv::Size2d(20, 10));
+  EXPECT_EQ(plate->rectangles[0].angle_deg, 5);
+}
+
 TEST(PlateFile, IsFoundByItsPath) {
   const testing::TemporaryFolder folder;
   const std::filesystem::path file = folder.write("small.toml", small_plate);

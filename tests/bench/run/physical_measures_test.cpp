@@ -11,6 +11,7 @@
 #include "bench/run/replay.h"
 #include "bench/run/report_data.h"
 #include "bench/session/open_session.h"
+#include "tests/bench/run/edge_coverage.h"
 #include "tests/support/temporary_folder.h"
 
 namespace todbench {
@@ -132,6 +133,109 @@ TEST(PhysicalMeasures, AreNotThereWhereNoneIsAskedForAndHaveAReasonWhereTheyCann
   EXPECT_FALSE(lost->measures->transfer);
   ASSERT_EQ(lost->measures->reasons.size(), 1u);
   EXPECT_THAT(lost->measures->reasons[0], HasSubstr("finding the plate"));
+}
+
+Plan mtf_plan() {
+  Plan plan = measures_plan();
+  plan.measures.noise = plan.measures.transfer = false;
+  plan.measures.mtf = true;
+  return plan;
+}
+
+TEST(PhysicalMeasures, FindTheMtfOfTheSensorModelAndJudgeIt) {
+  const TemporaryFolder folder;
+  Plan plan = mtf_plan();
+  plan.limits.measures = {{LimitedMeasure::mtf_x, 0.5, std::nullopt}, {LimitedMeasure::mtf_y, 0.99, std::nullopt}};
+
+  const auto outcome = measure_plan(plan, {.folder = folder.path() / "session"}, {}, {});
+
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  ASSERT_FALSE(outcome->ended_by) << outcome->ended_by->message;
+  ASSERT_TRUE(outcome->measures && outcome->twin_measures);
+  EXPECT_THAT(outcome->measures->reasons, ::testing::IsEmpty());
+  ASSERT_TRUE(outcome->measures->mtf && outcome->twin_measures->mtf);
+  ASSERT_EQ(outcome->twin_measures->mtf->edges.size(), 2u);
+  for (const EdgeMtf& edge : outcome->twin_measures->mtf->edges) {
+    EXPECT_EQ(edge.sides, 2);
+    EXPECT_NEAR(std::abs(edge.angle_deg), 5, 0.1);
+    ASSERT_EQ(edge.model.size(), edge.mtf.size());
+    // Noise of 0.07 K over sqrt(64) against 10 K on 30 lines: 0.003 at half a cycle; and the edge's own length.
+    for (std::size_t i = 0; i <= 50; i += 5) EXPECT_NEAR(edge.mtf[i], edge.model[i], 0.015) << i;
+  }
+  for (const EdgeMtf& edge : outcome->measures->mtf->edges) EXPECT_TRUE(edge.model.empty());
+  const auto session = open_session(folder.path() / "session", {});
+  ASSERT_TRUE(session) << session.error().message;
+  EXPECT_EQ(session->plan.measures.mtf_plate, "edge");
+  ASSERT_TRUE(session->measures && session->measures->main->mtf);
+  EXPECT_EQ(session->measures->main->mtf->edges.size(), 2u);
+  const auto* x = line_of(session->measures->main, "mtf_x");
+  ASSERT_NE(x, nullptr);
+  EXPECT_EQ(x->value, outcome->measures->mtf->edges[0].at(0.25));
+  EXPECT_LT(x->ci95.low.value(), x->value.value());
+  ASSERT_NE(line_of(session->measures->twin, "mtf_x_model"), nullptr);
+  ASSERT_GE(outcome->verdict.demands.size(), 3u);
+  EXPECT_EQ(outcome->verdict.demands[outcome->verdict.demands.size() - 2].decision, VerdictKind::pass);
+  EXPECT_EQ(outcome->verdict.demands.back().decision, VerdictKind::fail);
+  const std::string page = render_report(*report_data(*session, "session"));
+  EXPECT_THAT(page, HasSubstr("MTF along y"));
+  EXPECT_THAT(page, HasSubstr("mtf-xsquare"));
+}
+
+TEST(PhysicalMeasures, RefusePlatesThatDoNotHaveWhatIsAskedOfThem) {
+  const auto refusal = [](const Plan& plan) {
+    const auto loaded = LoadedPlan::load(plan);
+    return loaded ? std::string() : loaded.error().message;
+  };
+  Plan triangles = mtf_plan(), rectangles = mtf_plan(), flat = mtf_plan(), unasked = mtf_plan(), above = mtf_plan();
+  triangles.measures.mtf_plate = "tcat-b";
+  rectangles.target.plates = {"edge"};
+  flat.measures.mtf_delta_t_k = 0;
+  unasked.measures.mtf = false;
+  unasked.limits.measures = {{LimitedMeasure::mtf_x, 0.5, std::nullopt}};
+  above.limits.measures = {{LimitedMeasure::mtf_x, std::nullopt, 0.5}};
+
+  EXPECT_EQ(refusal(mtf_plan()), "");
+  EXPECT_THAT(refusal(triangles), HasSubstr("mtf_plate"));
+  EXPECT_THAT(refusal(rectangles), HasSubstr("plates"));
+  EXPECT_THAT(refusal(flat), HasSubstr("mtf_delta_t_k"));
+  EXPECT_THAT(refusal(unasked), HasSubstr("mtf = true"));
+  EXPECT_THAT(refusal(above), HasSubstr("no upper limit"));
+  // The same plan with an MTF asked for reads the plate that it did not need before.
+  Plan without = mtf_plan();
+  without.measures.mtf = false;
+  const auto loaded = LoadedPlan::load(without);
+  ASSERT_TRUE(loaded);
+  EXPECT_FALSE(loaded->parts().mtf_plate);
+  EXPECT_TRUE(loaded->with(mtf_plan()).value().parts().mtf_plate);
+}
+
+TEST(PlateEdges, AreFoundInTheMiddleAndInTheCornersAndHoldTheTruth) {
+  for (const double aberration_pitch : {0.0, 0.6}) {
+    const auto coverage = testing::edge_coverage(aberration_pitch, 15);
+    ASSERT_TRUE(coverage) << coverage.error().message;
+    EXPECT_EQ(coverage->edges, 150);
+    EXPECT_EQ(coverage->single_sided, 0);
+    EXPECT_LT(coverage->largest_error, 0.025);
+    // 150 edges: standard error 0.018; the intervals are wider than they need to be (docs/physical-measures.md).
+    for (const double share : coverage->within) EXPECT_GT(share, 0.95 - 4 * 0.018) << aberration_pitch;
+  }
+}
+
+TEST(PlateEdges, AreRefusedWhereTheyAreNotInThePicture) {
+  TargetPlate plate = testing::five_squares();
+  Registration where;
+  where.plate_to_pixel = {0.38, 0, 160, 0, 0.38, 120, 0, 0, 1};
+  cv::Mat1d noise(240, 320);
+  const RandomStream random(1, "no edge");
+  for (int i = 0; i < static_cast<int>(noise.total()); ++i)
+    noise(i / 320, i % 320) = random.normal(static_cast<std::uint64_t>(i));
+  EXPECT_FALSE(plate_edges(noise, plate, where));
+  EXPECT_FALSE(plate_edges(cv::Mat1d(240, 320, 5.0), plate, where));
+  EXPECT_FALSE(plate_edges(cv::Mat1d(100, 100, 5.0), plate, where));
+  noise(3, 3) = std::nan("");
+  EXPECT_FALSE(plate_edges(noise, plate, where));
+  plate.rectangles.clear();
+  EXPECT_FALSE(plate_edges(cv::Mat1d(240, 320, 5.0), plate, where));
 }
 
 TEST(PhysicalMeasures, ArePlannedWithThreeStepsOrMore) {

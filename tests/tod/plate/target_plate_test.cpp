@@ -129,7 +129,7 @@ TEST(TargetPlate, ARepeatedNameIsRefused) {
   TargetPlate plate = small_plate();
   plate.triangles[2].name = plate.triangles[0].name;
 
-  EXPECT_THAT(refusal(plate), HasSubstr("two triangles are named \"a\""));
+  EXPECT_THAT(refusal(plate), HasSubstr("two cut-outs are named \"a\""));
 }
 
 TEST(TargetPlate, ATriangleMayReachTheEdgeOfThePlateButNotLeaveIt) {
@@ -154,6 +154,34 @@ TEST(TargetPlate, TrianglesThatTouchAreRefusedAndNestedOnesToo) {
   plate.triangles[1].position_mm = {-10, 0};
   plate.triangles[1].size_mm = 2;
   EXPECT_THAT(refusal(plate), HasSubstr("b touches a"));
+}
+
+TEST(TargetPlate, RectanglesAreCutOutsThatAreMountedLikeTriangles) {
+  TargetPlate plate = small_plate();
+  plate.triangles.clear();
+  plate.rectangles = {{"square", {10, -4}, {12, 12}, 5}};
+  EXPECT_EQ(refusal(plate), "accepted");
+  const Polygon outline = outline_mm(plate.rectangles[0]);
+  EXPECT_NEAR(area(outline), 144, 1e-9);
+  EXPECT_NEAR(cv::norm(centroid(outline) - cv::Point2d(10, -4)), 0, 1e-9);
+
+  const PlateRectangle turned = mounted(plate, Mounting::rotated_180).rectangles[0];
+  const PlateRectangle mirrored = mounted(plate, Mounting::mirrored_horizontally).rectangles[0];
+
+  EXPECT_EQ(turned.position_mm, cv::Point2d(-10, 4));
+  EXPECT_EQ(turned.angle_deg, 5);
+  EXPECT_EQ(mirrored.position_mm, cv::Point2d(-10, -4));
+  EXPECT_EQ(mirrored.angle_deg, -5);
+  // Every corner of the mirrored outline is the mirror image of one of the outline.
+  for (const cv::Point2d& corner : outline_mm(mirrored)) {
+    double nearest = 1e9;
+    for (const cv::Point2d& p : outline) nearest = std::min(nearest, cv::norm(corner - cv::Point2d(-p.x, p.y)));
+    EXPECT_LT(nearest, 1e-9);
+  }
+  plate.rectangles.push_back({"beside", {21.5, -4}, {12, 12}, 0});
+  EXPECT_THAT(refusal(plate), HasSubstr("beside touches square"));
+  plate.rectangles[1].size_mm.width = 0;
+  EXPECT_THAT(refusal(plate), HasSubstr("beside: width_mm"));
 }
 
 }  // namespace

@@ -1,0 +1,243 @@
+#include "tod/camera_measures/edge_measure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "hvs/shape/polygon_coverage.h"
+
+namespace todbench {
+namespace {
+
+constexpr double clear_px = 3.5;      // of a region from the corners of its rectangle and from what is beside it
+constexpr double longest_reach = 26;  // of a region to both sides of its edge
+constexpr double least_match = 0.5;   // of the correlation with the plate
+constexpr int template_margin = 3;
+
+cv::Rect2d box_of(const Polygon& polygon) {
+  cv::Point2d low = polygon.front(), high = polygon.front();
+  for (const cv::Point2d& p : polygon) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  return {low, high};
+}
+
+Polygon in_picture(const PlateRectangle& rectangle, const Registration& where) {
+  Polygon outline = outline_mm(rectangle);
+  for (cv::Point2d& corner : outline) corner = where.pixel(corner);
+  return outline;
+}
+
+/// By how much the rectangles lie beside where the mapping has them: whole pixels, the edges find the rest.
+Result<cv::Point2d> shift_of(const cv::Mat1d& picture, const std::vector<Polygon>& outlines, const std::string& plate) {
+  cv::Rect2d box = box_of(outlines.front());
+  for (const Polygon& outline : outlines) box |= box_of(outline);
+  const cv::Point origin(static_cast<int>(std::floor(box.x)) - template_margin,
+                         static_cast<int>(std::floor(box.y)) - template_margin);
+  const cv::Size size(static_cast<int>(std::ceil(box.width)) + 2 * template_margin + 1,
+                      static_cast<int>(std::ceil(box.height)) + 2 * template_margin + 1);
+  if (size.width > picture.cols || size.height > picture.rows)
+    return fail(ErrorCode::calibration, "plate '" + plate + "' is larger than the picture");
+  cv::Mat1d expected(size, 0.0);
+  for (const Polygon& outline : outlines) {
+    Polygon cells = outline;  // pixel_coverage() has corners of pixels at whole numbers, the picture centres
+    for (cv::Point2d& p : cells) p += cv::Point2d(0.5 - origin.x, 0.5 - origin.y);
+    expected += pixel_coverage(cells, size);
+  }
+  cv::Mat1f from, to, match;
+  cv::Mat1d(picture - cv::mean(picture)[0]).convertTo(from, CV_32F);
+  expected.convertTo(to, CV_32F);
+  cv::matchTemplate(from, to, match, cv::TM_CCOEFF_NORMED);
+  match = cv::abs(match);
+  double best = 0;
+  cv::Point at;
+  cv::minMaxLoc(match, nullptr, &best, nullptr, &at);
+  if (!(best >= least_match))
+    return fail(ErrorCode::calibration, "the rectangles of plate '" + plate + "' are not in the picture");
+  return cv::Point2d(at - origin);
+}
+
+/// What the region of an edge must stay clear of.
+struct Surroundings {
+  cv::Rect2d plate;                ///< within which there is nothing but cut-outs
+  std::vector<cv::Rect2d> others;  ///< of other rectangles
+};
+
+/// The upright region round the middle of a side of which the MTF runs along `axis`.
+cv::Rect region_of(const Polygon& outline, std::size_t side, EdgeAxis axis, const Surroundings& around) {
+  const cv::Point2d a = outline[side], b = outline[(side + 1) % 4], opposite = outline[(side + 2) % 4];
+  const cv::Point2d middle = 0.5 * (a + b), along = b - a, depth = opposite - b;
+  const bool upright = axis == EdgeAxis::x;
+  const double run = std::abs(upright ? along.y : along.x), slant = std::abs(upright ? along.x : along.y);
+  const double reach = std::min(0.5 * std::hypot(depth.x, depth.y), longest_reach);
+  const double half = 0.5 * run - clear_px - reach * slant / std::max(run, 1e-9);
+  const cv::Size2d size = upright ? cv::Size2d(2 * reach, 2 * half) : cv::Size2d(2 * half, 2 * reach);
+  cv::Rect2d region(middle.x - size.width / 2, middle.y - size.height / 2, size.width, size.height);
+  if (half <= 0) return {};
+  region &= around.plate;
+  for (const cv::Rect2d& other : around.others) {
+    const cv::Rect2d shared = region & other;
+    if (shared.area() <= 0) continue;
+    // As much less on both sides.
+    const double less = (upright ? shared.width : shared.height) + clear_px;
+    region = upright ? cv::Rect2d(region.x + less, region.y, region.width - 2 * less, region.height)
+                     : cv::Rect2d(region.x, region.y + less, region.width, region.height - 2 * less);
+    if (region.width <= 0 || region.height <= 0) return {};
+  }
+  const cv::Point first(static_cast<int>(std::ceil(region.x)), static_cast<int>(std::ceil(region.y)));
+  const cv::Point last(static_cast<int>(std::floor(region.x + region.width)),
+                       static_cast<int>(std::floor(region.y + region.height)));
+  return {first, last + cv::Point(1, 1)};
+}
+
+std::optional<double> first_half(const EdgeMtf& edge) {
+  for (std::size_t i = 1; i < edge.mtf.size(); ++i) {
+    if (edge.mtf[i] > 0.5) continue;
+    const double share = (edge.mtf[i - 1] - 0.5) / (edge.mtf[i - 1] - edge.mtf[i]);
+    return edge.frequency_per_pitch[i - 1] + share * (edge.frequency_per_pitch[i] - edge.frequency_per_pitch[i - 1]);
+  }
+  return std::nullopt;
+}
+
+/// By how much of itself a side's MTF may be too large, because what the optics spread beyond the window counts as
+/// nothing: an MTF that begins as 1 - a f - c f^2 has a line spread of a / (2 pi^2 t^2) far away, of which a / (pi^2 T)
+/// lies beyond T on both sides. Beyond the ends of a short side lies up to as much again on either. From 0 up to
+/// that; a from the MTF at 0.1 and 0.2 cycles per pitch.
+double beyond_window(const SlantedEdge& side) {
+  constexpr std::size_t low = 10;
+  constexpr double with_ends = 3, largest = 0.05;
+  const double near = 1 - side.mtf[low], far = 1 - side.mtf[2 * low];
+  const double slope = (4 * near - far) / (2 * side.frequency_per_pitch[low]);
+  const double reach = std::max(0.5 * side.window_pitch, 1.0);
+  return std::clamp(with_ends * slope / (std::numbers::pi * std::numbers::pi * reach), 0.0, largest);
+}
+
+/// The middle of what may be; the other half is in the interval. At frequency 0 there is nothing to take out.
+void allow_for_window(SlantedEdge& side) {
+  const double most = beyond_window(side), reach = 0.5 * side.window_pitch;
+  for (std::size_t k = 0; k < side.mtf.size(); ++k) {
+    const double half = 0.5 * most * std::min(1.0, 4 * side.frequency_per_pitch[k] * reach) * side.mtf[k];
+    const double below = side.mtf[k] - side.mtf_low[k], above = side.mtf_high[k] - side.mtf[k];
+    side.mtf[k] -= half;
+    side.mtf_low[k] = side.mtf[k] - std::hypot(below, std::numbers::sqrt2 * half);
+    side.mtf_high[k] = side.mtf[k] + std::hypot(above, std::numbers::sqrt2 * half);
+  }
+}
+
+EdgeMtf mean_of(const std::vector<SlantedEdge>& sides) {
+  EdgeMtf mean;
+  mean.axis = sides.front().axis;
+  mean.sides = static_cast<int>(sides.size());
+  mean.frequency_per_pitch = sides.front().frequency_per_pitch;
+  const auto count = static_cast<double>(sides.size());
+  for (const SlantedEdge& side : sides) {
+    mean.angle_deg += side.angle_deg / count;
+    mean.noise_over_step = std::max(mean.noise_over_step, side.noise_over_step);
+  }
+  for (std::size_t k = 0; k < mean.frequency_per_pitch.size(); ++k) {
+    double sum = 0, below = 0, above = 0, least = sides.front().mtf[k], most = least;
+    for (const SlantedEdge& side : sides) {
+      sum += side.mtf[k];
+      below += std::pow(side.mtf[k] - side.mtf_low[k], 2), above += std::pow(side.mtf_high[k] - side.mtf[k], 2);
+      least = std::min(least, side.mtf[k]), most = std::max(most, side.mtf[k]);
+    }
+    const double value = sum / count, apart = 0.5 * (most - least);
+    mean.mtf.push_back(value);
+    mean.low.push_back(value - std::max(std::sqrt(below) / count, apart));
+    mean.high.push_back(value + std::max(std::sqrt(above) / count, apart));
+  }
+  mean.mtf50_per_pitch = first_half(mean);
+  return mean;
+}
+
+double tabulated(const std::vector<double>& frequency, const std::vector<double>& values, double f) {
+  const auto next = std::upper_bound(frequency.begin(), frequency.end(), f);
+  if (next == frequency.begin()) return values.front();
+  if (next == frequency.end()) return values.back();
+  const auto i = static_cast<std::size_t>(next - frequency.begin());
+  const double share = (f - frequency[i - 1]) / (frequency[i] - frequency[i - 1]);
+  return values[i - 1] + share * (values[i] - values[i - 1]);
+}
+
+/// Both axes of one rectangle.
+void add_rectangle(const cv::Mat1d& picture, const std::string& name, const Polygon& outline,
+                   const Surroundings& around, PlateEdges& out) {
+  for (const EdgeAxis axis : {EdgeAxis::x, EdgeAxis::y}) {
+    std::vector<SlantedEdge> sides;
+    std::vector<std::string> reasons;
+    for (std::size_t side = 0; side < 4; ++side) {
+      const cv::Point2d along = outline[(side + 1) % 4] - outline[side];
+      if ((std::abs(along.y) > std::abs(along.x)) != (axis == EdgeAxis::x)) continue;
+      const cv::Rect region = region_of(outline, side, axis, around) & cv::Rect(0, 0, picture.cols, picture.rows);
+      auto edge = region.area() > 0 ? slanted_edge(picture(region).clone(), {.axis = axis})
+                                    : fail(ErrorCode::invalid_input, "there is no room round the edge");
+      if (!edge) {
+        reasons.push_back(edge.error().message);
+        continue;
+      }
+      allow_for_window(*edge);
+      sides.push_back(*std::move(edge));
+    }
+    std::sort(reasons.begin(), reasons.end());
+    reasons.erase(std::unique(reasons.begin(), reasons.end()), reasons.end());
+    for (const std::string& reason : reasons)
+      out.reasons.push_back(fmt::format("MTF along {} at '{}': {}", to_string(axis), name, reason));
+    if (sides.empty()) continue;
+    EdgeMtf edge = mean_of(sides);
+    edge.place = name;
+    edge.middle_px = 0.5 * (outline[0] + outline[2]);
+    out.edges.push_back(std::move(edge));
+  }
+}
+
+}  // namespace
+
+double EdgeMtf::at(double f) const {
+  return tabulated(frequency_per_pitch, mtf, f);
+}
+
+double EdgeMtf::low_at(double f) const {
+  return tabulated(frequency_per_pitch, low, f);
+}
+
+double EdgeMtf::high_at(double f) const {
+  return tabulated(frequency_per_pitch, high, f);
+}
+
+Result<PlateEdges> plate_edges(const cv::Mat1d& picture, const TargetPlate& mounted_plate, const Registration& where) {
+  if (mounted_plate.rectangles.empty())
+    return fail(ErrorCode::invalid_input, "plate '" + mounted_plate.name + "' has no rectangles");
+  if (!cv::checkRange(picture)) return fail(ErrorCode::invalid_input, "the picture holds a value that is no number");
+  std::vector<Polygon> outlines;
+  for (const PlateRectangle& rectangle : mounted_plate.rectangles) outlines.push_back(in_picture(rectangle, where));
+  const auto moved = shift_of(picture, outlines, mounted_plate.name);
+  if (!moved) return tl::unexpected(moved.error());
+  PlateEdges out;
+  out.moved_px = *moved;
+  for (Polygon& outline : outlines)
+    for (cv::Point2d& corner : outline) corner += *moved;
+  const double w = mounted_plate.width_mm / 2, h = mounted_plate.height_mm / 2;
+  const cv::Point2d top_left = where.pixel({-w, -h}) + *moved, bottom_right = where.pixel({w, h}) + *moved;
+  Surroundings around{cv::Rect2d(top_left, bottom_right), {}};
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < outlines.size(); ++i) order.push_back(i);
+  const cv::Point2d centre((picture.cols - 1) / 2.0, (picture.rows - 1) / 2.0);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return cv::norm(0.5 * (outlines[a][0] + outlines[a][2]) - centre) <
+           cv::norm(0.5 * (outlines[b][0] + outlines[b][2]) - centre);
+  });
+  for (const std::size_t i : order) {
+    around.others.clear();
+    for (std::size_t k = 0; k < outlines.size(); ++k)
+      if (k != i) around.others.push_back(box_of(outlines[k]));
+    add_rectangle(picture, mounted_plate.rectangles[i].name, outlines[i], around, out);
+  }
+  return out;
+}
+
+}  // namespace todbench
