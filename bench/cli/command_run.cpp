@@ -352,16 +352,18 @@ struct ReplayArguments {
   RunArguments run{};
   std::string session;
   Opening opening{};
+  bool run_modules = false;
 };
 
 int run_replay(Console& console, const ReplayArguments& asked, const Program& program) {
-  const auto& [arguments, session, opening] = asked;
+  const auto& [arguments, session, opening, run_modules] = asked;
   auto name = std::filesystem::path(session).lexically_normal();
   if (name.filename().empty()) name = name.parent_path();
   Plan named;
   named.name = name.filename().string() + "-replay";
   const ExperimentOptions options = folder_of(arguments, named);
-  auto outcome = replay_session(session, options, listener_of(console), program.stop->token(), opening);
+  auto outcome = replay_session(session, options, listener_of(console), program.stop->token(), opening,
+                                run_modules ? RunModules::yes : RunModules::no);
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
   const auto said = [](const std::optional<bool>& same) { return same ? (*same ? "the same" : "DIFFERENT") : "none"; };
@@ -396,6 +398,7 @@ void add_replay_command(CLI::App& app, Program& program) {
   command->add_option("DIR", a->session, "session folder with recorded frames")->required();
   add_folder_options(*command, a->run);
   command->add_flag("--force", a->run.overwrite, "overwrite the session in an existing folder");
+  command->add_flag("--run-modules", a->run_modules, "start the programs that the session names in [[module]]");
   add_accept_changed(*command, a->opening.accept_changed);
   finish_command(*command, program, [a, &program](Console& console) { return run_replay(console, *a, program); });
 }

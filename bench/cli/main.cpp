@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/cli/command_compare_models.h"
+#include "bench/cli/command_dynamic.h"
 #include "bench/cli/command_enhance.h"
 #include "bench/cli/command_identify.h"
 #include "bench/cli/command_line.h"
@@ -187,6 +189,8 @@ int run(int argc, char** argv) {
   add_sweep_command(app, program);
   add_module_command(app, program);
   add_enhance_command(app, program);
+  add_compare_models_command(app, program);
+  add_dynamic_command(app, program);
   add_manual_command(app, program);
   if (argc > 1 && std::string_view(argv[1]) == "complete") {
     print_completions(app, {argv + 2, argv + argc});

@@ -3,15 +3,17 @@
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <set>
 #include <stop_token>
 #include <utility>
 
-#include "bench/enhance/processed_source.h"
 #include "bench/plan/plan_options.h"
 #include "bench/run/experiment_inputs.h"
+#include "bench/run/module_chain.h"
+#include "bench/run/processed_source.h"
 #include "bench/run/simulated_set_up.h"
 #include "tod/plate/test_pattern.h"
 
@@ -39,11 +41,7 @@ Result<ExperimentInputs> full_inputs(const LoadedPlan& loaded) {
 
 int longest_memory(const std::vector<EnhancementPackage>& packages) {
   int longest = 0;
-  for (const auto& package : packages) {
-    int sum = 0;  // what one stage remembers the next remembers again
-    for (const auto& stage : made_stages(package, {})) sum += stage->memory_frames();
-    longest = std::max(longest, sum);
-  }
+  for (const auto& package : packages) longest = std::max(longest, memory_frames({}, package));
   return longest;
 }
 
@@ -53,23 +51,6 @@ double median_of(std::vector<double> values) {
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
-
-/// Where the plate is and which contrast it has is found in the pictures of the camera itself, also when a package has
-/// a scale of its own: what is handed out changes with the target, and back when its answers are asked for.
-class WatchedTarget final : public Target {
- public:
-  WatchedTarget(std::unique_ptr<Target> target, ProcessingRecord& record)
-      : target_(std::move(target)), record_(record) {}
-  [[nodiscard]] const TargetCapabilities& capabilities() const override { return target_->capabilities(); }
-  [[nodiscard]] Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) override {
-    record_.handed_out = false;
-    return target_->present(state, std::move(stop));
-  }
-
- private:
-  std::unique_ptr<Target> target_;
-  ProcessingRecord& record_;
-};
 
 /// One way through the chain: into `result`, its error included.
 void run_one(const LoadedPlan& loaded, const ExperimentInputs& inputs, const EnhancementPackage* package,
@@ -82,21 +63,23 @@ void run_one(const LoadedPlan& loaded, const ExperimentInputs& inputs, const Enh
   }
   set_up->options.frames_after_change = settle_frames;
   set_up->options.integrity.reject_frozen = false;
-  ProcessingRecord record;
-  std::vector<std::unique_ptr<ChainStage>> stages;
-  if (package != nullptr) {
-    stages = made_stages(*package, [&result](std::string_view line) {
-      if (result.error_lines.size() < most_error_lines) result.error_lines.emplace_back(line);
-    });
-  }
+  // Where the plate is and which contrast it has is found in the pictures of the camera itself: a package may have a
+  // scale of its own.
+  const auto shared_record = std::make_shared<ProcessingRecord>();
+  ProcessingRecord& record = *shared_record;
+  const auto on_error_line = [&result](std::string_view line) {
+    if (result.error_lines.size() < most_error_lines) result.error_lines.emplace_back(line);
+  };
+  auto stages = module_stages(inputs.sensor.modules, on_error_line);
+  if (package != nullptr) std::ranges::move(made_stages(*package, on_error_line), std::back_inserter(stages));
   const auto camera = processed_source(std::move(set_up->bench.camera), std::move(stages), picture_frame, record);
   TemplateObserver observer(inputs.observer, triangle_alternatives());
   MeasurementListener listener;
   listener.on_progress = options.on_progress;
-  WatchedTarget target(std::move(set_up->bench.target), record);
+  const auto target = watched_target(std::move(set_up->bench.target), shared_record);
   listener.on_presentation = [&](const Presentation&) { record.handed_out = true; };
   listener.on_trial = [&](const Trial& trial) { result.trials.push_back(trial); };
-  const auto measured = measure(*camera, target, observer, *set_up->schedule, set_up->options, *set_up->bench.host,
+  const auto measured = measure(*camera, *target, observer, *set_up->schedule, set_up->options, *set_up->bench.host,
                                 listener, std::move(stop));
   if (!measured)
     result.error = measured.error();
@@ -191,6 +174,40 @@ PairedRatio ratio_at(std::span<const Trial> with, std::span<const Trial> without
 
 }  // namespace
 
+PackageResult simulate_package(const LoadedPlan& loaded, const EnhancementPackage* package, int settle_frames,
+                               const EnhancementOptions& options, std::stop_token stop) {
+  PackageResult result;
+  result.name = package == nullptr ? "none" : package->name;
+  const auto inputs = full_inputs(loaded);
+  if (!inputs) {
+    result.error = inputs.error();
+    return result;
+  }
+  if (auto fits = check_simulated_geometry(loaded.plan(), *inputs); !fits) {
+    result.error = fits.error();
+    return result;
+  }
+  run_one(loaded, *inputs, package, settle_frames, options, result, std::move(stop));
+  return result;
+}
+
+int memory_frames(const SensorSpec& sensor, const EnhancementPackage& package) {
+  int sum = settle_frames(sensor.modules);
+  const auto stages = made_stages(package, {});
+  for (const auto& stage : stages) sum += stage->memory_frames();
+  return sum;
+}
+
+Result<void> check_paired_plan(const Plan& plan) {
+  if (plan.schedule.kind == ScheduleKind::adaptive)
+    return fail(ErrorCode::invalid_input,
+                "an adaptive schedule shows each package other frames: [schedule] kind must be 'constant'");
+  if (plan.fit.estimator == FitEstimator::twin_shape)
+    return fail(ErrorCode::invalid_input,
+                "the functions of the sensor are not those behind a package: [fit] estimator must be 'weibull'");
+  return {};
+}
+
 std::vector<PairedRatio> paired_ratios(std::span<const Trial> with, std::span<const Trial> without,
                                        const FitOptions& options) {
   std::vector<double> contrasts;
@@ -208,12 +225,8 @@ std::vector<PairedRatio> paired_ratios(std::span<const Trial> with, std::span<co
 Result<Enhancement> compare_packages(const LoadedPlan& loaded, const std::vector<EnhancementPackage>& packages,
                                      const EnhancementOptions& options, std::stop_token stop) {
   const Plan& plan = loaded.plan();
-  if (plan.schedule.kind == ScheduleKind::adaptive)
-    return fail(ErrorCode::invalid_input,
-                "an adaptive schedule shows each package other frames: [schedule] kind must be 'constant'");
-  if (plan.fit.estimator == FitEstimator::twin_shape)
-    return fail(ErrorCode::invalid_input,
-                "the functions of the sensor are not those behind a package: [fit] estimator must be 'weibull'");
+  if (auto paired = check_paired_plan(plan); !paired) return tl::unexpected(paired.error());
+  if (auto none = refuse_modules(plan, loaded.sensor()); !none) return tl::unexpected(none.error());
   const auto inputs = full_inputs(loaded);
   if (!inputs) return tl::unexpected(inputs.error());
   if (auto fits = check_simulated_geometry(plan, *inputs); !fits) return tl::unexpected(fits.error());

@@ -51,6 +51,17 @@ struct EnhancementOptions {
                                                    const std::vector<EnhancementPackage>& packages,
                                                    const EnhancementOptions& options, std::stop_token stop);
 
+/// One way through the chain with every effect: sensor, its own modules, the stages of the package (null: none). What
+/// goes wrong is in the result.
+[[nodiscard]] PackageResult simulate_package(const LoadedPlan& loaded, const EnhancementPackage* package,
+                                             int settle_frames, const EnhancementOptions& options,
+                                             std::stop_token stop);
+/// Exposures after which the sensor's modules and the package have forgotten a change: what one stage remembers the
+/// next remembers again.
+[[nodiscard]] int memory_frames(const SensorSpec& sensor, const EnhancementPackage& package);
+/// `invalid_input` for a plan that shows each package other frames, or whose functions are those of the sensor alone.
+[[nodiscard]] Result<void> check_paired_plan(const Plan& plan);
+
 /// The paired ratios of two runs of the same presentations.
 [[nodiscard]] std::vector<PairedRatio> paired_ratios(std::span<const Trial> with, std::span<const Trial> without,
                                                      const FitOptions& options);

@@ -117,6 +117,23 @@ Result<T> load(ResourceKind kind, std::string_view reference, Result<T> (*parse)
 
 }  // namespace
 
+ModulePlan read_module(TomlReader& table) {
+  const auto whole = [&](const char* key, int low, int high, int fallback) {
+    return static_cast<int>(table.whole(key, low, high, fallback));
+  };
+  ModulePlan module;
+  module.command = table.text("command", std::nullopt);
+  if (table.has("command") && module.command.empty()) table.reject("command", "is empty");
+  module.version = table.text("version", "");
+  module.parameters = table.free_table("parameters");
+  module.limit_ms = whole("limit_ms", 1, module_ranges.limit_ms, module.limit_ms);
+  module.memory_mib = whole("memory_mib", 0, module_ranges.memory_mib, module.memory_mib);
+  module.network = table.flag("network", module.network);
+  module.restart_frames = whole("restart_frames", 0, module_ranges.restart_frames, module.restart_frames);
+  module.settle_frames = whole("settle_frames", 0, module_ranges.settle_frames, module.settle_frames);
+  return module;
+}
+
 Result<SensorSpec> parse_sensor(const Resource& resource) {
   Result<TomlReader> reader = TomlReader::parse(resource.text, resource.origin);
   if (!reader) return tl::unexpected(reader.error());
@@ -124,6 +141,12 @@ Result<SensorSpec> parse_sensor(const Resource& resource) {
   spec.name = reader->text("name", std::nullopt);
   spec.description = reader->text("description", spec.description);
   for (const SensorKey& key : sensor_keys()) read_key(*reader, key, spec);
+  auto modules = reader->sections("module");
+  for (TomlReader& table : modules) {
+    // A sensor has no observer.
+    (void)table.choice("place", std::vector<std::string>{std::string(to_string(ModulePlace::picture))}, "picture");
+    spec.modules.push_back(read_module(table));
+  }
   return checked(*reader, resource, std::move(spec));
 }
 
@@ -164,6 +187,15 @@ Result<TargetPlate> parse_plate(const Resource& resource) {
 }
 
 Result<SensorSpec> load_sensor(std::string_view reference) {
+  auto spec = load(ResourceKind::sensor, reference, parse_sensor);
+  if (spec && !spec->modules.empty()) {
+    return fail_at(ErrorCode::invalid_input, std::string(reference),
+                   "its [[module]] is run where a plan is simulated or measured, not here");
+  }
+  return spec;
+}
+
+Result<SensorSpec> load_sensor_with_modules(std::string_view reference) {
   return load(ResourceKind::sensor, reference, parse_sensor);
 }
 

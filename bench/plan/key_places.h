@@ -47,6 +47,9 @@ constexpr const auto& values_of(const BudgetCommon&) {
 constexpr const auto& values_of(const BudgetInput&) {
   return budget_inputs;
 }
+constexpr const auto& values_of(const ModulePlace&) {
+  return all_module_places;
+}
 constexpr const auto& values_of(const Effect&) {
   return all_effects;
 }

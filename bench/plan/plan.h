@@ -15,6 +15,7 @@
 #include "bench/plan/budget_row.h"
 #include "bench/plan/conformity_rule.h"
 #include "bench/plan/resources.h"
+#include "sim_devices/module/module_plan.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "tod/measurement/measurement.h"
 #include "tod/plate/target_plate.h"
@@ -228,6 +229,9 @@ struct Plan {
   MeasuresPlan measures;
   UncertaintyPlan uncertainty;
   std::vector<InstrumentPlan> instruments;
+  /// [[module]]: those of place picture in the order of their rows behind camera and twin; at most one of place
+  /// observer.
+  std::vector<ModulePlan> modules{};
   bool operator==(const Plan&) const = default;
 };
 

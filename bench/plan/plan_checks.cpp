@@ -215,6 +215,25 @@ ValueMistakes check_due_date(const Plan& plan, std::size_t row) {
   return {{std::nullopt, "expected a date \"YYYY-MM-DD\", found \"" + one_line(date) + "\""}};
 }
 
+ValueMistakes check_module_command(const Plan& plan, std::size_t row) {
+  if (!plan.modules[row].command.empty()) return {};
+  return {{std::nullopt, "is empty"}};
+}
+
+ValueMistakes check_module_place(const Plan& plan, std::size_t row) {
+  if (plan.fit.estimator == FitEstimator::twin_shape)
+    return {
+        {std::nullopt, "the functions of the sensor are not those behind a module: [fit] estimator must be 'weibull'"}};
+  if (plan.modules[row].place != ModulePlace::observer) return {};
+  for (std::size_t i = 0; i < row; ++i) {
+    if (plan.modules[i].place == ModulePlace::observer) return {{std::nullopt, "a second observer"}};
+  }
+  if (plan.schedule.answers == AnswerKind::graded)
+    return {
+        {std::nullopt, "an observer that is a module gives no graded answers: [schedule] answers must be 'binary'"}};
+  return {};
+}
+
 std::optional<std::chrono::year_month_day> parse_date(std::string_view text) {
   const auto digits = [&](std::size_t first, std::size_t count) {
     int value = -1;

@@ -37,6 +37,10 @@ using ValueMistakes = std::vector<ValueMistake>;
 [[nodiscard]] ValueMistakes check_margin(const Plan& plan, std::size_t row);
 /// One that [measures] asks for, not in an earlier row.
 [[nodiscard]] ValueMistakes check_limited_measure(const Plan& plan, std::size_t row);
+/// Not empty.
+[[nodiscard]] ValueMistakes check_module_command(const Plan& plan, std::size_t row);
+/// One observer at most, whose answers are not graded; no module where the function of the twin is fitted.
+[[nodiscard]] ValueMistakes check_module_place(const Plan& plan, std::size_t row);
 /// One or two, with room between them for a value and its stated uncertainty.
 [[nodiscard]] ValueMistakes check_measure_limits(const Plan& plan, std::size_t row);
 /// A complete budget states every expected row.

@@ -609,6 +609,53 @@ PlanSection instrument_section() {
           .rows = rows_of(rows)};
 }
 
+PlanSection module_section() {
+  const auto rows = [](auto& plan) -> auto& {
+    return plan.modules;
+  };
+  const auto whole = [rows](std::string_view name, int low, int high, std::string_view unit, std::string_view sentence,
+                            int ModulePlan::*member) {
+    return PlanKey{
+        .name = name, .type = WholeKey{low, high}, .unit = unit, .sentence = sentence, .place = in_row(rows, member)};
+  };
+  return {
+      .name = "module",
+      .sentence =
+          "A program in the chain (docs/modules.md): behind camera and twin, or in place of the observer's templates.",
+      .keys = {{.name = "command",
+                .type = TextKey{},
+                .sentence = "for a shell, in the folder of the caller",
+                .place = in_row(rows, &ModulePlan::command),
+                .required = Required::always,
+                .check = check_module_command},
+               {.name = "place",
+                .type = ChoiceKey{names_of(all_module_places)},
+                .sentence = "picture to picture, or patch to scores",
+                .place = in_row(rows, &ModulePlan::place),
+                .check = check_module_place},
+               {.name = "version",
+                .type = TextKey{},
+                .sentence = "a command whose first line of output is kept in the session",
+                .place = in_row(rows, &ModulePlan::version)},
+               whole("limit_ms", 1, module_ranges.limit_ms, "ms", "for an answer", &ModulePlan::limit_ms),
+               whole("memory_mib", 0, module_ranges.memory_mib, "MiB", "of address space; 0: no limit",
+                     &ModulePlan::memory_mib),
+               {.name = "network",
+                .type = FlagKey{},
+                .sentence = "keeps the network of the host",
+                .place = in_row(rows, &ModulePlan::network)},
+               whole("restart_frames", 0, module_ranges.restart_frames, "",
+                     "a new process after so many answers; 0: never", &ModulePlan::restart_frames),
+               whole("settle_frames", 0, module_ranges.settle_frames, "",
+                     "frames left out after every change of the target, until it has forgotten what it saw before",
+                     &ModulePlan::settle_frames),
+               {.name = "parameters",
+                .type = FreeTableKey{},
+                .sentence = "handed over in the header, as texts",
+                .place = in_row(rows, &ModulePlan::parameters)}},
+      .rows = rows_of(rows)};
+}
+
 }  // namespace
 
 const std::vector<PlanSection>& plan_sections() {
@@ -616,7 +663,7 @@ const std::vector<PlanSection>& plan_sections() {
       about_section(),       camera_section(),     target_section(),        observer_section(),
       simulation_section(),  schedule_section(),   fit_section(),           measurement_section(),
       measures_section(),    limits_section(),     acuity_limits_section(), measure_limits_section(),
-      uncertainty_section(), budget_row_section(), instrument_section()};
+      uncertainty_section(), budget_row_section(), instrument_section(),    module_section()};
   return sections;
 }
 

@@ -22,11 +22,11 @@ bool only_where_set(const PlanSection& section) {
                       [](const PlanKey& key) { return key.written_at_default; });
 }
 
-/// Free tables stand behind the keys of their section, which would otherwise be theirs.
-void write_free_tables(std::string& text, const PlanSection& section, const Plan& plan) {
+/// Free tables stand behind the keys of their section, which would otherwise be theirs; those of a row behind the row.
+void write_free_tables(std::string& text, const PlanSection& section, const Plan& plan, std::size_t row) {
   for (const PlanKey& key : section.keys) {
     if (!std::holds_alternative<FreeTableKey>(key.type)) continue;
-    const KeyValue value = key.place.get(plan, 0);
+    const KeyValue value = key.place.get(plan, row);
     const auto& table = std::get<std::map<std::string, std::string>>(value);
     if (table.empty()) continue;
     text += "\n[" + path_of(section, key) + "]\n";
@@ -47,8 +47,8 @@ std::string to_toml(const Plan& plan) {
       if (keys.empty() && only_where_set(section)) continue;
       if (!section.name.empty()) text += "\n" + header + "\n";
       text += keys;
+      write_free_tables(text, section, plan, row);
     }
-    write_free_tables(text, section, plan);
   }
   return text;
 }

@@ -25,12 +25,15 @@ using SayProgress = std::function<void(std::string_view sentence)>;
 /// of a camera that takes its time (`interrupted`), `on_progress` tells of it about once a second.
 [[nodiscard]] CameraRegistry camera_registry(std::stop_token stop = {}, SayProgress on_progress = {});
 
+struct ProcessingRecord;
+
 /// A camera, what changes the target before it, and who commands a measurement with them.
 struct OpenedBench {
   std::unique_ptr<FrameSource> camera;
   std::unique_ptr<Target> target;
-  bool simulated = false;                 ///< the camera is a sensor model, its clock that of the model
-  std::chrono::milliseconds patience{0};  ///< how long a camera that was lost is waited for; 0 in a replay
+  bool simulated = false;                          ///< the camera is a sensor model, its clock that of the model
+  std::chrono::milliseconds patience{0};           ///< how long a camera that was lost is waited for; 0 in a replay
+  std::shared_ptr<ProcessingRecord> processing{};  ///< of the modules behind the camera; null: there are none
   std::unique_ptr<MeasurementHost> host = std::make_unique<UnattendedHost>();  ///< may use `camera`
 };
 

@@ -9,8 +9,10 @@
 #include "bench/run/comparison_forecast.h"
 #include "bench/run/direct_results.h"
 #include "bench/run/experiment_inputs.h"
+#include "bench/run/module_chain.h"
 #include "bench/run/observed_source.h"
 #include "bench/run/physical_measures.h"
+#include "bench/run/processed_source.h"
 #include "bench/run/recorded_bench.h"
 #include "bench/run/session_frame.h"
 #include "bench/run/simulated_responses.h"
@@ -59,6 +61,7 @@ class Recorder {
       if (!write_error) ++on_disk;
     };
     events.on_presentation = [&](Presentation shown) {
+      if (bench.processing) bench.processing->handed_out = true;
       if (bench.simulated) shown.host_time_ns.reset();
       if (!write_error) keep(targets->append(shown));
     };
@@ -106,6 +109,14 @@ class Recorder {
   std::stop_callback<std::function<void()>> forward_;
 };
 
+/// What modules write to standard error goes into the log of the session, the first lines of it.
+ModuleLine module_log(SessionFolder& folder) {
+  constexpr int most_lines = 1000;
+  return [&folder, lines = std::make_shared<int>(0)](std::string_view line) {
+    if (++*lines <= most_lines) (void)folder.log("module: " + one_line(std::string(line)));
+  };
+}
+
 /// The plan's own trial design on the simulated sensor.
 struct TwinRun {
   MeasurementResult result;
@@ -135,16 +146,24 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
   auto set_up = simulated_set_up(plan, inputs, shown_delta_t_k, stop);
   if (!set_up) return tl::unexpected(set_up.error());
   set_up->bench.host = bench_host({.pause = host.pause});
-  TemplateObserver observer(inputs.observer, triangle_alternatives());
+  const auto modules = picture_modules(plan, inputs.sensor, Side::simulated);
+  const ModuleLine log_line = module_log(folder);
+  put_modules_behind(set_up->bench, modules, log_line);
+  if (!modules.empty()) {
+    set_up->options.frames_after_change = settle_frames(modules);
+    set_up->options.integrity.reject_frozen = false;
+  }
+  const auto observer = observer_of(plan, inputs, log_line);
   auto result =
-      Recorder(folder, listener, stop).run(set_up->bench, observer, *set_up->schedule, set_up->options, which);
+      Recorder(folder, listener, stop).run(set_up->bench, *observer, *set_up->schedule, set_up->options, which);
   if (!result) return fail("simulating", result.error());
   TwinRun run{.result = std::move(*result), .curve = {}, .wall_s = 0};
   auto curve = tod_curve(run.result.trials, fit_options(plan));
-  if (!curve) return tl::unexpected(curve.error());
+  // What ended the run is the reason, not that the few trials up to there make no curve.
+  if (!curve) return tl::unexpected(run.result.ended_by.value_or(curve.error()));
   run.curve = std::move(*curve);
   run.curve.sensor = inputs.sensor.name;
-  run.curve.observer = inputs.observer.name;
+  run.curve.observer = observer_name(plan, inputs);
   for (auto& point : run.curve.points) {
     // Of the sensor as it is: where the planner leaves the noise out, that says nothing about its counts.
     point.noise_counts = noise_in_counts(inputs.sensor);
@@ -152,7 +171,11 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
   }
 
   give_shape(run.curve, run.result, plan, inputs, shown_delta_t_k, {folder, listener}, stop);
-  if (!run.result.ended_by) {
+  if (!run.result.ended_by && has_modules(plan, inputs.sensor)) {
+    const std::string sentence = "no direct estimate: it would leave out the modules";
+    note(folder, listener, sentence);
+    run.result.notes.push_back(sentence);
+  } else if (!run.result.ended_by) {
     phase(folder, listener, "estimating " + inputs.sensor.name + " directly");
     DirectResults direct = direct_results(run.curve, inputs, shown_delta_t_k, plan.seed, std::move(stop));
     run.result.ended_by = std::move(direct.ended_by);
@@ -211,6 +234,7 @@ TwinResults run_twin(const Plan& plan, const ExperimentInputs& inputs, const Tod
 
 /// A tolerance beyond the hard caps is refused before anything is simulated or moved.
 Result<void> check_tolerance(const Plan& plan, const ExperimentInputs& inputs) {
+  if (has_modules(plan, inputs.sensor)) return {};
   if (const auto prediction = predict_plan(plan, inputs); !prediction) return tl::unexpected(prediction.error());
   return {};
 }
@@ -224,16 +248,20 @@ struct MeasuredRun {
 /// The measurement with the camera of the plan, into the session.
 Result<MeasuredRun> run_measured(const Plan& plan, const ExperimentInputs& inputs, OpenedBench& bench,
                                  SessionFolder& folder, const ExperimentListener& listener, std::stop_token stop) {
-  TemplateObserver observer(inputs.observer, triangle_alternatives());
+  const auto modules = picture_modules(plan, inputs.sensor, Side::measured);
+  const ModuleLine log_line = module_log(folder);
+  put_modules_behind(bench, modules, log_line);
+  const auto observer = observer_of(plan, inputs, log_line);
   MeasurementOptions options = measurement_options(plan, inputs.plates, plan.camera.ifov_mrad);
   const SensorModel model(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
   auto response = simulated_responses(model, plan, inputs.plates, options, stop);
   if (!response) return tl::unexpected(response.error());
   options.contrast_response = std::move(*response);
   options.free_running = !bench.simulated;
+  options.frames_after_change += settle_frames(modules);
   const auto schedule =
       make_schedule(plan, inputs.plates, plan.camera.ifov_mrad, Side::measured, RandomStream(plan.seed, "schedule"));
-  auto result = Recorder(folder, listener, stop).run(bench, observer, *schedule, options, SessionCurve::main);
+  auto result = Recorder(folder, listener, stop).run(bench, *observer, *schedule, options, SessionCurve::main);
   if (!result) return tl::unexpected(result.error());
   MeasuredRun run{*std::move(result), std::nullopt};
   if (run.result.ended_by) return run;
@@ -262,6 +290,7 @@ Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const Experime
   if (!inputs) return tl::unexpected(inputs.error());
   Provenance provenance = begin_provenance(plan, Side::simulated);
   provenance.effects = inputs->effects;
+  provenance.modules = module_records(plan, inputs->sensor, Side::simulated);
   provenance.target = "simulated scene";
   if (auto fits = check_simulated_geometry(plan, *inputs); !fits) return tl::unexpected(fits.error());
   if (auto possible = check_tolerance(plan, *inputs); !possible) return tl::unexpected(possible.error());
@@ -341,6 +370,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   if (auto fits = check_simulated_geometry(plan, inputs); !fits) return fail("the simulated twin", fits.error());
   Provenance provenance = begin_provenance(plan, Side::measured);
   provenance.effects = inputs.effects;
+  provenance.modules = module_records(plan, inputs.sensor, Side::simulated);
   provenance.camera = camera_record(info);
   provenance.target = bench.target->capabilities().description;
   auto folder = begin_session(loaded, options, provenance);
@@ -375,14 +405,14 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   auto curve = tod_curve(result->trials, fit_options(plan));
   if (!curve) {
     provenance.run = run_record(*result, seconds_since(begin));
-    return abandon(frame, plan, provenance, curve.error());
+    return abandon(frame, plan, provenance, result->ended_by.value_or(curve.error()));
   }
   std::map<double, double> shown;
   for (const auto& point : curve->points) shown[point.set_delta_t_k] = point.delta_t_k;
   give_shape(*curve, *result, plan, inputs, shown, frame, stop);
   provenance.run = run_record(*result, seconds_since(begin));
   curve->sensor = info.model + " " + info.serial;
-  curve->observer = inputs.observer.name;
+  curve->observer = observer_name(plan, inputs);
   for (auto& point : curve->points) {
     point.noise_counts = result->temporal_noise_counts;
     point.lag1_correlation = result->lag1_correlation;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bench/plan/plan_options.h"
+#include "bench/run/module_chain.h"
 #include "bench/text/text.h"
 #include "tod/measurement/geometry.h"
 #include "tod/plate/test_pattern.h"
@@ -49,6 +50,18 @@ Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlann
   inputs.mtf_plate = loaded.parts().mtf_plate;
   inputs.observer = loaded.observer();
   inputs.motion = plan.simulation.motion;
+  if (has_modules(plan, loaded.sensor())) {
+    if (plan.fit.estimator == FitEstimator::twin_shape)
+      return fail(ErrorCode::invalid_input,
+                  "the functions of the sensor are not those behind a module: [fit] estimator must be 'weibull'");
+    // What may be left out for the sensor alone may matter behind a module.
+    inputs.effects = full_plan(loaded.sensor(), plan.simulation.skip, plan.simulation.force, inputs.motion);
+    inputs.sensor = as_planned(loaded.sensor(), inputs.effects);
+    auto accuracy = accuracy_of(plan);
+    if (!accuracy) return tl::unexpected(accuracy.error());
+    inputs.accuracy = *accuracy;
+    return inputs;
+  }
   auto effects = planned_effects(plan, loaded.sensor(), inputs.observer, planner);
   if (effects) {
     inputs.effects = std::move(effects->plan);

@@ -35,7 +35,8 @@ struct ExperimentInputs {
 [[nodiscard]] Result<EffectPlan> planned_effects(const Plan& plan, const SensorSpec& sensor,
                                                  const TemplateObserverSpec& observer, EffectPlanner& planner);
 
-/// Asks the planner once; where no contrast has a threshold everything is simulated, and a warning says so.
+/// Asks the planner once; where no contrast has a threshold everything is simulated, and a warning says so;
+/// with modules it is not asked and everything is simulated.
 [[nodiscard]] Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlanner& planner);
 
 /// How the simulated sensor is measured: as the camera, but nothing has to settle and nothing is corrected.

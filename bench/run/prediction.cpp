@@ -6,6 +6,7 @@
 
 #include "bench/plan/plan_options.h"
 #include "bench/run/bench_time.h"
+#include "bench/run/module_chain.h"
 #include "bench/run/time_prediction.h"
 #include "bench/text/text.h"
 #include "sim_devices/prediction/direct_timing.h"
@@ -100,6 +101,7 @@ std::optional<double> expected_presentations(const Plan& plan, const std::vector
 }
 
 Result<PlanPrediction> predict_plan(const Plan& plan, const ExperimentInputs& inputs) {
+  if (auto none = refuse_modules(plan, inputs.sensor); !none) return tl::unexpected(none.error());
   if (auto met = reachable(plan, inputs); !met) return tl::unexpected(met.error());
 
   PlanPrediction out{.figures = {}, .contrasts = {}, .warnings = inputs.warnings};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bench/run/module_chain.h"
 #include "bench/run/recorded_bench.h"
 #include "bench/session/fit_record.h"
 #include "bench/session/trials_csv.h"
@@ -57,13 +58,19 @@ Json fits_of(TodCurve curve) {
 }  // namespace
 
 Result<ReplayOutcome> replay_session(const std::filesystem::path& session, const ExperimentOptions& options,
-                                     const ExperimentListener& listener, std::stop_token stop, const Opening& opening) {
+                                     const ExperimentListener& listener, std::stop_token stop, const Opening& opening,
+                                     RunModules modules) {
   // Frames and plan have to be those of the run.
   auto recorded = open_session(session, {.accept_changed = opening.accept_changed, .accept_cut_off = true});
   if (!recorded) return tl::unexpected(recorded.error());
   auto recording = open_recorded_bench(session, options.host.pause);
   if (!recording) return tl::unexpected(recording.error());
   Plan plan = recorded->plan;
+  // Whoever made a session says in it what would run here.
+  if (has_modules(plan, recorded->parts.sensor) && modules != RunModules::yes) {
+    return fail(ErrorCode::invalid_input,
+                session.string() + ": has a [[module]], a program that would run here: --run-modules lets it");
+  }
   plan.measurement.record_frames = false;
   plan.measures = {};  // a replay repeats the trials
   const auto loaded = LoadedPlan::of(std::move(plan), recorded->parts);

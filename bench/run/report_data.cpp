@@ -34,6 +34,12 @@ void add_provenance(ReportData& data, const Provenance& provenance) {
                      {"Host", provenance.host}};
   for (const auto& [name, seed] : provenance.seeds)
     data.provenance.emplace_back("Seed of the " + name, std::to_string(seed));
+  for (const auto& module : provenance.modules) {
+    std::string text = module.command;
+    if (!module.version.empty()) text += "; " + module.version;
+    for (const auto& [file, hash] : module.files) text += "; " + file + " SHA-256 " + hash;
+    data.provenance.emplace_back("Module (" + module.place + ")", std::move(text));
+  }
   for (const auto& instrument : provenance.instruments) {
     data.conditions.emplace_back(instrument.name,
                                  "serial " + instrument.serial + ", certificate " + instrument.certificate +

@@ -162,6 +162,23 @@ Json instruments_json(const std::vector<InstrumentPlan>& instruments) {
   return list;
 }
 
+std::map<std::string, std::string> file_hashes(const JsonReader& reader) {
+  std::map<std::string, std::string> hashes;
+  for (const auto& [file, hash] : reader.items()) hashes[file] = hash.text();
+  return hashes;
+}
+
+Json modules_json(const std::vector<ModuleRecord>& modules) {
+  Json list = Json::array();
+  for (const ModuleRecord& module : modules) {
+    list.push_back({{"place", module.place},
+                    {"command", module.command},
+                    {"version", module.version},
+                    {"files", object_of(module.files)}});
+  }
+  return list;
+}
+
 }  // namespace
 
 std::string_view to_string(SessionState state) {
@@ -243,6 +260,7 @@ Json provenance_json(const Provenance& provenance) {
   json["camera"] = provenance.camera ? camera_json(*provenance.camera) : Json(nullptr);
   json["target"] = provenance.target;
   json["instruments"] = instruments_json(provenance.instruments);
+  json["modules"] = modules_json(provenance.modules);
   json["effects"] = effects_json(provenance.effects);
   json["run"] = provenance.run ? run_json(*provenance.run) : Json(nullptr);
   json["twin_run"] = provenance.twin_run ? run_json(*provenance.twin_run) : Json(nullptr);
@@ -270,6 +288,12 @@ Result<Provenance> provenance_from(const Json& json) {
   if (const JsonReader run = reader.at("run"); !run.is_null()) provenance.run = read_run(run);
   if (const JsonReader run = reader.at("twin_run"); !run.is_null()) provenance.twin_run = read_run(run);
   // Folders of earlier versions have none.
+  if (json.is_object() && json.contains("modules")) {
+    for (const JsonReader& item : reader.at("modules").elements()) {
+      provenance.modules.push_back({item.at("place").text(), item.at("command").text(), item.at("version").text(),
+                                    file_hashes(item.at("files"))});
+    }
+  }
   if (json.is_object() && json.contains("clock_jump_s"))
     provenance.clock_jump_s = reader.at("clock_jump_s").optional_number().value_or(0);
   if (const Result<void> read = reader.finish(); !read) return tl::unexpected(read.error());

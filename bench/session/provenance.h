@@ -60,9 +60,10 @@ struct Provenance {
   std::optional<CameraRecord> camera;  ///< nothing for a simulated curve
   std::string target;                  ///< instruments in words, with serial numbers
   std::vector<InstrumentPlan> instruments;
-  SensorPlan effects;                 ///< of the simulated curve
-  std::optional<RunRecord> run;       ///< of trials.csv
-  std::optional<RunRecord> twin_run;  ///< of trials_simulated.csv
+  std::vector<ModuleRecord> modules{};  ///< behind camera or twin, the observer last
+  SensorPlan effects;                   ///< of the simulated curve
+  std::optional<RunRecord> run;         ///< of trials.csv
+  std::optional<RunRecord> twin_run;    ///< of trials_simulated.csv
 };
 
 /// The parts between losses of the camera; 1: it was never lost.

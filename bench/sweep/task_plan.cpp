@@ -10,6 +10,7 @@
 #include "bench/run/default_design.h"
 #include "bench/run/experiment.h"
 #include "bench/run/experiment_inputs.h"
+#include "bench/run/module_chain.h"
 #include "bench/run/time_prediction.h"
 #include "bench/session/json_output.h"
 #include "bench/text/files.h"
@@ -178,6 +179,7 @@ Json estimate_json(const LoadedPlan& plan, const std::vector<DirectPoint>& point
 }
 
 Result<Json> estimated(const LoadedPlan& plan, std::stop_token stop) {
+  if (auto none = refuse_modules(plan.plan(), plan.sensor()); !none) return tl::unexpected(none.error());
   const auto& simulation = plan.plan().simulation;
   const auto accuracy = accuracy_of(plan.plan());
   if (!accuracy) return tl::unexpected(accuracy.error());

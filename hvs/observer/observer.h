@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -71,6 +72,8 @@ class Observer {
   /// it cannot judge.
   [[nodiscard]] virtual Result<std::shared_ptr<const PreparedObserver>> prepare(double size_samples,
                                                                                 int samples_per_pitch) = 0;
+  /// Why it can no longer choose, for observers that are not in this program; choices made since are none.
+  [[nodiscard]] virtual std::optional<Error> failure() const { return std::nullopt; }
 };
 
 /// The alternatives, each a polygon of unit area with its centroid at the origin, in the order of their labels.

@@ -22,16 +22,23 @@ constexpr std::uint64_t tie_break_index = std::uint64_t{1} << 40;
 // The stream below a trial's own of which graded answers draw, apart from the one answer.
 constexpr std::uint64_t graded_sub_stream = 1;
 
-/// Winner among equal scores by lot.
-int winner(const Choice& choice, const RandomStream& noise) {
-  const auto end = choice.scores.begin() + choice.alternatives;
-  const double best = *std::max_element(choice.scores.begin(), end);
-  const auto ties = static_cast<std::uint64_t>(std::count(choice.scores.begin(), end, best));
-  auto pick = ties > 1 ? noise.below(ties, tie_break_index) : 0;
-  for (int o = 0; o < choice.alternatives; ++o) {
-    if (choice.scores[static_cast<std::size_t>(o)] == best && pick-- == 0) return o;
-  }
-  return 0;  // unreachable: some score equals the maximum
+/// Internal noise, and the part of the sensor's noise by which this observer sees it enlarged: sd per sample in units
+/// of the contrast.
+double own_noise(const TemplateObserverSpec& spec, const Patch& patch, double contrast_k) {
+  const double enlarged = spec.sensor_noise_factor * spec.sensor_noise_factor - 1;
+  const double seen = patch.noise_k / contrast_k;
+  return std::sqrt(spec.internal_noise * spec.internal_noise + enlarged * seen * seen);
+}
+
+/// The patch without its mean, in units of the contrast. Differences are formed in double precision, so a background of
+/// 300 K leaves no trace.
+void scale_to_contrast(const Patch& patch, double contrast_k, std::span<float> signal) {
+  const double background = patch.kelvin(0, 0);
+  double mean = 0;
+  for (const double value : patch.kelvin) mean += value - background;
+  mean = background + mean / static_cast<double>(signal.size());
+  std::size_t s = 0;
+  for (const double value : patch.kelvin) signal[s++] = static_cast<float>((value - mean) / contrast_k);
 }
 
 class PreparedTemplateObserver final : public PreparedObserver {
@@ -81,12 +88,7 @@ class PreparedTemplateObserver final : public PreparedObserver {
  private:
   [[nodiscard]] Choice decide(const Patch& patch, double contrast_k, const RandomStream& noise, std::span<float> signal,
                               std::span<float> draws, std::span<float> scores) const {
-    scale_to_contrast(patch, contrast_k, signal);
-    const auto sd = static_cast<float>(own_noise(patch, contrast_k));
-    if (sd > 0) {
-      noise.fill_normal(draws);
-      for (std::size_t s = 0; s < signal.size(); ++s) signal[s] += sd * draws[s];
-    }
+    seen_patch(spec_, patch, contrast_k, noise, signal, draws);
     bank_->project(signal, scores);
     Choice choice;
     choice.alternatives = bank_->alternatives();
@@ -95,7 +97,7 @@ class PreparedTemplateObserver final : public PreparedObserver {
       const auto mine = scores.subspan(static_cast<std::size_t>(o) * places, places);
       choice.scores[static_cast<std::size_t>(o)] = static_cast<double>(*std::max_element(mine.begin(), mine.end()));
     }
-    choice.alternative = winner(choice, noise);
+    choice.alternative = winning_alternative(choice, noise);
     return choice;
   }
 
@@ -104,7 +106,7 @@ class PreparedTemplateObserver final : public PreparedObserver {
                                                   const AnswerRoom& room) const {
     scale_to_contrast(patch, contrast_k, signal);
     bank_->project(signal, scores);
-    return answer_probabilities(own_noise_of_scores(), scores, own_noise(patch, contrast_k),
+    return answer_probabilities(own_noise_of_scores(), scores, own_noise(spec_, patch, contrast_k),
                                 noise.sub(graded_sub_stream), draws, room);
   }
 
@@ -114,25 +116,6 @@ class PreparedTemplateObserver final : public PreparedObserver {
     return *noise_;
   }
 
-  /// Internal noise, and the part of the sensor's noise by which this observer sees it enlarged: sd per sample in units
-  /// of the contrast.
-  [[nodiscard]] double own_noise(const Patch& patch, double contrast_k) const {
-    const double enlarged = spec_.sensor_noise_factor * spec_.sensor_noise_factor - 1;
-    const double seen = patch.noise_k / contrast_k;
-    return std::sqrt(spec_.internal_noise * spec_.internal_noise + enlarged * seen * seen);
-  }
-
-  /// The patch without its mean, in units of the contrast. Differences are formed in double precision, so a background
-  /// of 300 K leaves no trace.
-  static void scale_to_contrast(const Patch& patch, double contrast_k, std::span<float> signal) {
-    const double background = patch.kelvin(0, 0);
-    double mean = 0;
-    for (const double value : patch.kelvin) mean += value - background;
-    mean = background + mean / static_cast<double>(signal.size());
-    std::size_t s = 0;
-    for (const double value : patch.kelvin) signal[s++] = static_cast<float>((value - mean) / contrast_k);
-  }
-
   TemplateObserverSpec spec_;
   std::shared_ptr<const TemplateBank> bank_;
   mutable std::once_flag noise_made_;
@@ -140,6 +123,26 @@ class PreparedTemplateObserver final : public PreparedObserver {
 };
 
 }  // namespace
+
+void seen_patch(const TemplateObserverSpec& spec, const Patch& patch, double contrast_k, const RandomStream& noise,
+                std::span<float> seen, std::span<float> room) {
+  scale_to_contrast(patch, contrast_k, seen);
+  const auto sd = static_cast<float>(own_noise(spec, patch, contrast_k));
+  if (!(sd > 0)) return;
+  noise.fill_normal(room);
+  for (std::size_t s = 0; s < seen.size(); ++s) seen[s] += sd * room[s];
+}
+
+int winning_alternative(const Choice& choice, const RandomStream& noise) {
+  const auto end = choice.scores.begin() + choice.alternatives;
+  const double best = *std::max_element(choice.scores.begin(), end);
+  const auto ties = static_cast<std::uint64_t>(std::count(choice.scores.begin(), end, best));
+  auto pick = ties > 1 ? noise.below(ties, tie_break_index) : 0;
+  for (int o = 0; o < choice.alternatives; ++o) {
+    if (choice.scores[static_cast<std::size_t>(o)] == best && pick-- == 0) return o;
+  }
+  return 0;  // unreachable: some score equals the maximum
+}
 
 Result<void> validate(const TemplateObserverSpec& spec) {
   const auto refuse = [](const std::string& what) { return fail(ErrorCode::invalid_input, what); };

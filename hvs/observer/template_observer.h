@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -30,6 +31,13 @@ struct TemplateObserverSpec {
 
 /// Fails with `invalid_input`, naming the parameter that is out of its range.
 [[nodiscard]] Result<void> validate(const TemplateObserverSpec& spec);
+
+/// What the templates of an observer meet: the patch without its mean, in units of the contrast, with the observer's
+/// own noise drawn from the trial's `noise`. `seen` and `room` have a value for each sample of the patch.
+void seen_patch(const TemplateObserverSpec& spec, const Patch& patch, double contrast_k, const RandomStream& noise,
+                std::span<float> seen, std::span<float> room);
+/// The alternative with the highest score; among equal ones by lot from the trial's `noise`.
+[[nodiscard]] int winning_alternative(const Choice& choice, const RandomStream& noise);
 
 class TemplateObserver final : public Observer {
  public:

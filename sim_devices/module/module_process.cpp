@@ -218,33 +218,54 @@ Result<NpyPlace> ModuleProcess::transfer(std::chrono::steady_clock::time_point u
   }
 }
 
-Result<cv::Mat1f> ModuleProcess::exchange(const cv::Mat1f& picture) {
+tl::unexpected<Error> ModuleProcess::refused(Error error) {
+  end();
+  return tl::unexpected(std::move(error));
+}
+
+Result<NpyPlace> ModuleProcess::answer_to(std::string messages, const std::vector<std::size_t>& shape) {
   if (process_ < 0) return fail(ErrorCode::disconnected, "the module has ended");
-  const auto refused = [this](Error error) {
-    end();
-    return tl::unexpected(std::move(error));
-  };
   // What stands there before anything was asked is no answer.
   std::array<char, 64> early{};
   if (const ssize_t got = ::read(out_, early.data(), early.size()); got > 0)
     read_.append(early.data(), static_cast<std::size_t>(got));
   if (!read_.empty()) return refused(with_last_words({ErrorCode::integrity, "the module wrote more than its answer"}));
-  to_write_ += to_message(picture);
-  const std::size_t most_values = std::max<std::size_t>(64, 16 * picture.total());
-  const auto found = transfer(std::chrono::steady_clock::now() + options_.limit, most_values);
+  to_write_ += messages;
+  std::size_t count = 1;
+  for (const std::size_t length : shape) count *= length;
+  auto found = transfer(std::chrono::steady_clock::now() + options_.limit, std::max<std::size_t>(64, 16 * count));
   if (!found) return refused(found.error());
-  const auto rows = static_cast<std::size_t>(picture.rows), columns = static_cast<std::size_t>(picture.cols);
-  if (found->shape != std::vector<std::size_t>{rows, columns}) {
+  if (found->shape != shape) {
     return refused(
-        with_last_words({ErrorCode::integrity, fmt::format("the module answered with the shape ({}), expected ({}, {})",
-                                                           fmt::join(found->shape, ", "), rows, columns)}));
+        with_last_words({ErrorCode::integrity, fmt::format("the module answered with the shape ({}), expected ({})",
+                                                           fmt::join(found->shape, ", "), fmt::join(shape, ", "))}));
   }
+  return found;
+}
+
+Result<cv::Mat1f> ModuleProcess::exchange(const cv::Mat1f& picture) {
+  const auto found =
+      answer_to(to_message(picture), {static_cast<std::size_t>(picture.rows), static_cast<std::size_t>(picture.cols)});
+  if (!found) return tl::unexpected(found.error());
   cv::Mat1f answer = picture_at(read_, *found);
   read_.erase(0, found->bytes);
   // In range: neither infinite nor NaN, which compares with nothing.
   if (!cv::checkRange(answer))
     return refused(with_last_words({ErrorCode::integrity, "the module answered with a number that is not finite"}));
   return answer;
+}
+
+Result<std::vector<double>> ModuleProcess::ask(std::string messages, const std::vector<std::size_t>& shape) {
+  const auto found = answer_to(std::move(messages), shape);
+  if (!found) return tl::unexpected(found.error());
+  auto read = read_message(read_, found->count);
+  if (!read) return refused(read.error());
+  read_.erase(0, found->bytes);
+  for (const double value : read->message->values) {
+    if (!std::isfinite(value))
+      return refused(with_last_words({ErrorCode::integrity, "the module answered with a number that is not finite"}));
+  }
+  return std::move(read->message->values);
 }
 
 }  // namespace todbench

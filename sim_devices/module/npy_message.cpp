@@ -92,6 +92,12 @@ std::string to_message(const cv::Mat1f& picture) {
   return bytes;
 }
 
+std::string to_message(const std::vector<double>& numbers) {
+  std::string bytes = with_header("<f8", fmt::format("{},", numbers.size()));
+  bytes.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double));
+  return bytes;
+}
+
 std::string to_message(std::string_view text) {
   return with_header("|u1", fmt::format("{},", text.size())) + std::string(text);
 }

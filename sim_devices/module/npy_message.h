@@ -20,6 +20,8 @@ struct NpyMessage {
 
 /// A picture as <f4, two dimensions, rows first.
 [[nodiscard]] std::string to_message(const cv::Mat1f& picture);
+/// Numbers as <f8, one dimension.
+[[nodiscard]] std::string to_message(const std::vector<double>& numbers);
 /// A text as |u1, one dimension: the header that is sent first.
 [[nodiscard]] std::string to_message(std::string_view text);
 

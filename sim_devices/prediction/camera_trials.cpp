@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "sim_devices/prediction/trial_plate.h"
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "sim_devices/sensor/super_resolution.h"
@@ -12,53 +13,8 @@
 namespace todbench {
 namespace {
 
-constexpr double distance_m = 1;  ///< at which a millimetre is a milliradian
 constexpr int factor = 2;
 constexpr double largest_shift_px = 1.5;  ///< frames displaced by half a pitch at most are found this near
-
-constexpr double mark_pitch = 10;       ///< size of the registration marks
-constexpr double mark_cell_pitch = 22;  ///< their bounding box and room for blur
-
-/// Four orientations of every size, two sizes in a row, in cells so wide that no window sees a neighbour; above and
-/// below them large triangles of the same contrast, for the registration what the edges of a plate are.
-TargetPlate plate_of(const CameraTrialOptions& options, double ifov_mrad) {
-  TargetPlate plate;
-  plate.name = "camera trials";
-  const double largest = *std::max_element(options.sizes_pitch.begin(), options.sizes_pitch.end());
-  // Half a window (1.05 S + 2, rounded up, and the search), half a triangle (0.88 S) and its blur.
-  const double cell_mm = (2 * largest + 8) * ifov_mrad;
-  const auto rows = (options.sizes_pitch.size() + 1) / 2;
-  const double half_height_mm = 0.5 * static_cast<double>(rows) * cell_mm;
-  for (std::size_t t = 0; t < 4 * options.sizes_pitch.size(); ++t) {
-    PlateTriangle triangle;
-    triangle.name = std::to_string(t);
-    triangle.position_mm = {(static_cast<double>(t % 8) - 3.5) * cell_mm,
-                            (static_cast<double>(t / 8) + 0.5) * cell_mm - half_height_mm};
-    triangle.size_mm = options.sizes_pitch[t / 4] * ifov_mrad;
-    triangle.apex = static_cast<Apex>((t + t / 4) % 4);
-    plate.triangles.push_back(triangle);
-  }
-  const double mark_mm = mark_cell_pitch * ifov_mrad;
-  plate.width_mm = std::max(8 * cell_mm, 2 * mark_mm);
-  plate.height_mm = 2 * (half_height_mm + mark_mm);
-  for (int m = 0; m < 4; ++m) {
-    PlateTriangle mark;
-    mark.name = "mark " + std::to_string(m);
-    mark.position_mm = {(m % 2 - 0.5) * 0.5 * plate.width_mm, (m < 2 ? -1 : 1) * (half_height_mm + 0.5 * mark_mm)};
-    mark.size_mm = mark_pitch * ifov_mrad;
-    mark.apex = static_cast<Apex>(m);
-    plate.triangles.push_back(mark);
-  }
-  return plate;
-}
-
-/// The part of the camera that the plate fills: pixels that no window looks at cost time only.
-SensorSpec cropped(SensorSpec sensor, const TargetPlate& plate) {
-  const auto pixels = [&](double mm) { return static_cast<int>(std::ceil(mm / sensor.ifov_mrad())) + 8; };
-  sensor.width = std::max(32, pixels(plate.width_mm));
-  sensor.height = std::max(32, pixels(plate.height_mm));
-  return sensor;
-}
 
 cv::Mat1f kelvin_of(const cv::Mat1w& counts, const SensorSpec& sensor, double background_k) {
   cv::Mat1f kelvin;
@@ -85,7 +41,7 @@ Presentation expose(const SensorModel& model, const TargetPlate& plate, const Ca
   Presentation shown;
   shown.scene.plate = plate;
   shown.scene.delta_t_k = options.delta_t_k;
-  shown.scene.distance_m = distance_m;
+  shown.scene.distance_m = trial_distance_m;
   shown.scene.centre_px = {phases.uniform(0) - 0.5, phases.uniform(1) - 0.5};
   for (int k = 0; k < options.frames; ++k) {
     const cv::Point2d displacement = displacement_of(options.displacements, k);
@@ -198,8 +154,8 @@ Result<CameraTrialRecord> camera_trials(const SensorSpec& sensor, const std::vec
   if (reaches_an_end(sensor, options.delta_t_k, PlateScene{}.background_k))
     return fail(ErrorCode::invalid_input, "a contrast of " + std::to_string(options.delta_t_k) +
                                               " K reaches an end of the camera's counts: frames of it are clipped");
-  const TargetPlate plate = plate_of(options, sensor.ifov_mrad());
-  const SensorSpec camera = cropped(sensor, plate);
+  const TargetPlate plate = trial_plate(options.sizes_pitch, sensor.ifov_mrad());
+  const SensorSpec camera = cropped_to(sensor, plate, 0);
   const SensorModel model(camera, full_plan(camera, {}, {}), options.accuracy, options.seed);
   std::vector<Judge> judges;
   for (TemplateObserver* observer : observers) {

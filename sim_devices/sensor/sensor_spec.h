@@ -3,8 +3,10 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "acquisition/core/result.h"
+#include "sim_devices/module/module_plan.h"
 #include "sim_devices/scene/scene_motion.h"
 
 namespace todbench {
@@ -44,6 +46,8 @@ struct SensorSpec {
   double kelvin_per_count = 0.01;   ///< linear temperature output
   double offset_k = 250;            ///< temperature of count 0
   double frame_rate_hz = 50;
+  /// Programs behind the sensor, picture to picture. SensorModel and estimates do not run them.
+  std::vector<ModulePlan> modules{};
   double scene_temperature_k = 300;  ///< of the surround; sets the spectral weighting dL/dT
 
   [[nodiscard]] double ifov_mrad() const { return pitch_um / focal_length_mm; }

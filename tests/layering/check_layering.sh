@@ -34,9 +34,9 @@ BEGIN {
   tod = hvs " tod/plate tod/pattern tod/presentation tod/registration tod/psychometric tod/schedule tod/measurement tod/comparison tod/adequacy tod/observer_fit tod/range tod/measures tod/camera_measures"
   may["sim_devices/scene"] = hvs " tod/plate sim_devices/atmosphere"
   may["sim_devices/atmosphere"] = core " tod/range"
-  may["sim_devices/module"] = core
-  may["sim_devices/sensor"] = hvs " tod/plate tod/presentation sim_devices/scene"
-  may["sim_devices/prediction"] = tod " sim_devices/scene sim_devices/sensor"
+  may["sim_devices/module"] = hvs
+  may["sim_devices/sensor"] = hvs " tod/plate tod/presentation sim_devices/scene sim_devices/module"
+  may["sim_devices/prediction"] = tod " sim_devices/scene sim_devices/module sim_devices/sensor"
   may["sim_devices/lab/device_nodes"] = core
   may["sim_devices/lab/instruments"] = core " tod/plate tod/instruments"
   may["sim_devices/lab/genicam"] = core " acquisition/pixel_formats"

@@ -379,6 +379,7 @@ class Run {
         trials[i].saturated_pixels = std::max(trials[i].saturated_pixels, saturated);
       }
     }
+    if (const auto failure = observer_.failure()) return fail("the observer", *failure);
     for (std::size_t i = 0; i < count; ++i) {
       if (options_.answers == AnswerKind::graded) {
         trials[i].probability_correct = std::min(1.0, probabilities[i] / options_.frames_per_presentation);

@@ -1,8 +1,10 @@
-// A module: picture in, picture out. The argument says what it does with it, or how it breaks the contract.
+// A module: picture in, picture out, or patch in, scores out. The first argument says what it does with it, or how it
+// breaks the contract; the second after how many answers; "hvs" is the observer hvs-1.
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -11,7 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "hvs/observer/template_bank.h"
+#include "hvs/observer/template_observer.h"
 #include "sim_devices/module/npy_message.h"
+#include "tod/plate/test_pattern.h"
 
 namespace {
 
@@ -32,6 +37,22 @@ cv::Mat1f processed(const std::string& mode, const todbench::NpyMessage& message
   return picture;
 }
 
+/// The scores of hvs-1 for the patch, which the conditions before it belong to.
+std::vector<double> scores(const todbench::NpyMessage& conditions, const todbench::NpyMessage& patch) {
+  const auto bank = todbench::TemplateBank::build({}, todbench::triangle_alternatives(), conditions.values[0],
+                                                  static_cast<int>(conditions.values[1]));
+  if (!bank) return {};
+  const std::vector<float> seen(patch.values.begin(), patch.values.end());
+  std::vector<float> all(bank->padded_templates());
+  bank->project(seen, all);
+  std::vector<double> best;
+  for (int o = 0; o < bank->alternatives(); ++o) {
+    const auto begin = all.begin() + o * bank->places();
+    best.push_back(static_cast<double>(*std::max_element(begin, begin + bank->places())));
+  }
+  return best;
+}
+
 /// Whether this computer answers at the port.
 bool reaches(int port) {
   const int end = ::socket(AF_INET, SOCK_STREAM, 0);
@@ -47,7 +68,12 @@ bool reaches(int port) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::string mode = argc > 1 ? argv[1] : "identity";
+  const bool observes = argc > 1 && std::string(argv[1]) == "hvs";
+  if (observes) --argc, ++argv;
+  const std::string planned = argc > 1 ? argv[1] : "identity";
+  const int healthy = argc > 2 && planned != "connect" && planned != "ends" ? std::atoi(argv[2]) : 0;
+  std::string mode = healthy > 0 ? "identity" : planned;
+  todbench::NpyMessage conditions;
   if (mode == "crash") {
     std::fprintf(stderr, "the licence has expired\n");
     return 3;
@@ -71,6 +97,11 @@ int main(int argc, char** argv) {
       header_read = true;
       continue;
     }
+    if (observes && message.shape.size() == 1) {
+      conditions = message;
+      continue;
+    }
+    if (healthy > 0 && answered == healthy) mode = planned;
     if (mode == "hang") ::pause();
     if (mode == "ends" && answered == std::atoi(argv[2])) {
       std::fprintf(stderr, "that is enough\n");
@@ -86,6 +117,13 @@ int main(int argc, char** argv) {
     }
     if (mode == "connect" && !reaches(std::atoi(argv[2]))) return 4;
     if (mode == "text") write_all("thank you\n");
+    if (observes) {
+      auto answer = scores(conditions, message);
+      if (mode == "nan") answer[0] = std::numeric_limits<double>::quiet_NaN();
+      if (mode == "shape") answer.pop_back();
+      write_all(todbench::to_message(answer));
+      continue;
+    }
     const std::string answer = todbench::to_message(processed(mode, message));
     write_all(answer);
     if (mode == "twice") write_all(answer);

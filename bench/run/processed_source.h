@@ -1,6 +1,7 @@
 // A camera whose pictures go through stages.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <vector>
@@ -13,7 +14,7 @@ namespace todbench {
 /// What the stages did so far, and what is wanted of them.
 struct ProcessingRecord {
   /// Whether next() hands out what the stages made of a frame, or the frame as it came. The stages see every frame.
-  bool handed_out = true;
+  std::atomic<bool> handed_out{true};
   std::vector<double> frame_ms;  ///< of every complete frame, all stages together
   std::size_t clipped = 0;       ///< pixels beyond the counts of the camera, which were cut off
   cv::Mat1w picture;             ///< what was made of the frame with the number that was asked for

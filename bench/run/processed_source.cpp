@@ -1,4 +1,4 @@
-#include "bench/enhance/processed_source.h"
+#include "bench/run/processed_source.h"
 
 #include <algorithm>
 #include <cmath>

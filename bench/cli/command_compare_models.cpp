@@ -1,0 +1,168 @@
+#include "bench/cli/command_compare_models.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "bench/enhance/model_comparison_page.h"
+#include "bench/judgement/verdict.h"
+#include "bench/report/html.h"
+#include "bench/session/json_output.h"
+#include "bench/text/files.h"
+#include "bench/text/folders.h"
+#include "bench/text/text.h"
+#include "tod/psychometric/acuity.h"
+
+namespace todbench {
+namespace {
+
+struct CompareModelsArguments {
+  std::string a, b, plan = "demo", out = "models";
+  bool overwrite = false;
+};
+
+Json model_json(const ComparedModel& model, const PackageResult& result) {
+  return {{"name", model.name},
+          {"reference", model.reference},
+          {"sha256", model.sha256.empty() ? Json() : Json(model.sha256)},
+          {"trials", result.trials.size()},
+          {"error", result.error ? Json(result.error->message) : Json()}};
+}
+
+/// Acuity and its interval of the result at a contrast, under "acuity_SIDE_per_mrad".
+void add_acuity(Json& point, const std::string& side, const PackageResult& result, double set_delta_t_k) {
+  point["acuity_" + side + "_per_mrad"] = nullptr;
+  point["acuity_" + side + "_ci95_per_mrad"] = json_interval({});
+  for (const TodPoint& found : result.curve.points) {
+    if (!same_contrast(found.set_delta_t_k, set_delta_t_k)) continue;
+    point["acuity_" + side + "_per_mrad"] = json_number(acuity_per_mrad(found.fit));
+    point["acuity_" + side + "_ci95_per_mrad"] = json_interval(acuity_interval(found.fit.ci95));
+  }
+}
+
+Json comparison_of_models_json(const ModelComparison& comparison, const std::string& folder) {
+  Json points = Json::array(), keys = Json::array(), pixels = Json::array(), transfer = Json::array();
+  for (const PairedRatio& ratio : comparison.ratios) {
+    Json point{{"set_delta_t_k", ratio.set_delta_t_k}};
+    add_acuity(point, "a", comparison.result_a, ratio.set_delta_t_k);
+    add_acuity(point, "b", comparison.result_b, ratio.set_delta_t_k);
+    point["ratio"] = json_number(ratio.ratio);
+    point["ratio_ci95"] = json_interval(ratio.ci95);
+    const auto apart = parts(ratio);
+    point["parts"] = apart ? Json(*apart) : Json();
+    points.push_back(std::move(point));
+  }
+  for (const KeyDifference& key : comparison.keys) keys.push_back({{"key", key.key}, {"a", key.a}, {"b", key.b}});
+  for (const PixelDifference& found : comparison.pixels) {
+    pixels.push_back({{"picture", found.what},
+                      {"mean_k", json_number(found.mean_k)},
+                      {"rms_k", json_number(found.rms_k)},
+                      {"largest_k", json_number(found.largest_k)},
+                      {"row", found.rms_k ? Json(found.largest_at.y) : Json()},
+                      {"column", found.rms_k ? Json(found.largest_at.x) : Json()},
+                      {"reason", found.reason.empty() ? Json() : Json(found.reason)}});
+  }
+  for (const TransferPoint& point : comparison.transfer)
+    transfer.push_back({{"frequency_per_mrad", point.frequency_per_mrad}, {"a", point.a}, {"b", point.b}});
+  return {{"kind", to_string(comparison.a.kind)},
+          {"a", model_json(comparison.a, comparison.result_a)},
+          {"b", model_json(comparison.b, comparison.result_b)},
+          {"points", points},
+          {"transfer", transfer},
+          {"parts_at_per_mrad", json_number(comparison.parts_at_per_mrad)},
+          {"pixels", pixels},
+          {"keys", keys},
+          {"notes", comparison.notes},
+          {"folder", folder}};
+}
+
+/// A new or an empty folder, or one that may be overwritten.
+Result<std::filesystem::path> models_folder(const CompareModelsArguments& a) {
+  const std::filesystem::path folder = a.out;
+  std::error_code problem;
+  if (std::filesystem::exists(folder, problem) && !std::filesystem::is_directory(folder, problem))
+    return fail(ErrorCode::invalid_input, folder.string() + ": is not a folder");
+  if (auto made = make_folder(folder); !made) return tl::unexpected(made.error());
+  if (!a.overwrite && !std::filesystem::is_empty(folder, problem))
+    return fail(ErrorCode::invalid_input, folder.string() + ": is not empty (--force overwrites what is in it)");
+  return folder;
+}
+
+void say_models(Console& console, const ModelComparison& comparison) {
+  std::vector<TableRow> rows;
+  const auto acuity_at = [](const PackageResult& result, double set_delta_t_k) -> std::optional<double> {
+    for (const TodPoint& point : result.curve.points) {
+      if (same_contrast(point.set_delta_t_k, set_delta_t_k)) return acuity_per_mrad(point.fit);
+    }
+    return std::nullopt;
+  };
+  for (const PairedRatio& ratio : comparison.ratios) {
+    const auto apart = parts(ratio);
+    rows.push_back(
+        {fmt::format("{:g}", ratio.set_delta_t_k), fixed(acuity_at(comparison.result_a, ratio.set_delta_t_k), 3),
+         fixed(acuity_at(comparison.result_b, ratio.set_delta_t_k), 3), fixed(ratio.ratio, 3), range(ratio.ci95, 3),
+         !apart   ? "-"
+         : *apart ? "yes"
+                  : "not shown"});
+  }
+  console.table({"contrast (K)", "A (1/mrad)", "B (1/mrad)", "B / A", "95 %", "they part"}, rows);
+  if (comparison.parts_at_per_mrad)
+    console.text(
+        fmt::format("moduli differ by more than 0.01 from {:.3g} cycles/mrad on", *comparison.parts_at_per_mrad));
+  for (const auto& sentence : comparison.notes) console.note(sentence);
+}
+
+int run_compare_models(Console& console, const CompareModelsArguments& a, const Program& program) {
+  auto first = read_compared_model(a.a);
+  if (!first) return report_error(console, first.error());
+  auto second = read_compared_model(a.b);
+  if (!second) return report_error(console, second.error());
+  auto plan = load_plan(a.plan);
+  if (!plan) return report_error(console, plan.error());
+  if (program.common.seed_given) plan->seed = program.common.seed;
+  const auto loaded = LoadedPlan::load(*plan);
+  if (!loaded) return report_error(console, loaded.error());
+  const auto folder = models_folder(a);
+  if (!folder) return report_error(console, folder.error());
+  const EnhancementOptions options{
+      .on_package = [&](const std::string& name) { console.phase("simulating with " + name); },
+      .on_progress = [&](std::size_t done, std::size_t planned) { console.progress(done, planned); }};
+  const auto found = compare_models(*loaded, *std::move(first), *std::move(second), options, program.stop->token());
+  console.end_progress();
+  if (!found) return report_error(console, found.error());
+  const Json json = comparison_of_models_json(*found, folder->string());
+  if (auto written =
+          write_file_atomically(*folder / "models.html", render_html(model_comparison_page(*loaded, *found)));
+      !written)
+    return report_error(console, written.error());
+  if (auto written = write_file_atomically(*folder / "models.json", to_page(json)); !written)
+    return report_error(console, written.error());
+  if (console.json()) console.object(json);
+  say_models(console, *found);
+  console.text("page: " + (*folder / "models.html").string());
+  for (const PackageResult* result : {&found->result_a, &found->result_b}) {
+    if (!result->error) continue;
+    console.error(
+        fmt::format("{}: {} ({} trials)", one_line(result->name), result->error->message, result->trials.size()));
+    return exit_code(result->error->code);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_compare_models_command(CLI::App& app, Program& program) {
+  auto* command = app.add_subcommand("compare-models", "two sensors, observers or packages before the same scenes");
+  auto a = std::make_shared<CompareModelsArguments>();
+  command->add_option("A", a->a, "sensor, observer or package of stages: name or file; 'none' is no package")
+      ->required();
+  command->add_option("B", a->b, "another of the same kind")->required();
+  command->add_option("--plan", a->plan, "plan that says scenes, contrasts and trials")->capture_default_str();
+  command->add_option("--out", a->out, "folder for page and numbers")->capture_default_str();
+  command->add_flag("--force", a->overwrite, "overwrite what is in the folder");
+  finish_command(*command, program,
+                 [a, &program](Console& console) { return run_compare_models(console, *a, program); });
+}
+
+}  // namespace todbench

@@ -1,0 +1,10 @@
+// todbench dynamic
+#pragma once
+
+#include "bench/cli/commands.h"
+
+namespace todbench {
+
+void add_dynamic_command(CLI::App& app, Program& program);
+
+}  // namespace todbench

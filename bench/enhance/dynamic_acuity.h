@@ -1,0 +1,33 @@
+// Dynamic TOD: acuity before a target that moves, beside that before one that rests.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "bench/enhance/enhancement.h"
+#include "sim_devices/prediction/dynamic_trials.h"
+
+namespace todbench {
+
+/// One observer at one speed.
+struct DynamicPoint {
+  SequenceObserver observer = SequenceObserver::single_frame;
+  PsychometricFit fit;  ///< clusters are passes
+  /// Acuity over that of the same observer before a target that rests, paired over whole passes; nothing: a threshold
+  /// is missing. Of the resting target itself 1.
+  std::optional<double> ratio;
+  Interval ratio_ci95;
+};
+struct DynamicAcuity {
+  double speed_mrad_s = 0, speed_px = 0;  ///< pixels per frame
+  double smear_px = 0;                    ///< speed times time constant
+  std::vector<DynamicPoint> points;       ///< by SequenceObserver
+};
+
+/// As dynamic_trials() with its options; a speed of 0 is added in front where it is missing. Without sizes: eleven from
+/// 0.5 to 2.5 times the threshold of the resting target by a direct estimate.
+[[nodiscard]] Result<std::vector<DynamicAcuity>> dynamic_acuity(const SensorSpec& sensor, TemplateObserver& observer,
+                                                                DynamicTrialOptions options);
+
+}  // namespace todbench

@@ -1,0 +1,38 @@
+#include "sim_devices/module/module_plan.h"
+
+#include <nlohmann/json.hpp>
+
+#include "acquisition/core/safe_text.h"
+
+namespace todbench {
+
+std::string_view to_string(ModulePlace place) {
+  return place == ModulePlace::observer ? "observer" : "picture";
+}
+
+ModuleStageOptions stage_options(const ModulePlan& plan) {
+  nlohmann::json parameters = nlohmann::json::object();
+  for (const auto& [key, value] : plan.parameters) parameters[key] = value;
+  ModuleStageOptions options;
+  options.process.command = plan.command;
+  // A text that is no UTF-8 is handed over with its broken bytes replaced, not refused in the middle of a run.
+  options.process.header = nlohmann::json{
+      {"protocol", "todbench-module"},
+      {"version", 1},
+      {"place", std::string(to_string(plan.place))},
+      {"parameters",
+       parameters}}.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  options.process.limit = std::chrono::milliseconds(plan.limit_ms);
+  options.process.memory_limit_mib = static_cast<std::size_t>(plan.memory_mib);
+  options.process.network = plan.network ? ModuleNetwork::ours : ModuleNetwork::cut;
+  options.restart_frames = plan.restart_frames;
+  options.settle_frames = plan.settle_frames;
+  return options;
+}
+
+Error module_error(const ModulePlan& plan, const Error& error) {
+  const ErrorCode code = error.code == ErrorCode::internal ? ErrorCode::internal : ErrorCode::integrity;
+  return {code, "module '" + one_line(plan.command) + "': " + error.message};
+}
+
+}  // namespace todbench

@@ -1,0 +1,51 @@
+// A model observer before a simulated camera whose target moves at constant speed: passes of several frames.
+#pragma once
+
+#include <array>
+#include <stop_token>
+#include <string_view>
+#include <vector>
+
+#include "acquisition/core/accuracy.h"
+#include "hvs/observer/template_observer.h"
+#include "sim_devices/sensor/sensor_spec.h"
+#include "tod/psychometric/psychometric_fit.h"
+
+namespace todbench {
+
+/// What an observer does with the frames of a pass.
+enum class SequenceObserver {
+  single_frame,  ///< judges the first frame, and no other
+  tracking_sum,  ///< adds the scores of all frames, each at the true place of the target: pursuit, an upper bound
+  static_sum,    ///< averages all frames where the target is in the middle of the pass: persistence without pursuit
+};
+inline constexpr std::array all_sequence_observers{SequenceObserver::single_frame, SequenceObserver::tracking_sum,
+                                                   SequenceObserver::static_sum};
+[[nodiscard]] std::string_view to_string(SequenceObserver observer);
+
+struct DynamicTrialOptions {
+  double delta_t_k = 0;               ///< of every triangle, not 0
+  std::vector<double> sizes_pitch;    ///< each is shown four times in a picture, once in each orientation
+  std::vector<double> speeds_mrad_s;  ///< along x, 0 or more; passes to the right and to the left in turn
+  int passes = 24;                    ///< each in a sampling phase of its own; at least 2
+  int frames = 8;                     ///< of a pass, at least 1
+  Accuracy accuracy;
+  std::uint64_t seed = 1;
+  std::stop_token stop{};
+};
+
+/// Answers at one speed. Sizes in mrad; the cluster of a level is its pass.
+struct DynamicTrials {
+  double speed_mrad_s = 0, speed_px = 0;                                 ///< pixels per frame
+  std::array<std::vector<Level>, all_sequence_observers.size()> levels;  ///< by SequenceObserver
+};
+
+/// Frames are those of the simulated camera, counts and all. Frame k of a pass has the same random numbers at every
+/// speed, and every pass the same sampling phase in its first frame: ratios between speeds are paired. The picture lags
+/// by nothing: the transfer of the time constant has its mean lag taken out. Internal noise is drawn once for each
+/// decision, whatever the number of frames. `invalid_input` for options that cannot be met, a sensor with modules,
+/// microscan or super-resolution; `interrupted`.
+[[nodiscard]] Result<std::vector<DynamicTrials>> dynamic_trials(const SensorSpec& sensor, TemplateObserver& observer,
+                                                                const DynamicTrialOptions& options);
+
+}  // namespace todbench
