@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "bench/plan/descriptions.h"
+#include "bench/plan/instrument_description.h"
 #include "bench/plan/plan_keys.h"
 
 namespace todbench {
@@ -49,6 +50,20 @@ std::vector<ValueMistake> read_plates(const std::vector<std::string>& references
   return mistakes;
 }
 
+/// Nothing is read of an instrument that is not talked to.
+std::vector<ValueMistake> read_instrument(ResourceKind kind, const std::string& reference, const Plan& plan,
+                                          const ResourceFinder& find, PlanParts& parts) {
+  if (plan.target.kind != TargetKind::scpi) return {};
+  const bool black_body = kind == ResourceKind::black_body;
+  InstrumentTable& table = black_body ? parts.black_body : parts.stage;
+  auto mistakes = keep(read_part(kind, reference, find, parts, parse_instrument), table);
+  if (!mistakes.empty()) return mistakes;
+  const auto expected = black_body ? InstrumentKind::black_body : InstrumentKind::stage;
+  if (table.kind == expected) return {};
+  return {{std::nullopt, reference + ": is of kind \"" + std::string(to_string(table.kind)) + "\", expected \"" +
+                             std::string(to_string(expected)) + "\""}};
+}
+
 /// The parts whose names are not those of `known`.
 Result<void> read_changed(const Plan& plan, const Plan* known, const ResourceFinder& find, PlanParts& parts) {
   for (const PlanSection& section : plan_sections()) {
@@ -56,7 +71,10 @@ Result<void> read_changed(const Plan& plan, const Plan* known, const ResourceFin
       const auto* one = std::get_if<ResourceKey>(&key.type);
       const auto* many = std::get_if<ResourcesKey>(&key.type);
       if (one == nullptr && many == nullptr) continue;
-      if (known != nullptr && key.place.get(plan, 0) == key.place.get(*known, 0)) continue;
+      const bool instrument =
+          one != nullptr && (one->kind == ResourceKind::black_body || one->kind == ResourceKind::stage);
+      const bool new_kind = instrument && known != nullptr && known->target.kind != plan.target.kind;
+      if (known != nullptr && !new_kind && key.place.get(plan, 0) == key.place.get(*known, 0)) continue;
       const auto mistakes = read_parts(one != nullptr ? one->kind : many->kind, plan, find, parts);
       if (!mistakes.empty()) return tl::unexpected(error_of({.at = {&section, &key, 0}, .mistake = mistakes.front()}));
     }
@@ -75,6 +93,10 @@ std::vector<ValueMistake> read_parts(ResourceKind kind, const Plan& plan, const 
       return keep(read_part(kind, plan.observer, find, parts, parse_observer), parts.observer);
     case ResourceKind::sensor:
       return keep(read_part(kind, plan.simulation.sensor, find, parts, parse_sensor), parts.sensor);
+    case ResourceKind::black_body:
+      return read_instrument(kind, plan.target.black_body_table, plan, find, parts);
+    case ResourceKind::stage:
+      return read_instrument(kind, plan.target.stage_table, plan, find, parts);
     case ResourceKind::plan:
     case ResourceKind::atmosphere:
     case ResourceKind::scene:

@@ -14,6 +14,7 @@
 #include "bench/plan/resources.h"
 #include "hvs/observer/template_observer.h"
 #include "sim_devices/sensor/sensor_spec.h"
+#include "tod/instruments/instrument_table.h"
 #include "tod/plate/target_plate.h"
 
 namespace todbench {
@@ -23,6 +24,8 @@ struct PlanParts {
   std::vector<TargetPlate> plates;  ///< in the order of the plan, each with a name of its own
   TemplateObserverSpec observer;
   SensorSpec sensor;  ///< with its own microscan
+  /// Of a plan with a target of kind scpi; else whatever.
+  InstrumentTable black_body{}, stage{};
   /// The texts they were read from, by kind and reference.
   std::map<std::pair<ResourceKind, std::string>, Resource> sources{};
 };
