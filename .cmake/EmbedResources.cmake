@@ -6,7 +6,8 @@ set(rows "")
 set(count 0)
 foreach(entry "plate:tod/plate" "sensor:sim_devices/sensors" "observer:hvs/observers" "plan:bench/plans"
         "atmosphere:sim_devices/atmosphere:json" "scene:sim_devices/scenes" "target:sim_devices/targets"
-        "target_set:sim_devices/target_sets")
+        "target_set:sim_devices/target_sets" "black_body:tod/instruments/black_bodies"
+        "stage:tod/instruments/stages")
   string(REPLACE ":" ";" entry "${entry}")
   list(GET entry 0 kind)
   list(GET entry 1 folder)

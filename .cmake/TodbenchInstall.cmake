@@ -7,7 +7,8 @@ set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
 set(todbench_data "${CMAKE_INSTALL_DATADIR}/todbench")
 install(TARGETS todbench COMPONENT program)
 foreach(entry "plates:tod/plate" "sensors:sim_devices/sensors" "observers:hvs/observers" "plans:bench/plans" "sweeps:bench/sweeps"
-        "scenes:sim_devices/scenes" "targets:sim_devices/targets" "target_sets:sim_devices/target_sets")
+        "scenes:sim_devices/scenes" "targets:sim_devices/targets" "target_sets:sim_devices/target_sets"
+        "instruments/black_bodies:tod/instruments/black_bodies" "instruments/stages:tod/instruments/stages")
   string(REPLACE ":" ";" entry "${entry}")
   list(GET entry 0 kind)
   list(GET entry 1 folder)

@@ -187,6 +187,7 @@ int run(int argc, char** argv) {
   add_observer_command(app, program);
   add_reference_set_command(app, program);
   add_sweep_command(app, program);
+  add_instrument_command(app, program);
   add_module_command(app, program);
   add_enhance_command(app, program);
   add_compare_models_command(app, program);

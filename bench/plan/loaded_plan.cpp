@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "bench/plan/descriptions.h"
+#include "bench/plan/instrument_description.h"
 #include "bench/plan/plan_keys.h"
 
 namespace todbench {
@@ -53,9 +54,16 @@ std::vector<ValueMistake> read_plates(const std::vector<std::string>& references
   return mistakes;
 }
 
+/// Of keys that name one part: whether the plan needs it.
+bool is_asked_for(ResourceKind kind, const Plan& plan) {
+  if (kind == ResourceKind::plate) return plan.measures.mtf;
+  if (kind == ResourceKind::black_body || kind == ResourceKind::stage) return plan.target.kind == TargetKind::scpi;
+  return true;
+}
+
 std::vector<ValueMistake> read_mtf_plate(const Plan& plan, const ResourceFinder& find, PlanParts& parts) {
   parts.mtf_plate.reset();
-  if (!plan.measures.mtf) return {};
+  if (!is_asked_for(ResourceKind::plate, plan)) return {};
   Result<TargetPlate> plate = read_part(ResourceKind::plate, plan.measures.mtf_plate, find, parts, parse_plate);
   if (!plate) return {{std::nullopt, plate.error().message}};
   if (plate->rectangles.empty())
@@ -69,16 +77,29 @@ std::vector<ValueMistake> read_mtf_plate(const Plan& plan, const ResourceFinder&
   return {};
 }
 
+/// Nothing is read of an instrument that is not talked to.
+std::vector<ValueMistake> read_instrument(ResourceKind kind, const std::string& reference, const Plan& plan,
+                                          const ResourceFinder& find, PlanParts& parts) {
+  if (!is_asked_for(kind, plan)) return {};
+  const bool black_body = kind == ResourceKind::black_body;
+  InstrumentTable& table = black_body ? parts.black_body : parts.stage;
+  auto mistakes = keep(read_part(kind, reference, find, parts, parse_instrument), table);
+  if (!mistakes.empty()) return mistakes;
+  const auto expected = black_body ? InstrumentKind::black_body : InstrumentKind::stage;
+  if (table.kind == expected) return {};
+  return {{std::nullopt, reference + ": is of kind \"" + std::string(to_string(table.kind)) + "\", expected \"" +
+                             std::string(to_string(expected)) + "\""}};
+}
+
 /// The parts whose names are not those of `known`.
 Result<void> read_changed(const Plan& plan, const Plan* known, const ResourceFinder& find, PlanParts& parts) {
   for (const PlanSection& section : plan_sections()) {
     for (const PlanKey& key : section.keys) {
       const auto* one = std::get_if<ResourceKey>(&key.type);
       if (one == nullptr && !std::holds_alternative<ResourcesKey>(key.type)) continue;
-      const bool of_mtf = one != nullptr && one->kind == ResourceKind::plate;
-      const bool same = known != nullptr && key.place.get(plan, 0) == key.place.get(*known, 0) &&
-                        (!of_mtf || plan.measures.mtf == known->measures.mtf);
-      if (same) continue;
+      if (known != nullptr && key.place.get(plan, 0) == key.place.get(*known, 0) &&
+          (one == nullptr || is_asked_for(one->kind, plan) == is_asked_for(one->kind, *known)))
+        continue;
       const auto mistakes = read_parts(key.type, plan, find, parts);
       if (!mistakes.empty()) return tl::unexpected(error_of({.at = {&section, &key, 0}, .mistake = mistakes.front()}));
     }
@@ -99,6 +120,10 @@ std::vector<ValueMistake> read_parts(const KeyType& type, const Plan& plan, cons
       return keep(read_part(kind, plan.observer, find, parts, parse_observer), parts.observer);
     case ResourceKind::sensor:
       return keep(read_part(kind, plan.simulation.sensor, find, parts, parse_sensor), parts.sensor);
+    case ResourceKind::black_body:
+      return read_instrument(kind, plan.target.black_body_table, plan, find, parts);
+    case ResourceKind::stage:
+      return read_instrument(kind, plan.target.stage_table, plan, find, parts);
     case ResourceKind::plan:
     case ResourceKind::atmosphere:
     case ResourceKind::scene:
@@ -107,6 +132,14 @@ std::vector<ValueMistake> read_parts(const KeyType& type, const Plan& plan, cons
       break;
   }
   return {};
+}
+
+std::vector<TargetPlate> LoadedPlan::shown_plates() const {
+  std::vector<TargetPlate> plates = parts_.plates;
+  const auto& added = parts_.mtf_plate;
+  const auto there = [&](const TargetPlate& plate) { return plate.name == added->name; };
+  if (added && std::none_of(plates.begin(), plates.end(), there)) plates.push_back(*added);
+  return plates;
 }
 
 LoadedPlan::LoadedPlan(Plan plan, PlanParts parts)

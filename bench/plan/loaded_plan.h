@@ -15,6 +15,7 @@
 #include "bench/plan/resources.h"
 #include "hvs/observer/template_observer.h"
 #include "sim_devices/sensor/sensor_spec.h"
+#include "tod/instruments/instrument_table.h"
 #include "tod/plate/target_plate.h"
 
 namespace todbench {
@@ -25,6 +26,7 @@ struct PlanParts {
   TemplateObserverSpec observer;
   SensorSpec sensor;                       ///< with its own microscan
   std::optional<TargetPlate> mtf_plate{};  ///< where [measures] asks for an MTF
+  InstrumentTable black_body{}, stage{};    ///< of a plan with a target of kind scpi; else whatever
   /// The texts they were read from, by kind and reference.
   std::map<std::pair<ResourceKind, std::string>, Resource> sources{};
 };
@@ -43,6 +45,8 @@ class LoadedPlan {
 
   [[nodiscard]] const Plan& plan() const { return plan_; }
   [[nodiscard]] const std::vector<TargetPlate>& plates() const { return parts_.plates; }
+  /// Every plate that a target has to be able to show: of the trials and of the MTF.
+  [[nodiscard]] std::vector<TargetPlate> shown_plates() const;
   [[nodiscard]] const TemplateObserverSpec& observer() const { return parts_.observer; }
   /// With the microscan of the plan.
   [[nodiscard]] const SensorSpec& sensor() const { return sensor_; }

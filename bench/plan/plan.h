@@ -46,8 +46,10 @@ inline constexpr std::array all_target_kinds{TargetKind::scpi, TargetKind::promp
 /// [target]: what is shown, in every combination.
 struct TargetPlan {
   TargetKind kind = TargetKind::scene;
-  std::string black_body;                               ///< "HOST:PORT" of the SCPI instrument; required for kind scpi
-  std::string stage;                                    ///< the same for the stage that moves the plate
+  std::string black_body;                            ///< address of the instrument; required for kind scpi
+  std::string stage;                                 ///< the same for the stage that moves the plate
+  std::string black_body_table = "scpi-black-body";  ///< its words, by name or file
+  std::string stage_table = "scpi-stage";
   double distance_m = 2;                                ///< entrance pupil to plate; required in a file
   std::vector<std::string> plates{"tcat-a", "tcat-b"};  ///< names or files
   std::vector<Mounting> mountings{all_mountings.begin(), all_mountings.end()};

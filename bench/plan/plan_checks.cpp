@@ -1,32 +1,30 @@
 #include "bench/plan/plan_checks.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "bench/text/text.h"
+#include "tod/instruments/instrument_line.h"
 #include "tod/psychometric/tod_curve.h"
 
 namespace todbench {
 namespace {
 
-bool is_host_and_port(std::string_view address) {
-  const std::size_t colon = address.rfind(':');
-  if (colon == std::string_view::npos || colon == 0) return false;
-  const std::string_view port = address.substr(colon + 1);
-  int number = 0;
-  const auto [end, problem] = std::from_chars(port.data(), port.data() + port.size(), number);
-  return problem == std::errc() && end == port.data() + port.size() && number >= 1 && number <= 65535 &&
-         address.find(' ') == std::string_view::npos;
+constexpr std::string_view address_forms = "\"HOST:PORT\", \"serial:/dev/NAME\" or \"vxi11:HOST\"";
+
+/// A host alone is no address here: a plan says the port.
+bool is_address(const std::string& text) {
+  const auto address = instrument_address(text, 0);
+  return address && (address->kind != InstrumentAddress::Kind::tcp || address->port != 0);
 }
 
 ValueMistakes check_address(const Plan& plan, const std::string& address) {
   if (address.empty()) {
     if (plan.target.kind != TargetKind::scpi) return {};
-    return {{std::nullopt, "needed for kind \"scpi\", expected \"HOST:PORT\""}};
+    return {{std::nullopt, "needed for kind \"scpi\", expected " + std::string(address_forms)}};
   }
-  if (is_host_and_port(address)) return {};
-  return {{std::nullopt, "expected \"HOST:PORT\", found \"" + one_line(address) + "\""}};
+  if (is_address(address)) return {};
+  return {{std::nullopt, "expected " + std::string(address_forms) + ", found \"" + one_line(address) + "\""}};
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ using ValueMistakes = std::vector<ValueMistake>;
 
 /// SCHEME:NAME, or empty.
 [[nodiscard]] ValueMistakes check_camera_id(const Plan& plan, std::size_t row);
-/// HOST:PORT; needed for kind scpi.
+/// An address of an instrument; needed for kind scpi.
 [[nodiscard]] ValueMistakes check_black_body(const Plan& plan, std::size_t row);
 [[nodiscard]] ValueMistakes check_stage(const Plan& plan, std::size_t row);
 /// None of 0 K, none twice.

@@ -22,6 +22,10 @@ std::string_view to_string(ResourceKind kind) {
       return "target";
     case ResourceKind::target_set:
       return "set of targets";
+    case ResourceKind::black_body:
+      return "blackbody";
+    case ResourceKind::stage:
+      return "stage";
   }
   return "";
 }

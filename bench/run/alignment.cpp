@@ -174,7 +174,7 @@ Result<void> align_plan(const Plan& plan, const AlignmentListener& listener, std
   auto inputs = experiment_inputs(*loaded, planner);
   if (!inputs) return tl::unexpected(inputs.error());
   if (listener.on_phase) listener.on_phase("opening " + plan.camera.id);
-  auto bench = open_bench(plan, inputs->plates, stop, {}, listener.on_phase);
+  auto bench = open_bench(*loaded, stop, {}, listener.on_phase);
   if (!bench) return tl::unexpected(bench.error());
   if (listener.on_open) listener.on_open(bench->camera->info());
   if (listener.on_frame) bench->camera = observed_source(std::move(bench->camera), listener.on_frame);

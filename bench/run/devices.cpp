@@ -73,12 +73,15 @@ class RemappedTarget final : public Target {
   std::map<double, double> shown_;
 };
 
-Result<std::unique_ptr<Target>> open_target(const Plan& plan, std::stop_token stop, const AskOperator& ask_operator,
-                                            const OnTargetWait& on_wait) {
+Result<std::unique_ptr<Target>> open_target(const LoadedPlan& loaded, std::stop_token stop,
+                                            const AskOperator& ask_operator, const OnTargetWait& on_wait) {
+  const Plan& plan = loaded.plan();
   if (plan.target.kind == TargetKind::prompt) return prompt_target(ask_operator ? ask_operator : ask_at_terminal());
   ScpiTargetOptions options;
   options.black_body = plan.target.black_body;
   options.stage = plan.target.stage;
+  options.black_body_table = loaded.parts().black_body;
+  options.stage_table = loaded.parts().stage;
   options.settle_timeout = std::chrono::milliseconds(static_cast<long>(plan.target.settle_timeout_s * 1000));
   options.poll_interval = std::chrono::milliseconds(10);
   options.on_wait = on_wait;
@@ -134,9 +137,9 @@ OpenedBench simulated_bench(std::shared_ptr<const SensorModel> model, const std:
   return bench;
 }
 
-Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>& plates, std::stop_token stop,
-                               const ExperimentHost& host, const SayProgress& on_progress,
-                               const OnTargetWait& on_wait) {
+Result<OpenedBench> open_bench(const LoadedPlan& loaded, std::stop_token stop, const ExperimentHost& host,
+                               const SayProgress& on_progress, const OnTargetWait& on_wait) {
+  const Plan& plan = loaded.plan();
   BenchHostOptions hosting{.pause = host.pause};
   if (plan.target.kind == TargetKind::scene) {
     const auto sensor = camera_name(plan.camera.id, camera_scheme::sim);
@@ -150,7 +153,7 @@ Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>&
     auto accuracy = accuracy_of(plan);
     if (!accuracy) return tl::unexpected(accuracy.error());
     auto model = std::make_shared<const SensorModel>(*spec, full_plan(*spec, {}, {}), *accuracy, plan.seed);
-    auto bench = simulated_bench(std::move(model), plates, plan.target.distance_m, {});
+    auto bench = simulated_bench(std::move(model), loaded.shown_plates(), plan.target.distance_m, {});
     bench.host = bench_host(hosting);
     return bench;
   }
@@ -171,7 +174,7 @@ Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>&
     bench.camera = std::move(returning);
   }
   bench.host = bench_host(hosting);
-  auto target = open_target(plan, stop, host.ask_operator, on_wait);
+  auto target = open_target(loaded, stop, host.ask_operator, on_wait);
   if (!target) return fail("opening the target", target.error());
   bench.target = std::move(*target);
   return bench;

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "acquisition/core/camera_registry.h"
-#include "bench/plan/plan.h"
+#include "bench/plan/loaded_plan.h"
 #include "bench/run/experiment_host.h"
 #include "sim_devices/sensor/simulated_camera.h"
 #include "tod/measurement/measurement_host.h"
@@ -40,9 +40,9 @@ struct OpenedBench {
 /// Opens what the plan names and writes its settings into the camera. Errors: `not_found`, `invalid_input` (a target
 /// that cannot work with this camera, a setting that is refused), `interrupted`.
 /// `host` commands what is measured with it; `on_wait` is told while the target takes its time.
-[[nodiscard]] Result<OpenedBench> open_bench(const Plan& plan, const std::vector<TargetPlate>& plates,
-                                             std::stop_token stop, const ExperimentHost& host = {},
-                                             const SayProgress& on_progress = {}, const OnTargetWait& on_wait = {});
+[[nodiscard]] Result<OpenedBench> open_bench(const LoadedPlan& loaded, std::stop_token stop,
+                                             const ExperimentHost& host = {}, const SayProgress& on_progress = {},
+                                             const OnTargetWait& on_wait = {});
 
 /// A simulated sensor behind a scene. `shown_delta_t_k`: set-point -> contrast really shown, so that a twin shows what
 /// a camera saw; set-points that are not in it are shown as they are.

@@ -349,7 +349,7 @@ Result<ExperimentOutcome> measure_plan(const LoadedPlan& loaded, const Experimen
   if (!inputs) return tl::unexpected(inputs.error());
   if (auto possible = check_tolerance(plan, *inputs); !possible) return tl::unexpected(possible.error());
   if (listener.on_phase) listener.on_phase("opening " + plan.camera.id);
-  auto bench = open_bench(plan, shown_plates(*inputs), stop, options.host, listener.on_phase, listener.on_wait);
+  auto bench = open_bench(loaded, stop, options.host, listener.on_phase, listener.on_wait);
   if (!bench) return tl::unexpected(bench.error());
   return measure_on_bench(loaded, *inputs, *std::move(bench), options, listener, std::move(stop));
 }

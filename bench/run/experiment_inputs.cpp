@@ -28,13 +28,6 @@ Result<void> check_geometry(const MeasurementOptions& options, const ExperimentI
 
 }  // namespace
 
-std::vector<TargetPlate> shown_plates(const ExperimentInputs& inputs) {
-  std::vector<TargetPlate> plates = inputs.plates;
-  const auto there = [&](const TargetPlate& plate) { return plate.name == inputs.mtf_plate->name; };
-  if (inputs.mtf_plate && std::none_of(plates.begin(), plates.end(), there)) plates.push_back(*inputs.mtf_plate);
-  return plates;
-}
-
 Result<EffectPlan> planned_effects(const Plan& plan, const SensorSpec& sensor, const TemplateObserverSpec& observer,
                                    EffectPlanner& planner) {
   return planner.plan(sensor, observer, {.delta_t_k = plan.target.delta_t_k, .motion = plan.simulation.motion},

@@ -28,9 +28,6 @@ struct ExperimentInputs {
   Accuracy accuracy;
 };
 
-/// Every plate that a target has to be able to show.
-[[nodiscard]] std::vector<TargetPlate> shown_plates(const ExperimentInputs& inputs);
-
 /// The planner's decisions for what a plan shows. Errors as plan_effects().
 [[nodiscard]] Result<EffectPlan> planned_effects(const Plan& plan, const SensorSpec& sensor,
                                                  const TemplateObserverSpec& observer, EffectPlanner& planner);

@@ -66,7 +66,7 @@ Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loade
   auto response = simulated_responses(*model, plan, inputs.plates, options, stop);
   if (!response) return tl::unexpected(response.error());
   options.contrast_response = *std::move(response);
-  OpenedBench bench = simulated_bench(model, shown_plates(inputs), plan.target.distance_m, {}, inputs.motion);
+  OpenedBench bench = simulated_bench(model, loaded.shown_plates(), plan.target.distance_m, {}, inputs.motion);
   auto measures = physical_measures(plan, options, inputs.mtf_plate, bench, frame, std::move(stop));
   if (measures && *measures && (*measures)->mtf) add_closed_form(*(*measures)->mtf, *model, inputs);
   return measures;

@@ -210,6 +210,10 @@ Result<void> SessionFolder::write_plan(const LoadedPlan& loaded) {
                                                                 {ResourceKind::sensor, &stored.simulation.sensor}};
   if (stored.measures.mtf) references.emplace_back(ResourceKind::plate, &stored.measures.mtf_plate);
   for (std::string& plate : stored.target.plates) references.emplace_back(ResourceKind::plate, &plate);
+  if (stored.target.kind == TargetKind::scpi) {
+    references.emplace_back(ResourceKind::black_body, &stored.target.black_body_table);
+    references.emplace_back(ResourceKind::stage, &stored.target.stage_table);
+  }
   for (const auto& [kind, reference] : references) {
     Result<std::string> copied = copies.copy(kind, *reference, loaded.parts().sources.at({kind, *reference}).text);
     if (!copied) return tl::unexpected(copied.error());

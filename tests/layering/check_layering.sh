@@ -47,7 +47,7 @@ BEGIN {
   may["sim_devices/lab"] = core " acquisition/aravis acquisition/v4l2 tod/plate sim_devices/scene sim_devices/sensor " lab
   science = tod " sim_devices/scene sim_devices/module sim_devices/atmosphere sim_devices/sensor sim_devices/prediction"
   may["bench/text"] = core " tod/psychometric"
-  may["bench/plan"] = science " bench/text"
+  may["bench/plan"] = science " tod/instruments bench/text"
   may["bench/judgement"] = science " bench/text bench/plan"
   may["bench/session"] = science " bench/text bench/plan bench/judgement"
   may["bench/report"] = science " bench/text bench/plan bench/judgement bench/session"
@@ -62,7 +62,7 @@ BEGIN {
   may["bench/doctor"] = core " bench/text"
   may["bench/enhance"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
   bench = "bench/text bench/plan bench/judgement bench/session bench/report bench/observer_fit bench/reference_set bench/run bench/serve bench/studies bench/sweep bench/enhance bench/history"
-  may["bench/cli"] = science " acquisition/recording bench/doctor " bench
+  may["bench/cli"] = science " acquisition/recording tod/instruments bench/doctor " bench
   may["bench/gui/presenters"] = science " " bench
   may["bench/gui/views"] = science " " bench " bench/gui/presenters"
   may["bench/gui"] = science " " bench " bench/gui/presenters bench/gui/views"

@@ -1,46 +1,17 @@
 #include "tod/instruments/scpi_client.h"
 
-#include <netdb.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
-#include <sys/socket.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <memory>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 namespace todbench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-struct Endpoint {
-  std::string host, port;
-};
-
-std::optional<Endpoint> endpoint_from(const std::string& text) {
-  Endpoint endpoint{text, "5025"};
-  const auto colon = text.rfind(':');
-  const auto bracket = text.rfind(']');
-  const bool has_port = colon != std::string::npos && (bracket == std::string::npos || colon > bracket);
-  if (has_port) endpoint = {text.substr(0, colon), text.substr(colon + 1)};
-  if (endpoint.host.size() > 2 && endpoint.host.front() == '[' && endpoint.host.back() == ']')
-    endpoint.host = endpoint.host.substr(1, endpoint.host.size() - 2);
-  unsigned port = 0;
-  const char* end = endpoint.port.data() + endpoint.port.size();
-  const auto parsed = std::from_chars(endpoint.port.data(), end, port);
-  if (endpoint.host.empty() || parsed.ec != std::errc{} || parsed.ptr != end || port < 1 || port > 65535) return {};
-  return endpoint;
-}
-
-std::string reason(int error) {
-  return std::generic_category().message(error);
-}
 
 std::string in_seconds(std::chrono::milliseconds time) {
   std::array<char, 32> text{};
@@ -56,29 +27,6 @@ std::string printable(std::string_view text) {
   return "'" + shown + "'";
 }
 
-Result<Descriptor> connect_to(const addrinfo& address, Clock::time_point deadline, const std::stop_token& stop) {
-  Descriptor socket(::socket(address.ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  if (!socket.is_open()) return fail(ErrorCode::not_found, reason(errno));
-  if (::connect(socket.get(), address.ai_addr, address.ai_addrlen) != 0) {
-    if (errno != EINPROGRESS) return fail(ErrorCode::not_found, reason(errno));
-    switch (wait_on(socket.get(), WaitFor::writing, deadline, stop)) {
-      case Waited::stopped:
-        return fail(ErrorCode::interrupted, "stopped on request");
-      case Waited::timeout:
-        return fail(ErrorCode::not_found, "no connection in time");
-      case Waited::ready:
-        break;
-    }
-    int error = 0;
-    socklen_t size = sizeof error;
-    ::getsockopt(socket.get(), SOL_SOCKET, SO_ERROR, &error, &size);
-    if (error != 0) return fail(ErrorCode::not_found, reason(error));
-  }
-  const int on = 1;  // commands are a few bytes: never hold them back for a fuller packet
-  ::setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-  return socket;
-}
-
 // The error code of a SYST:ERR? answer such as -222,"Data out of range"; none when the line is something else.
 std::optional<int> error_report(std::string_view line) {
   if (!line.empty() && line.front() == '+') line.remove_prefix(1);
@@ -89,18 +37,21 @@ std::optional<int> error_report(std::string_view line) {
   return code;
 }
 
-std::optional<double> number_from(std::string_view text) {
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-  double value = 0;
-  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (parsed.ec != std::errc{} || parsed.ptr != text.data() + text.size() || !std::isfinite(value)) return {};
-  return value;
+bool any_begins(std::string_view answer, const std::vector<std::string>& beginnings) {
+  return std::any_of(beginnings.begin(), beginnings.end(),
+                     [&](const std::string& beginning) { return answer.starts_with(beginning); });
+}
+
+std::string refusal(std::string_view text, std::string_view answer) {
+  return std::string(text) + ": the instrument refuses: " + printable(answer);
 }
 
 }  // namespace
 
 std::string to_text(const ScpiIdentity& identity) {
-  return identity.vendor + " " + identity.model + ", serial " + identity.serial;
+  std::string text = identity.vendor;
+  if (!identity.model.empty()) text += (text.empty() ? "" : " ") + identity.model;
+  return identity.serial.empty() ? text : text + ", serial " + identity.serial;
 }
 
 std::vector<std::string> scpi_fields(std::string_view answer) {
@@ -132,27 +83,23 @@ std::string scpi_quoted(std::string_view text) {
   return quoted + "\"";
 }
 
+ScpiClient::ScpiClient(std::unique_ptr<InstrumentLine> line, ScpiClientOptions options, InstrumentSpeech speech)
+    : line_(std::move(line)), options_(options), speech_(std::move(speech)) {
+  if (speech_.answer_timeout_s)
+    options_.answer_timeout = std::chrono::milliseconds(std::llround(*speech_.answer_timeout_s * 1000));
+}
+
 Result<ScpiClient> ScpiClient::connect(const std::string& endpoint, const ScpiClientOptions& options,
-                                       const std::stop_token& stop) {
-  const auto place = endpoint_from(endpoint);
-  if (!place) return fail(ErrorCode::invalid_input, "'" + endpoint + "' is not host:port");
-  addrinfo hints{};
-  hints.ai_family = AF_UNSPEC;
-  hints.ai_socktype = SOCK_STREAM;
-  addrinfo* found = nullptr;
-  if (const int error = ::getaddrinfo(place->host.c_str(), place->port.c_str(), &hints, &found); error != 0)
-    return fail(ErrorCode::not_found, "connecting to " + endpoint + ": " + ::gai_strerror(error));
-  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> addresses(found, &::freeaddrinfo);
-
-  const auto deadline = Clock::now() + options.connect_timeout;
-  Result<Descriptor> socket = fail(ErrorCode::not_found, "no address");
-  for (const addrinfo* address = addresses.get(); address != nullptr && !socket; address = address->ai_next) {
-    socket = connect_to(*address, deadline, stop);
-    if (!socket && socket.error().code == ErrorCode::interrupted) break;
+                                       const std::stop_token& stop, const InstrumentSpeech& speech) {
+  const auto address = instrument_address(endpoint, speech.port);
+  if (!address) return tl::unexpected(address.error());
+  auto line = open_line(*address, speech.serial, Clock::now() + options.connect_timeout, stop);
+  if (!line) {
+    Error error = line.error();
+    if (error.code != ErrorCode::interrupted) error.code = ErrorCode::not_found;
+    return fail("connecting to " + endpoint, error);
   }
-  if (!socket) return fail("connecting to " + endpoint, socket.error());
-
-  ScpiClient client(std::move(*socket), options);
+  ScpiClient client(std::move(*line), options, speech);
   if (auto identified = client.identify(stop); !identified) {
     Error error = identified.error();
     if (error.code != ErrorCode::interrupted) error.code = ErrorCode::not_found;
@@ -161,114 +108,185 @@ Result<ScpiClient> ScpiClient::connect(const std::string& endpoint, const ScpiCl
   return client;
 }
 
+Result<ScpiClient::TimePoint> ScpiClient::begin(const std::stop_token& stop) {
+  if (!line_) return fail(ErrorCode::disconnected, "the connection is closed");
+  const auto until = last_exchange_ + std::chrono::milliseconds(std::llround(speech_.pause_s * 1000));
+  // No descriptor: nothing but a stop request ends the wait early.
+  if (Clock::now() < until && wait_on(-1, WaitFor::reading, until, stop) == Waited::stopped)
+    return give_up({ErrorCode::interrupted, "stopped on request"});
+  return Clock::now() + options_.answer_timeout;
+}
+
+bool ScpiClient::reports_with_command() const {
+  return !speech_.error_query.empty() && speech_.errors_asked == InstrumentSpeech::ErrorsAsked::with_command && line_ &&
+         !line_->one_at_a_time();
+}
+
 Result<void> ScpiClient::identify(const std::stop_token& stop) {
-  const auto deadline = Clock::now() + options_.answer_timeout;
+  const auto deadline = begin(stop);
+  if (!deadline) return tl::unexpected(deadline.error());
   // Errors that others left in the queue are not ours.
-  if (auto sent = send("*CLS\n*IDN?\n", deadline, stop); !sent) return tl::unexpected(sent.error());
-  auto line = receive_line(deadline, stop);
-  if (!line) return fail("*IDN?", line.error());
+  const std::string clear = speech_.clear.empty() ? "" : speech_.clear + speech_.ending;
+  const std::string ask = speech_.identity_query.empty() ? "" : speech_.identity_query + speech_.ending;
+  if (clear.empty() && ask.empty()) return {};
+  if (line_->one_at_a_time() && !clear.empty()) {
+    if (auto sent = send(clear, *deadline, stop); !sent) return sent;
+    if (ask.empty()) return {};
+    if (auto sent = send(ask, *deadline, stop); !sent) return sent;
+  } else if (auto sent = send(clear + ask, *deadline, stop); !sent) {
+    return sent;
+  }
+  if (ask.empty()) return {};
+  auto line = receive_line(*deadline, stop);
+  if (!line) return give_up(with_context(speech_.identity_query, line.error()));
+  last_exchange_ = Clock::now();
+  const auto wrong = [&](const std::string& expected) {
+    return give_up({ErrorCode::not_found, speech_.identity_query + " answered " + printable(*line) + ", " + expected});
+  };
+  if (line->find(speech_.identity_contains) == std::string::npos)
+    return wrong("expected an answer with '" + speech_.identity_contains + "'");
+  if (!speech_.identity_of_four) {
+    identity_.model = printable(*line);
+    return {};
+  }
   auto fields = scpi_fields(*line);
-  if (fields.size() != 4 || fields[1].empty() || fields[2].empty())
-    return give_up(ErrorCode::not_found, "*IDN? answered " + printable(*line) + ", not vendor,model,serial,firmware");
+  if (fields.size() != 4 || fields[1].empty() || fields[2].empty()) return wrong("not vendor,model,serial,firmware");
   identity_ = {fields[0], fields[1], fields[2], fields[3]};
   return {};
 }
 
 Result<void> ScpiClient::command(std::string_view text, const std::stop_token& stop) {
-  const auto deadline = Clock::now() + options_.answer_timeout;
+  const auto deadline = begin(stop);
+  if (!deadline) return tl::unexpected(deadline.error());
   // Two lines in one packet: after a syntax error the rest of the same line would be thrown away with it (IEEE 488.2).
-  if (auto sent = send(std::string(text) + "\nSYST:ERR?\n", deadline, stop); !sent) return sent;
-  auto report = receive_line(deadline, stop);
-  if (!report) return fail(text, report.error());
-  const auto code = error_report(*report);
-  if (!code) return give_up(ErrorCode::disconnected, std::string(text) + ": SYST:ERR? answered " + printable(*report));
-  if (*code != 0)
-    return fail(ErrorCode::invalid_input, std::string(text) + ": the instrument refuses: " + printable(*report));
-  return {};
+  const bool together = reports_with_command();
+  const std::string report_ask = together ? speech_.error_query + speech_.ending : "";
+  if (auto sent = send(std::string(text) + speech_.ending + report_ask, *deadline, stop); !sent) return sent;
+  if (!speech_.acknowledgement.empty()) {
+    auto answer = receive_line(*deadline, stop);
+    if (!answer) return give_up(with_context(text, answer.error()));
+    if (*answer != speech_.acknowledgement) return fail(ErrorCode::invalid_input, refusal(text, *answer));
+  }
+  if (!together) {
+    last_exchange_ = Clock::now();
+    return ask_for_errors(text, stop);
+  }
+  auto report = receive_line(*deadline, stop);
+  if (!report) return give_up(with_context(text, report.error()));
+  return check_report(text, *report);
 }
 
 Result<std::string> ScpiClient::query(std::string_view text, const std::stop_token& stop) {
-  const auto deadline = Clock::now() + options_.answer_timeout;
-  if (auto sent = send(std::string(text) + "\nSYST:ERR?\n", deadline, stop); !sent) return tl::unexpected(sent.error());
-  auto answer = receive_line(deadline, stop);
-  if (!answer) return fail(text, answer.error());
+  return reports_with_command() ? query_with_report(text, stop) : query_before_report(text, stop);
+}
+
+Result<std::string> ScpiClient::query_with_report(std::string_view text, const std::stop_token& stop) {
+  const auto deadline = begin(stop);
+  if (!deadline) return tl::unexpected(deadline.error());
+  const std::string both = std::string(text) + speech_.ending + speech_.error_query + speech_.ending;
+  if (auto sent = send(both, *deadline, stop); !sent) return tl::unexpected(sent.error());
+  auto answer = receive_line(*deadline, stop);
+  if (!answer) return give_up(with_context(text, answer.error()));
   // A refused query has no answer of its own: the first line is the error report already.
-  if (error_report(*answer))
-    return fail(ErrorCode::invalid_input, std::string(text) + ": the instrument refuses: " + printable(*answer));
-  auto report = receive_line(deadline, stop);
-  if (!report) return fail(text, report.error());
-  const auto code = error_report(*report);
-  if (!code) return give_up(ErrorCode::disconnected, std::string(text) + ": SYST:ERR? answered " + printable(*report));
-  if (*code != 0)
-    return fail(ErrorCode::invalid_input, std::string(text) + ": the instrument refuses: " + printable(*report));
+  if (error_report(*answer)) return fail(ErrorCode::invalid_input, refusal(text, *answer));
+  auto report = receive_line(*deadline, stop);
+  if (!report) return give_up(with_context(text, report.error()));
+  if (auto checked = check_report(text, *report); !checked) return tl::unexpected(checked.error());
   return answer;
+}
+
+Result<std::string> ScpiClient::query_before_report(std::string_view text, const std::stop_token& stop) {
+  const auto deadline = begin(stop);
+  if (!deadline) return tl::unexpected(deadline.error());
+  if (auto sent = send(std::string(text) + speech_.ending, *deadline, stop); !sent) return tl::unexpected(sent.error());
+  auto answer = receive_line(*deadline, stop);
+  last_exchange_ = Clock::now();
+  if (!answer) {
+    // One that refuses a query does not answer it; it may say so when it is asked.
+    if (answer.error().code == ErrorCode::timeout && line_) {
+      const auto report = ask_for_errors(text, stop);
+      if (!report && report.error().code == ErrorCode::invalid_input) return tl::unexpected(report.error());
+    }
+    return give_up(with_context(text, answer.error()));
+  }
+  if (any_begins(*answer, speech_.refusals)) return fail(ErrorCode::invalid_input, refusal(text, *answer));
+  if (auto checked = ask_for_errors(text, stop); !checked) return tl::unexpected(checked.error());
+  return answer;
+}
+
+Result<void> ScpiClient::ask_for_errors(std::string_view text, const std::stop_token& stop) {
+  if (speech_.error_query.empty()) return {};
+  const auto deadline = begin(stop);
+  if (!deadline) return tl::unexpected(deadline.error());
+  if (auto sent = send(speech_.error_query + speech_.ending, *deadline, stop); !sent) return sent;
+  auto report = receive_line(*deadline, stop);
+  if (!report) return give_up(with_context(text, report.error()));
+  return check_report(text, *report);
+}
+
+Result<void> ScpiClient::check_report(std::string_view text, const std::string& report) {
+  last_exchange_ = Clock::now();
+  if (!speech_.no_error.empty()) {
+    if (std::find(speech_.no_error.begin(), speech_.no_error.end(), report) != speech_.no_error.end()) return {};
+    return fail(ErrorCode::invalid_input, refusal(text, report));
+  }
+  const auto code = error_report(report);
+  if (!code)
+    return give_up(
+        {ErrorCode::disconnected, std::string(text) + ": " + speech_.error_query + " answered " + printable(report)});
+  if (*code != 0) return fail(ErrorCode::invalid_input, refusal(text, report));
+  return {};
 }
 
 Result<std::vector<double>> ScpiClient::query_numbers(std::string_view text, std::size_t count,
                                                       const std::stop_token& stop) {
+  return query_form(text, comma_form(count), stop);
+}
+
+Result<std::vector<double>> ScpiClient::query_form(std::string_view text, std::string_view form,
+                                                   const std::stop_token& stop) {
   auto answer = query(text, stop);
   if (!answer) return tl::unexpected(answer.error());
-  std::vector<double> numbers;
-  for (const auto& field : scpi_fields(*answer))
-    if (const auto number = number_from(field)) numbers.push_back(*number);
-  if (numbers.size() != count || scpi_fields(*answer).size() != count)
-    return give_up(ErrorCode::disconnected, std::string(text) + ": answered " + printable(*answer) + ", expected " +
-                                                std::to_string(count) + " number(s)");
-  return numbers;
+  auto numbers = numbers_in(*answer, form);
+  if (!numbers)
+    return give_up({ErrorCode::disconnected, std::string(text) + ": answered " + printable(*answer) + ", expected '" +
+                                                 std::string(form) + "' with a number for each {}"});
+  return *numbers;
 }
 
-Result<void> ScpiClient::send(std::string_view text, Clock::time_point deadline, const std::stop_token& stop) {
-  if (!socket_.is_open()) return fail(ErrorCode::disconnected, "the connection is closed");
+Result<void> ScpiClient::send(std::string_view text, TimePoint deadline, const std::stop_token& stop) {
   received_.clear();  // whatever came unasked belongs to nothing we will send
-  while (!text.empty()) {
-    const ssize_t sent = ::send(socket_.get(), text.data(), text.size(), MSG_NOSIGNAL);
-    if (sent > 0) {
-      text.remove_prefix(static_cast<std::size_t>(sent));
-      continue;
-    }
-    if (errno == EINTR) continue;
-    if (errno != EAGAIN && errno != EWOULDBLOCK) return give_up(ErrorCode::disconnected, reason(errno));
-    switch (wait_on(socket_.get(), WaitFor::writing, deadline, stop)) {
-      case Waited::stopped:
-        return give_up(ErrorCode::interrupted, "stopped on request");
-      case Waited::timeout:
-        return give_up(ErrorCode::timeout, "takes no command within " + in_seconds(options_.answer_timeout));
-      case Waited::ready:
-        break;
-    }
-  }
-  return {};
+  auto sent = line_->send(text, deadline, stop);
+  if (sent) return sent;
+  if (sent.error().code == ErrorCode::timeout)
+    return give_up({ErrorCode::timeout, "takes no command within " + in_seconds(options_.answer_timeout)});
+  return give_up(sent.error());
 }
 
-Result<std::string> ScpiClient::receive_line(Clock::time_point deadline, const std::stop_token& stop) {
+Result<std::string> ScpiClient::receive_line(TimePoint deadline, const std::stop_token& stop) {
   for (;;) {
-    if (const auto end = received_.find('\n'); end != std::string::npos) {
+    if (const auto end = received_.find(speech_.answer_ending); end != std::string::npos) {
       std::string line = received_.substr(0, end);
       received_.erase(0, end + 1);
       if (!line.empty() && line.back() == '\r') line.pop_back();
+      if (!line.empty() && line.front() == '\n' && speech_.answer_ending == '\r') line.erase(0, 1);
       return line;
     }
     if (received_.size() > options_.longest_answer)
-      return give_up(ErrorCode::disconnected, "dropped: more than " + std::to_string(options_.longest_answer) +
-                                                  " characters without a line end");
-    const Waited waited = wait_on(socket_.get(), WaitFor::reading, deadline, stop);
-    if (waited == Waited::stopped) return give_up(ErrorCode::interrupted, "stopped on request");
-    if (waited == Waited::timeout)
-      return give_up(ErrorCode::timeout, "no answer within " + in_seconds(options_.answer_timeout));
-    std::array<char, 1024> chunk{};
-    const ssize_t count = ::recv(socket_.get(), chunk.data(), chunk.size(), 0);
-    if (count == 0) return give_up(ErrorCode::disconnected, "the instrument closed the connection");
-    if (count > 0)
-      received_.append(chunk.data(), static_cast<std::size_t>(count));
-    else if (errno != EINTR && errno != EAGAIN && errno != EWOULDBLOCK)
-      return give_up(ErrorCode::disconnected, reason(errno));
+      return give_up({ErrorCode::disconnected, "dropped: more than " + std::to_string(options_.longest_answer) +
+                                                   " characters without a line end"});
+    auto some = line_->receive(deadline, stop);
+    if (!some && some.error().code == ErrorCode::timeout)
+      return fail(ErrorCode::timeout, "no answer within " + in_seconds(options_.answer_timeout));
+    if (!some) return give_up(some.error());
+    received_ += *some;
   }
 }
 
-tl::unexpected<Error> ScpiClient::give_up(ErrorCode code, std::string message) {
-  socket_.close();
+tl::unexpected<Error> ScpiClient::give_up(Error error) {
+  line_.reset();
   received_.clear();
-  return fail(code, std::move(message));
+  return tl::unexpected(std::move(error));
 }
 
 }  // namespace todbench

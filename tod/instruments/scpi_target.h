@@ -1,13 +1,5 @@
-// A bench with a differential black body and a plate stage that both speak SCPI over TCP.
-//
-// Black body                                   Plate stage
-//   [SOURce:]TEMPerature:DIFFerence <K>          ROUTe:PLATe "name"          ROUTe:PLATe:ACTual?
-//   [SOURce:]TEMPerature:DIFFerence? [MIN|MAX]   ROUTe:PLATe:CATalog?        -> "name","name",...
-//   MEASure:TEMPerature:DIFFerence?  -> K        ROUTe:MOUNting IDENtity|ROTated|HMIRrored|VMIRrored, :ACTual?
-//   MEASure:TEMPerature:PLATe?       -> K        [SOURce:]POSition <x mm>,<y mm>, POSition?, POSition:LIMits? ->
-//   x0,x1,y0,y1 MEASure:TEMPerature:BBODy?       -> K        MEASure:POSition?           -> x,y
-//   STATus:OPERation:CONDition?  bit 1 SETTling  STATus:OPERation:CONDition? bit 1 SETTling (moving or not yet at rest)
-// and both *IDN?, *CLS, SYSTem:ERRor? (IEEE 488.2, SCPI-99 volume 1, 20.1).
+// A bench with a differential black body and a plate stage, each with the words of its table. The shipped tables
+// scpi-black-body.toml and scpi-stage.toml are what the emulated instruments understand.
 #pragma once
 
 #include <chrono>
@@ -16,6 +8,7 @@
 #include <stop_token>
 #include <string>
 
+#include "tod/instruments/instrument_table.h"
 #include "tod/instruments/scpi_client.h"
 #include "tod/presentation/target.h"
 #include "tod/presentation/target_wait.h"
@@ -23,11 +16,10 @@
 namespace todbench {
 
 struct ScpiTargetOptions {
-  std::string black_body;  ///< "host:port"
-  std::string stage;       ///< "host:port"
-  /// Measured minus asked that still counts as reached: twice the 1 mK resolution of the differential black-body class.
-  double delta_t_tolerance_k = 0.002;
-  double shift_tolerance_mm = 0.005;
+  std::string black_body;  ///< instrument_address()
+  std::string stage;       ///< the same
+  InstrumentTable black_body_table;
+  InstrumentTable stage_table;
   std::chrono::milliseconds settle_timeout{600'000};  ///< for one present(), by `now`
   std::chrono::milliseconds poll_interval{100};
   std::chrono::milliseconds report_interval{500};  ///< of on_wait, by `now`; the first after as long
@@ -40,7 +32,8 @@ struct ScpiTargetOptions {
 /// Connects to both instruments, identifies them and reads their limits. Errors: as ScpiClient::connect.
 ///
 /// present() asks each instrument for its set-points and commands only those that differ, so a knob turned by hand is
-/// put right. It returns when both instruments say they are settled *and* what they measure agrees with what was asked.
+/// put right; one without set-points is commanded each time. It returns when both instruments say they are settled
+/// *and* what they measure agrees with what was asked, for as long as their tables want.
 /// PresentedTarget::state is what was measured. A state beyond the instruments' limits is `invalid_input` before
 /// anything moves. `timeout` names the instrument, what was asked and what was reached. When an instrument goes away,
 /// refuses a command or states a temperature that nothing can have (below 0 K, above 5000 K): `disconnected`; the next

@@ -35,7 +35,7 @@ Result<OpenedBench> open_for_looking(const Plan& plan, const std::stop_token& st
   if (driven) {
     const auto loaded = LoadedPlan::load(plan);
     if (!loaded) return tl::unexpected(loaded.error());
-    auto bench = open_bench(plan, loaded->plates(), stop);
+    auto bench = open_bench(*loaded, stop);
     if (!bench) return bench;
     if (auto shown = show_first_state(plan, loaded->plates(), *bench->target, stop); !shown)
       return tl::unexpected(shown.error());

@@ -149,7 +149,7 @@ TEST(ValidPlan, IsRefusedWithTheSentenceOfAFileThatSaysTheSame) {
       {"target.mountings", [](Plan& p) { p.target.mountings = {}; }, "mountings = []\n",
        "expected at least one mounting"},
       {"target.black_body", [](Plan& p) { p.target.kind = TargetKind::scpi; }, "kind = \"scpi\"\n",
-       "needed for kind \"scpi\", expected \"HOST:PORT\""},
+       "needed for kind \"scpi\", expected \"HOST:PORT\", \"serial:/dev/NAME\" or \"vxi11:HOST\""},
       {"simulation.accuracy", [](Plan& p) { p.simulation.accuracy = "good"; }, "[simulation]\naccuracy = \"good\"\n",
        "expected one of 'draft', 'normal', 'reference', 'auto', found \"good\""},
       {"simulation.force", [](Plan& p) { p.simulation.skip = p.simulation.force = {Effect::detector}; },

@@ -10,6 +10,7 @@
 
 #include "acquisition/recording/frame_stream.h"
 #include "bench/plan/descriptions.h"
+#include "bench/plan/instrument_description.h"
 #include "bench/run/recorded_bench.h"
 #include "bench/run/replay.h"
 #include "bench/session/manifest.h"
@@ -82,6 +83,8 @@ class MeasuredSession : public ::testing::Test {
     ScpiTargetOptions options;
     options.black_body = black_body_->endpoint();
     options.stage = stage_->endpoint();
+    options.black_body_table = load_instrument("scpi-black-body").value();
+    options.stage_table = load_instrument("scpi-stage").value();
     options.poll_interval = std::chrono::milliseconds(0);
     options.connection = {.connect_timeout = std::chrono::minutes(1), .answer_timeout = std::chrono::minutes(1)};
     options.now = clock.now();

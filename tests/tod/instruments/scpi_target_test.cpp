@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "bench/plan/instrument_description.h"
 #include "sim_devices/lab/instruments/black_body.h"
 #include "sim_devices/lab/instruments/plate_stage.h"
 #include "tests/tod/measurement/fake_clock.h"
@@ -37,6 +38,8 @@ class ScpiTargetTest : public ::testing::Test {
     stage_ = PlateStage::start(stage).value();
     options_.black_body = black_body_->endpoint();
     options_.stage = stage_->endpoint();
+    options_.black_body_table = load_instrument("scpi-black-body").value();
+    options_.stage_table = load_instrument("scpi-stage").value();
     options_.poll_interval = milliseconds(0);
     options_.connection.answer_timeout = std::chrono::minutes(1);
     options_.now = clock_.now();

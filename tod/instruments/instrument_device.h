@@ -1,0 +1,104 @@
+// A black body and a plate stage by the words of their tables: numbers in K and mm, plates by name.
+#pragma once
+
+#include <array>
+#include <opencv2/core/types.hpp>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "acquisition/core/result.h"
+#include "tod/instruments/instrument_table.h"
+#include "tod/instruments/scpi_client.h"
+#include "tod/presentation/target.h"
+
+namespace todbench {
+
+/// An instrument that is connected anew when it went away, and is then required to be the same one. Errors name it.
+/// An instrument that refuses what its table says cannot be measured with: `disconnected`. One thread at a time.
+class InstrumentDevice {
+ public:
+  InstrumentDevice(std::string role, std::string endpoint, ScpiClientOptions options, InstrumentTable table);
+
+  [[nodiscard]] Result<void> ensure_connected(const std::stop_token& stop);
+  /// "black body (vendor model, serial S)".
+  [[nodiscard]] std::string name() const;
+  [[nodiscard]] const InstrumentTable& table() const { return table_; }
+  [[nodiscard]] const std::optional<ScpiClient>& client() const { return client_; }
+
+  [[nodiscard]] Result<void> send(const std::string& text, const std::stop_token& stop);
+  [[nodiscard]] Result<std::string> ask(const std::string& text, const std::stop_token& stop);
+  /// The numbers of a question, as they were answered.
+  [[nodiscard]] Result<std::vector<double>> numbers(const NumberQuestion& question, std::size_t count,
+                                                    const std::stop_token& stop);
+  /// True also where the instrument has no such query.
+  [[nodiscard]] Result<bool> is_settled(const std::stop_token& stop);
+
+ private:
+  std::string role_, endpoint_;
+  ScpiClientOptions options_;
+  InstrumentTable table_;
+  std::optional<ScpiClient> client_;  ///< kept after the connection closed, for its identity
+};
+
+/// What a black body says.
+struct BlackBodyReading {
+  double delta_t_k = 0;
+  std::optional<double> plate_k, radiator_k;
+};
+
+class BlackBodyDevice : public InstrumentDevice {
+ public:
+  using InstrumentDevice::InstrumentDevice;
+  /// Lowest and highest difference, in K.
+  [[nodiscard]] Result<std::array<double, 2>> limits(const std::stop_token& stop);
+  [[nodiscard]] Result<double> set_point(const std::stop_token& stop);
+  /// Commands a difference unless it is the set-point already.
+  [[nodiscard]] Result<void> command(double delta_t_k, const std::stop_token& stop);
+  [[nodiscard]] Result<BlackBodyReading> read(const std::stop_token& stop);
+  [[nodiscard]] Result<double> measured(const std::stop_token& stop);
+  /// `disconnected` for one that nothing can have: below 0 K, above 5000 K.
+  [[nodiscard]] Result<double> temperature(const NumberQuestion& question, const std::stop_token& stop);
+
+  [[nodiscard]] std::string set_command(double delta_t_k) const;
+
+ private:
+  [[nodiscard]] const BlackBodyWords& words() const { return table().black_body; }
+  [[nodiscard]] Result<double> difference(const NumberQuestion& question, const std::stop_token& stop);
+};
+
+struct StageLimits {
+  cv::Point2d min_mm, max_mm;
+  std::vector<std::string> plates;
+};
+
+class StageDevice : public InstrumentDevice {
+ public:
+  using InstrumentDevice::InstrumentDevice;
+  [[nodiscard]] Result<StageLimits> limits(const std::stop_token& stop);
+  [[nodiscard]] bool holds(Mounting mounting) const;
+  /// Commands plate, mounting and place where they differ from the set-points.
+  [[nodiscard]] Result<void> command(const TargetState& state, const std::stop_token& stop);
+  /// Plate, mounting and place; what the stage does not say is taken from `asked`.
+  [[nodiscard]] Result<TargetState> read(const TargetState& asked, const std::stop_token& stop);
+
+  [[nodiscard]] Result<std::string> plate(const std::string& query, const std::stop_token& stop);
+  [[nodiscard]] Result<Mounting> mounting(const std::string& query, const std::stop_token& stop);
+  /// Precondition: the stage has positions.
+  [[nodiscard]] Result<cv::Point2d> position(const NumberQuestion& question, const std::stop_token& stop);
+  [[nodiscard]] Result<std::vector<double>> travel(const std::stop_token& stop);
+  [[nodiscard]] Result<std::vector<std::string>> plate_names(const std::stop_token& stop);
+
+  [[nodiscard]] std::string plate_command(const std::string& plate) const;
+  [[nodiscard]] std::string mounting_command(Mounting mounting) const;
+  [[nodiscard]] std::vector<std::string> position_commands(cv::Point2d place_mm) const;
+
+ private:
+  [[nodiscard]] const StageWords& words() const { return table().stage; }
+  [[nodiscard]] Result<void> command_plate(const TargetState& state, const std::stop_token& stop);
+  [[nodiscard]] Result<void> command_mounting(const TargetState& state, const std::stop_token& stop);
+  [[nodiscard]] Result<void> command_position(const TargetState& state, const std::stop_token& stop);
+};
+
+}  // namespace todbench

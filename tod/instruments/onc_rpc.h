@@ -1,0 +1,61 @@
+// Remote procedure calls as VXI-11 wants them: ONC RPC version 2 over TCP (RFC 5531) with XDR data (RFC 4506).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <string_view>
+
+#include "acquisition/core/result.h"
+#include "tod/instruments/instrument_line.h"
+
+namespace todbench {
+
+/// XDR data being written: big endian, in units of four bytes.
+class XdrWriter {
+ public:
+  void number(std::uint32_t value);
+  /// Opaque data or a string: length, bytes, zeros up to the next unit.
+  void bytes(std::string_view value);
+  [[nodiscard]] const std::string& data() const { return data_; }
+
+ private:
+  std::string data_;
+};
+
+/// XDR data being read. Nothing once it has ended too early.
+class XdrReader {
+ public:
+  explicit XdrReader(std::string_view data) : data_(data) {}
+  [[nodiscard]] std::optional<std::uint32_t> number();
+  [[nodiscard]] std::optional<std::string> bytes();
+
+ private:
+  std::string_view data_;
+};
+
+/// A record with its mark in front, as one fragment (RFC 5531, section 11).
+[[nodiscard]] std::string rpc_record(std::string_view message);
+/// Takes the first whole record off `received`; nothing while it is not whole. `disconnected` for one of more than
+/// 1 MiB.
+[[nodiscard]] Result<std::optional<std::string>> take_rpc_record(std::string& received);
+
+/// A connection to the programs of one server. One thread at a time.
+class RpcClient {
+ public:
+  explicit RpcClient(Descriptor socket) : socket_(std::move(socket)) {}
+  /// Calls a procedure and returns its results. `disconnected` for what is no answer to it, `not_found` where the
+  /// server has no such program or procedure; `timeout`, `interrupted`.
+  [[nodiscard]] Result<std::string> call(std::uint32_t program, std::uint32_t version, std::uint32_t procedure,
+                                         std::string_view arguments, InstrumentLine::TimePoint deadline,
+                                         const std::stop_token& stop);
+
+ private:
+  Descriptor socket_;
+  std::string received_;
+  std::uint32_t last_id_ = 0;
+};
+
+}  // namespace todbench
