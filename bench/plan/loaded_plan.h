@@ -26,7 +26,7 @@ struct PlanParts {
   TemplateObserverSpec observer;
   SensorSpec sensor;                       ///< with its own microscan
   std::optional<TargetPlate> mtf_plate{};  ///< where [measures] asks for an MTF
-  InstrumentTable black_body{}, stage{};    ///< of a plan with a target of kind scpi; else whatever
+  InstrumentTable black_body{}, stage{};   ///< of a plan with a target of kind scpi; else whatever
   /// The texts they were read from, by kind and reference.
   std::map<std::pair<ResourceKind, std::string>, Resource> sources{};
 };
