@@ -86,6 +86,7 @@ void print_comparison(const Console& console, const ExperimentOutcome& outcome) 
   }
   console.table(
       {"dT [K]", "acuity measured [1/mrad]", "95 %", "simulated [1/mrad]", "95 %", "ratio", "95 %", "verdict"}, rows);
+  print_paired(console, *outcome.comparison);
 }
 
 void print_effects(const Console& console, const SensorPlan& effects) {

@@ -42,6 +42,7 @@ void print_comparison(const Console& console, const Comparison& comparison) {
                     fixed(p.p_difference, 4), fixed(p.p_equivalence, 4), std::string(to_string(p.verdict))});
   }
   console.table({"dT A [K]", "dT B [K]", "acuity A / B", "95 %", "p difference", "p equivalence", "verdict"}, rows);
+  print_paired(console, comparison);
   print_findings(console, comparison.adequacy, "");
   console.text("margin " + fixed(comparison.points.front().margin_percent, 1) +
                " %; verdict: " + std::string(to_string(comparison.verdict)));

@@ -5,10 +5,14 @@
 #include <string_view>
 
 #include "bench/cli/console.h"
+#include "tod/comparison/comparison.h"
 
 namespace todbench {
 
 /// One line for each finding, behind `about`; nothing where there are none. What makes a number unfit says so.
 void print_findings(const Console& console, const std::optional<Adequacy>& adequacy, std::string_view about);
+
+/// The ratios by common phases as a table, with what they do not cancel; nothing where there are none.
+void print_paired(const Console& console, const Comparison& comparison);
 
 }  // namespace todbench

@@ -304,7 +304,7 @@ Result<std::optional<CurveUncertainty>> curve_uncertainty(const Plan& plan, cons
                                                 deviation_k);
     if (auto expanded = expand(found, point, rows, plan.uncertainty.rows.size(), plan.seed); !expanded)
       return tl::unexpected(with_context("[uncertainty]", expanded.error()));
-    if (comparison) found.ratio = expanded_ratio(*comparison, point.set_delta_t_k, found.u_not_twin);
+    if (comparison) found.ratio = expanded_ratio(as_decided(*comparison), point.set_delta_t_k, found.u_not_twin);
     out.points.push_back(std::move(found));
   }
   if (!read_back) out.not_stated.emplace_back(read_back_row);

@@ -308,15 +308,17 @@ std::vector<Demand> judge_equivalence(const Evidence& evidence) {
     demand.reason = "the comparison was made with another margin, " + rounded(point.margin_percent) + " %";
     return {demand};
   }
-  demand.result = largest_deviation_percent(*evidence.comparison);
-  const std::vector<Interval> ratios = ratios_90(*evidence.comparison, evidence.uncertainty);
-  const ComparisonVerdict verdict = comparison_verdict(*evidence.comparison, evidence.uncertainty);
+  const Comparison decided = as_decided(*evidence.comparison);
+  demand.ratio = decided_by_pairs(decided) ? RatioKind::paired : RatioKind::unpaired;
+  demand.result = largest_deviation_percent(decided);
+  const std::vector<Interval> ratios = ratios_90(decided, evidence.uncertainty);
+  const ComparisonVerdict verdict = comparison_verdict(decided, evidence.uncertainty);
   demand.interval = deviation_interval_percent(ratios);
-  if (evidence.uncertainty != nullptr)
-    demand.statistical = deviation_interval_percent(ratios_90(*evidence.comparison, nullptr));
-  settle(demand, {.decision = equivalence_decision(verdict, *evidence.comparison, ratios, evidence.limits.rule),
-                  .p_conformity = p_equivalence(*evidence.comparison, ratios)});
+  if (evidence.uncertainty != nullptr) demand.statistical = deviation_interval_percent(ratios_90(decided, nullptr));
+  settle(demand, {.decision = equivalence_decision(verdict, decided, ratios, evidence.limits.rule),
+                  .p_conformity = p_equivalence(decided, ratios)});
   demand.reason = reason_of(verdict, ratios);
+  if (demand.ratio == RatioKind::paired) demand.reason += "; ratios paired by presentation";
   if (const auto& found = evidence.comparison->adequacy; found && !found->adequate())
     demand.reason += "; not fit for a decision: " + reasons_unfit(*found);
   return {demand};

@@ -2,6 +2,7 @@
 // session, and the exit code of the program.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -30,6 +31,16 @@ enum class JudgedWhen {
 /// A sentence for a verdict that its run did not make; empty for one that it made.
 [[nodiscard]] std::string_view remark_on(JudgedWhen when);
 
+/// Of which ratio of camera and twin an equivalence is demanded.
+enum class RatioKind {
+  unpaired,  ///< of two thresholds
+  paired,    ///< by the phases that both saw (tod/comparison/paired_ratio.h)
+};
+inline constexpr std::array all_ratio_kinds{RatioKind::unpaired, RatioKind::paired};
+[[nodiscard]] constexpr std::string_view to_string(RatioKind kind) {
+  return kind == RatioKind::paired ? "paired" : "unpaired";
+}
+
 /// One demand with what was found. Its unit and its words follow from the kind (demand_kinds.h).
 struct Demand {
   DemandKind kind = DemandKind::identified;
@@ -46,6 +57,8 @@ struct Demand {
   std::optional<ConformityDecision> conformity{};
   /// Probability that the demand is met, given the result (decide()). Nothing: not known.
   std::optional<double> p_conformity{};
+
+  std::optional<RatioKind> ratio{};  ///< of a demanded equivalence that could be judged
 
   /// Specific risks of this decision: of a wrong acceptance where it is to pass, of a wrong rejection where to fail.
   [[nodiscard]] std::optional<double> consumer_risk() const;

@@ -69,6 +69,7 @@ struct SimulationPlan {
   int phases = 16;       ///< sub-pixel shifts per plate, mounting and contrast, in place of those of [target]
   SceneMotion motion{};  ///< of the target; matters where the sensor has a time constant
   std::vector<Effect> skip, force;
+  bool paired = true;  ///< graded answers: the twin is shown the camera's own presentations, too
   bool operator==(const SimulationPlan&) const = default;
 };
 

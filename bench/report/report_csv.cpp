@@ -187,6 +187,15 @@ void add_comparison(std::string& table, const std::optional<Comparison>& compari
                 .interval = point.ratio_ci95,
                 .interval_percent = 95,
                 .decision = std::string(to_string(point.verdict))});
+    if (point.paired) {
+      add(table, {.section = "comparison",
+                  .name = "acuity_ratio_paired",
+                  .set_delta_t_k = point.set_delta_t_k,
+                  .value = point.paired->ratio,
+                  .interval = point.paired->ci95,
+                  .interval_percent = 95,
+                  .decision = std::string(to_string(point.paired->verdict))});
+    }
     add(table, {.section = "comparison",
                 .name = "equivalence_margin_percent",
                 .set_delta_t_k = point.set_delta_t_k,

@@ -8,6 +8,7 @@
 #include "bench/report/number_format.h"
 #include "bench/report/report_pieces.h"
 #include "bench/report/tod_figures.h"
+#include "tod/comparison/paired_ratio.h"
 #include "tod/psychometric/acuity.h"
 
 namespace todbench {
@@ -390,6 +391,30 @@ std::optional<Section> psychometric_section(const ReportData& data) {
                              "Dashed: threshold (75 %) and chance (25 %)."))}};
 }
 
+/// The ratios by common phases; nothing where there are none.
+std::optional<Table> paired_table(const Comparison& comparison) {
+  Table rows;
+  rows.header = {"Set ΔT (K)",
+                 "Acuity, measured : simulated, paired [95 %]",
+                 "Ratio [90 %]",
+                 "p different",
+                 "p equivalent",
+                 "Standard error (%)",
+                 "Of it the twin's noise (variance, %)",
+                 "Verdict"};
+  for (const ComparisonPoint& point : comparison.points) {
+    if (!point.paired) continue;
+    const RatioOfPairs& paired = *point.paired;
+    rows.rows.push_back({plain(stated(point.set_delta_t_k)), interval_or_missing(paired.ratio, paired.ci95, ""),
+                         interval_or_missing(paired.ratio, paired.ci90, ""), plain(probability(paired.p_difference)),
+                         plain(probability(paired.p_equivalence)), plain(significant(100 * paired.se_ln_ratio, 2)),
+                         plain(significant(100 * paired.twin_share, 2)),
+                         badge(in_words(paired.verdict), mood_of(paired.verdict))});
+  }
+  if (rows.rows.empty()) return std::nullopt;
+  return rows;
+}
+
 Section comparison_section(const ReportData& data) {
   constexpr const char* title = "Measured against simulated";
   if (!data.comparison) {
@@ -421,7 +446,15 @@ Section comparison_section(const ReportData& data) {
   if (data.comparison->adequacy)
     for (const AdequacyFinding& finding : data.comparison->adequacy->findings)
       findings.items.push_back(plain(finding.sentence));
-  Section section{title, {std::move(rows), Paragraph{overall}}};
+  Section section{title, {std::move(rows)}};
+  if (auto paired = paired_table(*data.comparison)) {
+    section.blocks.emplace_back(
+        note(plain("Paired by presentation: the twin was shown what the camera saw, with the same sub-pixel phases. "
+                   "These ratios decide. " +
+                   std::string(not_cancelled_by_pairs))));
+    section.blocks.emplace_back(*std::move(paired));
+  }
+  section.blocks.emplace_back(Paragraph{overall});
   if (!findings.items.empty()) section.blocks.emplace_back(std::move(findings));
   section.blocks.emplace_back(
       note(plain("p different: likelihood-ratio test of a common threshold, corrected for groups of trials. p "

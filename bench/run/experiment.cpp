@@ -11,6 +11,7 @@
 #include "bench/run/experiment_inputs.h"
 #include "bench/run/module_chain.h"
 #include "bench/run/observed_source.h"
+#include "bench/run/paired_comparison.h"
 #include "bench/run/physical_measures.h"
 #include "bench/run/processed_source.h"
 #include "bench/run/recorded_bench.h"
@@ -232,6 +233,18 @@ TwinResults run_twin(const Plan& plan, const ExperimentInputs& inputs, const Tod
   return results;
 }
 
+/// The same by the phases that camera and twin both saw, where the plan has it so.
+void pair_with_twin(ExperimentOutcome& outcome, const MeasurementResult& measured, const Plan& plan,
+                    const ExperimentInputs& inputs, const SessionFrame& frame, std::stop_token stop) {
+  if (!outcome.comparison || outcome.ended_by || !pairs_asked(plan)) return;
+  phase(frame.folder, frame.listener, "showing " + inputs.sensor.name + " what the camera saw");
+  PairedOutcome paired =
+      add_paired_ratios(*outcome.comparison, {outcome.curve, measured.trials, measured.set_ups}, inputs,
+                        paired_options(inputs, measured.set_ups, plan.seed, std::move(stop)));
+  for (const auto& sentence : paired.notes) note(frame.folder, frame.listener, sentence);
+  outcome.ended_by = std::move(paired.ended_by);
+}
+
 /// A tolerance beyond the hard caps is refused before anything is simulated or moved.
 Result<void> check_tolerance(const Plan& plan, const ExperimentInputs& inputs) {
   if (has_modules(plan, inputs.sensor)) return {};
@@ -434,6 +447,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
     outcome.twin = std::move(twin.curve);
     outcome.comparison = std::move(twin.comparison);
     outcome.ended_by = std::move(twin.ended_by);
+    pair_with_twin(outcome, *result, plan, inputs, frame, stop);
   }
   if (!outcome.ended_by) {
     auto measures = simulated_measures(loaded, inputs, frame, stop);

@@ -193,6 +193,27 @@ Json comparison_record(const Comparison& comparison) {
   return json;
 }
 
+namespace {
+
+RatioOfPairs read_paired(const JsonReader& reader) {
+  RatioOfPairs paired;
+  paired.ratio = reader.at("ratio").number();
+  paired.ci95 = reader.at("ratio_ci95").interval();
+  paired.ci90 = reader.at("ratio_ci90").interval();
+  paired.se_ln_ratio = reader.at("se_ln_ratio").number();
+  paired.degrees_of_freedom = reader.at("degrees_of_freedom").number();
+  paired.p_difference = reader.at("p_difference").number();
+  paired.p_equivalence = reader.at("p_equivalence").number();
+  paired.verdict = reader.at("verdict").named(comparison_verdicts);
+  paired.interval = reader.at("interval").named(all_interval_kinds);
+  paired.twin_share = reader.at("twin_share").number();
+  paired.draws = static_cast<int>(reader.at("draws").whole());
+  paired.answers = static_cast<int>(reader.at("pairs").whole());
+  return paired;
+}
+
+}  // namespace
+
 Result<Comparison> comparison_from(const Json& record) {
   const JsonReader reader(record);
   Comparison comparison;
@@ -210,6 +231,7 @@ Result<Comparison> comparison_from(const Json& record) {
     point.p_equivalence = item.at("p_equivalence").optional_number();
     point.margin_percent = item.at("margin_percent").number();
     point.verdict = item.at("verdict").named(comparison_verdicts);
+    if (const JsonReader paired = item.at_if_there("paired"); !paired.is_null()) point.paired = read_paired(paired);
     comparison.points.push_back(point);
   }
   if (const Result<void> read = reader.finish(); !read) return tl::unexpected(read.error());

@@ -89,6 +89,27 @@ Json curve_json(const TodCurve& curve, const SensorPlan& plan, const RunFigures&
   return json;
 }
 
+namespace {
+
+Json paired_json(const RatioOfPairs& paired) {
+  Json json;
+  json["ratio"] = json_number(paired.ratio);
+  json["ratio_ci95"] = json_interval(paired.ci95);
+  json["ratio_ci90"] = json_interval(paired.ci90);
+  json["se_ln_ratio"] = json_number(paired.se_ln_ratio);
+  json["degrees_of_freedom"] = json_number(paired.degrees_of_freedom);
+  json["p_difference"] = json_number(paired.p_difference);
+  json["p_equivalence"] = json_number(paired.p_equivalence);
+  json["verdict"] = to_string(paired.verdict);
+  json["interval"] = to_string(paired.interval);
+  json["twin_share"] = json_number(paired.twin_share);
+  json["draws"] = paired.draws;
+  json["pairs"] = paired.answers;
+  return json;
+}
+
+}  // namespace
+
 Json comparison_json(const Comparison& comparison) {
   Json points = Json::array();
   for (const ComparisonPoint& point : comparison.points) {
@@ -100,11 +121,13 @@ Json comparison_json(const Comparison& comparison) {
     json["p_equivalence"] = json_number(point.p_equivalence);
     json["margin_percent"] = json_number(point.margin_percent);
     json["verdict"] = to_string(point.verdict);
+    if (point.paired) json["paired"] = paired_json(*point.paired);
     points.push_back(std::move(json));
   }
   Json json;
   json["points"] = std::move(points);
   json["verdict"] = to_string(comparison.verdict);
+  if (decided_by_pairs(comparison)) json["decided_by"] = "paired";
   if (comparison.adequacy) json["adequacy"] = adequacy_json(comparison.adequacy);
   return json;
 }

@@ -5,6 +5,7 @@
 #include "bench/plan/plan_options.h"
 #include "bench/text/text.h"
 #include "tod/adequacy/adequacy.h"
+#include "tod/comparison/paired_ratio.h"
 
 namespace todbench {
 namespace {
@@ -88,6 +89,29 @@ TodCurve examined(const Session& session) {
   return curve;
 }
 
+/// Where both were paired with the same twin, at the same contrasts.
+void add_ratios_over_twin(Comparison& comparison, const Session& a, const Session& b) {
+  if (!a.comparison || !b.comparison || !(a.parts.sensor == b.parts.sensor)) return;
+  const auto paired_at = [](const Session& session, double set_delta_t_k) -> const RatioOfPairs* {
+    for (const ComparisonPoint& point : session.comparison->points)
+      if (point.paired && same_contrast(point.set_delta_t_k, set_delta_t_k)) return &*point.paired;
+    return nullptr;
+  };
+  for (std::size_t i = 0; i < comparison.points.size(); ++i) {
+    const ComparisonPoint& point = comparison.points[i];
+    const RatioOfPairs *of_a = paired_at(a, point.set_delta_t_k), *of_b = paired_at(b, point.set_delta_t_k);
+    if (of_a == nullptr || of_b == nullptr) continue;
+    RatioOfPairs ratio = ratio_of_paired(*of_a, *of_b, point.margin_percent);
+    // Of a number that is not fit for a decision, whatever the margin of its session was.
+    const auto unfit = [&](const TodCurve& curve) {
+      const TodPoint* found = point_at(curve, point.set_delta_t_k);
+      return found != nullptr && found->adequacy && !found->adequacy->adequate();
+    };
+    if (unfit(*a.curve) || unfit(*b.curve)) ratio.verdict = ComparisonVerdict::inconclusive;
+    add_paired(comparison, i, ratio);
+  }
+}
+
 }  // namespace
 
 Result<SessionComparison> compare_sessions(const Session& a, const Session& b, std::optional<double> margin_percent) {
@@ -98,6 +122,7 @@ Result<SessionComparison> compare_sessions(const Session& a, const Session& b, s
   auto comparison = compare(result.a, result.b, options);
   if (!comparison) return tl::unexpected(comparison.error());
   result.comparison = *std::move(comparison);
+  add_ratios_over_twin(result.comparison, a, b);
   if (const std::string difference = difference_of_plates(a.parts.plates, b.parts.plates); !difference.empty()) {
     add_finding(
         result.comparison,

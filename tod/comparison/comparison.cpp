@@ -167,7 +167,8 @@ Result<ComparisonPoint> compare_points(const TodPoint& a, const TodPoint& b, con
 
 ComparisonVerdict overall(const std::vector<ComparisonPoint>& points) {
   const auto any = [&points](ComparisonVerdict v) {
-    return std::any_of(points.begin(), points.end(), [v](const ComparisonPoint& p) { return p.verdict == v; });
+    return std::any_of(points.begin(), points.end(),
+                       [v](const ComparisonPoint& p) { return (p.paired ? p.paired->verdict : p.verdict) == v; });
   };
   if (any(ComparisonVerdict::different)) return ComparisonVerdict::different;
   return any(ComparisonVerdict::inconclusive) ? ComparisonVerdict::inconclusive : ComparisonVerdict::equivalent;
@@ -245,11 +246,38 @@ Result<Comparison> compare(const TodCurve& a, const TodCurve& b, const Compariso
 
 void add_finding(Comparison& comparison, AdequacyFinding finding) {
   if (finding.unfit) {
-    for (ComparisonPoint& point : comparison.points) point.verdict = ComparisonVerdict::inconclusive;
+    for (ComparisonPoint& point : comparison.points) {
+      point.verdict = ComparisonVerdict::inconclusive;
+      if (point.paired) point.paired->verdict = ComparisonVerdict::inconclusive;
+    }
     comparison.verdict = ComparisonVerdict::inconclusive;
   }
   if (!comparison.adequacy) comparison.adequacy.emplace();
   comparison.adequacy->findings.push_back(std::move(finding));
+}
+
+void add_paired(Comparison& comparison, std::size_t point, const RatioOfPairs& paired) {
+  comparison.points[point].paired = paired;
+  comparison.verdict = overall(comparison.points);
+}
+
+bool decided_by_pairs(const Comparison& comparison) {
+  return !comparison.points.empty() &&
+         std::ranges::all_of(comparison.points, [](const ComparisonPoint& point) { return point.paired.has_value(); });
+}
+
+Comparison as_decided(Comparison comparison) {
+  for (ComparisonPoint& point : comparison.points) {
+    if (!point.paired) continue;
+    const RatioOfPairs& paired = *point.paired;
+    point.ratio = paired.ratio;
+    point.ratio_ci95 = paired.ci95;
+    point.ratio_ci90 = paired.ci90;
+    point.p_difference = paired.p_difference;
+    point.p_equivalence = paired.p_equivalence;
+    point.verdict = paired.verdict;
+  }
+  return comparison;
 }
 
 }  // namespace todbench

@@ -362,4 +362,37 @@ Result<PsychometricFit> fit_twin_shape(std::span<const GradedAnswer> answers, co
   return fit;
 }
 
+Result<ShapeEstimate> twin_shape_estimate(std::span<const GradedAnswer> answers, const ProportionTable& table,
+                                          bool with_slope) {
+  const auto shape = TwinShape::of(table);
+  if (!shape) return tl::unexpected(shape.error());
+  const std::vector<Pooled> rows = pooled(answers);
+  const Eigen::Index parameters = with_slope ? 2 : 1;
+  const Place place = climb_from(*shape, climb_from(*shape, {0, 0, 0}, 1, rows), parameters, rows);
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(parameters, parameters);
+  for (const Pooled& row : rows) {
+    const Mean mean = mean_at(*shape, place, row.ln_size);
+    const Eigen::VectorXd g = Eigen::Map<const Eigen::VectorXd>(mean.gradient.data(), parameters);
+    information += row.count / (mean.value * (1 - mean.value)) * g * g.transpose();
+  }
+  const Eigen::LLT<Eigen::MatrixXd> factor(information);
+  if (factor.info() != Eigen::Success || !(information(0, 0) > 0))
+    return fail(ErrorCode::invalid_input, "twin shape: the answers say nothing about the threshold");
+  const Eigen::VectorXd inverse = factor.solve(Eigen::VectorXd::Unit(parameters, 0));
+  ShapeEstimate out{.ln_threshold = shape->ln_threshold() + place[0], .direction = {}, .weight = {}, .influence = {}};
+  for (const GradedAnswer& answer : answers) {
+    if (!(answer.size > 0)) {
+      for (auto* column : {&out.direction, &out.weight, &out.influence}) column->push_back(0);
+      continue;
+    }
+    const Mean mean = mean_at(*shape, place, std::log(answer.size));
+    const double variance = mean.value * (1 - mean.value);
+    const double along = inverse.dot(Eigen::Map<const Eigen::VectorXd>(mean.gradient.data(), parameters));
+    out.direction.push_back(along / std::sqrt(variance) / inverse(0));
+    out.weight.push_back(along / variance);
+    out.influence.push_back(along * (answer.probability_correct - mean.value) / variance);
+  }
+  return out;
+}
+
 }  // namespace todbench

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "tod/psychometric/psychometric_fit.h"
 
@@ -47,5 +48,18 @@ class TwinShape {
 [[nodiscard]] Result<PsychometricFit> fit_twin_shape(std::span<const GradedAnswer> answers,
                                                      const PsychometricFit& weibull, const ProportionTable& table,
                                                      const FitOptions& options);
+
+/// ln threshold from graded answers by the function of a twin, and what each answer has in it.
+struct ShapeEstimate {
+  double ln_threshold = 0;
+  std::vector<double> direction;  ///< by answer: the information on ln threshold is the sum of their squares
+  std::vector<double> weight;     ///< by answer: change of ln threshold for each unit of its probability
+  std::vector<double> influence;  ///< by answer: weight times what its probability is off its mean
+};
+
+/// The quasi-likelihood estimate behind fit_twin_shape(), with one parameter or, `with_slope`, with two. Answers at no
+/// size have no influence. `invalid_input`: as TwinShape::of(), and answers that say nothing about the threshold.
+[[nodiscard]] Result<ShapeEstimate> twin_shape_estimate(std::span<const GradedAnswer> answers,
+                                                        const ProportionTable& table, bool with_slope);
 
 }  // namespace todbench

@@ -195,6 +195,27 @@ TEST(Judge, DemandedEquivalenceIsWhatTheComparisonSays) {
   EXPECT_EQ(judged(limits, curve, std::nullopt).decision, VerdictKind::inconclusive);
 }
 
+TEST(Judge, EquivalenceIsThatOfThePairedRatioWhereThereIsOne) {
+  const TodCurve curve{"o", "s", {point_with(FitVerdict::ok, 1.5, 1.8)}};
+  ComparisonPoint point;
+  point.margin_percent = 3;
+  point.ratio = 1.02;
+  point.ratio_ci90 = {0.98, 1.0625};
+  Comparison comparison{{point}, ComparisonVerdict::inconclusive};
+  const Verdict before = judged({{}, 3.0}, curve, comparison);
+  add_paired(comparison, 0, {.ratio = 1.01, .ci90 = {1.0, 1.02}, .verdict = ComparisonVerdict::equivalent});
+
+  const Verdict verdict = judged({{}, 3.0}, curve, comparison);
+
+  EXPECT_EQ(before.demands.at(1).decision, VerdictKind::inconclusive);
+  EXPECT_EQ(before.demands.at(1).ratio, RatioKind::unpaired);
+  const Demand& demand = verdict.demands.at(1);
+  EXPECT_EQ(demand.decision, VerdictKind::pass);
+  EXPECT_EQ(demand.ratio, RatioKind::paired);
+  EXPECT_NEAR(demand.result.value(), 1, 1e-9);
+  EXPECT_NEAR(demand.interval.high.value(), 2, 1e-9);
+}
+
 TEST(Judge, EquivalenceIsAMarginForTheLargestDeviationAndItsNinetyPercentInterval) {
   const TodCurve curve{"o", "s", {point_with(FitVerdict::ok, 1.5, 1.8)}};
   ComparisonPoint above, below;

@@ -220,6 +220,38 @@ TEST(CurveRecord, AnotherTypeIsNamedWithItsPlace) {
   EXPECT_FALSE(curve_from(Json(nullptr)));
 }
 
+RatioOfPairs full_pairs() {
+  return {.ratio = 1.001,
+          .ci95 = {0.996, 1.006},
+          .ci90 = {0.997, 1.005},
+          .se_ln_ratio = 0.002,
+          .degrees_of_freedom = 6.5,
+          .p_difference = 0.625,
+          .p_equivalence = 0.0001,
+          .verdict = ComparisonVerdict::equivalent,
+          .interval = IntervalKind::set_ups,
+          .twin_share = 0.125,
+          .draws = 24,
+          .answers = 1920};
+}
+
+TEST(ComparisonRecord, KeepsThePairedRatioBesideTheUnpairedOne) {
+  Comparison comparison = full_comparison();
+  EXPECT_FALSE(comparison_json(comparison).contains("decided_by"));
+  add_paired(comparison, 0, full_pairs());
+
+  const Json record = comparison_record(comparison);
+  const Result<Comparison> back = comparison_from(record);
+
+  ASSERT_TRUE(back) << back.error().message;
+  ASSERT_TRUE(back->points[0].paired);
+  EXPECT_EQ(back->points[0].paired->ci90.high, 1.005);
+  EXPECT_EQ(back->points[0].ratio, 1.5);
+  EXPECT_EQ(back->verdict, ComparisonVerdict::equivalent) << "the paired ratio decides";
+  EXPECT_EQ(record["decided_by"], "paired");
+  EXPECT_EQ(to_line(comparison_record(*back)), to_line(record));
+}
+
 TEST(ComparisonRecord, ComesBackWithEveryField) {
   const Comparison comparison = full_comparison();
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "bench/plan/plan_options.h"
+#include "bench/run/paired_comparison.h"
 #include "bench/run/simulated_set_up.h"
 #include "bench/run/twin_shapes.h"
 #include "tod/plate/test_pattern.h"
@@ -36,7 +37,8 @@ struct GradedResult {
   std::uint64_t seed = 0;
   double delta_t_k = 0;
   std::string estimator;
-  double s75_mrad = 0, low_mrad = 0, high_mrad = 0, se_percent = 0, clusters = 0, slope_fitted = 0;
+  double s75_mrad = 0, low_mrad = 0, high_mrad = 0, se_percent = 0, clusters = 0,
+         slope_fitted = 0;  ///< in a row of "paired" the twin's share of the variance
 };
 
 inline Plan plan_of(const GradedDesign& design, std::uint64_t seed) {
@@ -110,6 +112,41 @@ inline std::vector<GradedResult> results_of(const GradedDesign& design, std::uin
     const auto outcome = fit_twin_shapes(shaped, *trials, twin, {}, direct_options(shaped, twin, shown, seed, {}));
     EXPECT_TRUE(outcome.notes.empty()) << outcome.notes.front();
     add_results(results, design, seed, std::string(kind) + " twin-shape", shaped);
+  }
+  return results;
+}
+
+/// Camera and twin by common phases, beside two estimators of the same run that know nothing of them. In a row of
+/// "paired" the size is the ratio of acuities camera / twin with its interval, and `clusters` its degrees of freedom
+/// and one.
+inline std::vector<GradedResult> paired_results_of(const GradedDesign& design, std::uint64_t seed) {
+  const Plan plan = plan_of(design, seed);
+  const ExperimentInputs camera = inputs_of(plan, design.camera), twin = inputs_of(plan, design.twin);
+  const std::vector<Trial> graded = trials_of(plan, camera);
+  std::vector<Trial> binary = graded;
+  for (Trial& trial : binary) trial.probability_correct.reset();
+  std::vector<GradedResult> results;
+  if (const auto curve = tod_curve(binary, {.with_posterior = false}))
+    add_results(results, design, seed, "binary weibull", *curve);
+  auto curve = tod_curve(graded, {.with_posterior = false});
+  EXPECT_TRUE(curve) << design.name << " " << seed;
+  if (!curve) return results;
+  std::map<double, double> shown;
+  for (const TodPoint& point : curve->points) shown[point.set_delta_t_k] = point.delta_t_k;
+  const auto shaped = fit_twin_shapes(*curve, graded, twin, {}, direct_options(*curve, twin, shown, seed, {}));
+  EXPECT_TRUE(shaped.notes.empty()) << shaped.notes.front();
+  add_results(results, design, seed, "graded twin-shape", *curve);
+  Comparison comparison;
+  for (const TodPoint& point : curve->points)
+    comparison.points.push_back({.set_delta_t_k = point.set_delta_t_k, .margin_percent = 3});
+  const auto outcome =
+      add_paired_ratios(comparison, {*curve, graded, {}}, twin, paired_options(twin, {}, plan.seed, {}));
+  EXPECT_TRUE(outcome.notes.empty()) << outcome.notes.front();
+  for (const ComparisonPoint& point : comparison.points) {
+    if (!point.paired) continue;
+    results.push_back({design.name, seed, point.set_delta_t_k, "paired", point.paired->ratio, *point.paired->ci95.low,
+                       *point.paired->ci95.high, 100 * point.paired->se_ln_ratio, point.paired->degrees_of_freedom + 1,
+                       point.paired->twin_share});
   }
   return results;
 }

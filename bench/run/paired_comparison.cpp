@@ -1,0 +1,84 @@
+#include "bench/run/paired_comparison.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "bench/text/text.h"
+#include "hvs/observer/template_observer.h"
+#include "tod/comparison/paired_ratio.h"
+#include "tod/plate/test_pattern.h"
+
+namespace todbench {
+namespace {
+
+bool all_graded(std::span<const Trial> trials) {
+  return std::ranges::all_of(trials, [](const Trial& trial) { return trial.probability_correct.has_value(); });
+}
+
+bool unfit_for_pairs(const TodPoint& point) {
+  return point.adequacy && !point.adequacy->adequate();
+}
+
+Result<RatioOfPairs> ratio_at(const TodPoint& point, std::span<const Trial> trials, double margin_percent,
+                              const ExperimentInputs& inputs, TemplateObserver& observer,
+                              const PairedTwinOptions& options) {
+  if (!point.fit.twin_shape)
+    return fail(ErrorCode::invalid_input, "the camera's answers are not fitted with the function of the twin");
+  if (trials.empty() || !all_graded(trials)) return fail(ErrorCode::invalid_input, "not all answers are graded");
+  const auto twin = twin_answers(inputs.sensor, inputs.effects, observer, trials, options);
+  if (!twin) return tl::unexpected(twin.error());
+  const std::vector<GradedAnswer> camera = graded_answers(trials);
+  std::vector<PairedAnswer> pairs;
+  for (std::size_t i = 0; i < camera.size(); ++i)
+    pairs.push_back({camera[i], (*twin)[i].probability_correct, (*twin)[i].variance});
+  return paired_ratio(pairs, point.fit.twin_shape->table, point.fit.twin_shape->slope_fitted, options.draws,
+                      margin_percent);
+}
+
+}  // namespace
+
+bool pairs_asked(const Plan& plan) {
+  return plan.simulation.paired && plan.schedule.answers == AnswerKind::graded &&
+         plan.fit.estimator == FitEstimator::twin_shape;
+}
+
+PairedTwinOptions paired_options(const ExperimentInputs& inputs, std::span<const SetUpRecord> set_ups,
+                                 std::uint64_t seed, std::stop_token stop) {
+  PairedTwinOptions options{.graded_draws = MeasurementOptions::graded_draws,
+                            .motion = inputs.motion,
+                            .accuracy = inputs.accuracy,
+                            .seed = seed,
+                            .stop = std::move(stop)};
+  for (const SetUpRecord& set_up : set_ups)
+    options.rotations_deg[{set_up.plate, set_up.mounting}] = set_up.registration.rotation_deg;
+  return options;
+}
+
+PairedOutcome add_paired_ratios(Comparison& comparison, const PairedCamera& camera, const ExperimentInputs& inputs,
+                                const PairedTwinOptions& options) {
+  TemplateObserver observer(inputs.observer, triangle_alternatives());
+  PairedOutcome outcome;
+  for (std::size_t i = 0; i < comparison.points.size(); ++i) {
+    const ComparisonPoint& compared = comparison.points[i];
+    const TodPoint* point = point_at(camera.curve, compared.set_delta_t_k);
+    if (point == nullptr) continue;
+    std::vector<Trial> own;
+    std::ranges::copy_if(camera.trials, std::back_inserter(own),
+                         [&](const Trial& trial) { return trial.set_delta_t_k == point->set_delta_t_k; });
+    auto paired = ratio_at(*point, own, compared.margin_percent, inputs, observer, options);
+    if (!paired) {
+      if (paired.error().code == ErrorCode::interrupted) {
+        outcome.ended_by = paired.error();
+        return outcome;
+      }
+      outcome.notes.push_back("at " + number_text(point->set_delta_t_k) +
+                              " K camera and twin are not paired: " + paired.error().message);
+      continue;
+    }
+    if (unfit_for_pairs(*point)) paired->verdict = ComparisonVerdict::inconclusive;
+    add_paired(comparison, i, *paired);
+  }
+  return outcome;
+}
+
+}  // namespace todbench

@@ -1,0 +1,42 @@
+// Camera against twin by common phases: both answered the same presentations, and what those have in common cancels.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "acquisition/core/result.h"
+#include "tod/comparison/comparison.h"
+#include "tod/psychometric/psychometric_fit.h"
+
+namespace todbench {
+
+/// What is beside a paired ratio wherever people read it.
+inline constexpr std::string_view not_cancelled_by_pairs =
+    "Pairing cancels what both saw alike, the phases and the contrast that the camera measured. It does not cancel an "
+    "error of that contrast, of the distance or of the plate: those belong to the budget.";
+
+/// One presentation of one triangle: what the camera's frames were answered with, and what the twin's were.
+struct PairedAnswer {
+  GradedAnswer camera;
+  double twin_probability = 0;  ///< of the right answer, mean over the twin's draws
+  double twin_variance = 0;     ///< of that mean, from the scatter of the draws
+};
+
+/// Difference estimator of the ratio of acuities camera / twin: ln S75 of both by quasi-likelihood with the same
+/// function `table` (twin_shape.h; with a slope of their own, both, where `with_slope`), their difference, and its
+/// variance from the differences of what each answer has in the two, over set-ups or over presentations and places
+/// (clustered_variance.h). To first order an error of the function is in neither, and what camera and twin have in
+/// common, phase and contrast of a presentation, is in neither the difference nor its interval. Noise that they share
+/// would cancel as well: the caller sees to it that they share none.
+///
+/// `draws` is kept for the record. Verdict as of compare(), with Student's t; equivalent wins. `invalid_input`: as
+/// twin_shape_estimate(), fewer than two clusters, a margin that is not positive, probabilities outside 0 to 1.
+[[nodiscard]] Result<RatioOfPairs> paired_ratio(std::span<const PairedAnswer> answers, const ProportionTable& table,
+                                                bool with_slope, int draws, double margin_percent);
+
+/// The ratio A / B of two cameras from the ratios of both to the same twin, each with its own presentations, whose
+/// errors are independent: degrees of freedom of Welch and Satterthwaite. `draws` is the smaller one.
+[[nodiscard]] RatioOfPairs ratio_of_paired(const RatioOfPairs& a, const RatioOfPairs& b, double margin_percent);
+
+}  // namespace todbench
