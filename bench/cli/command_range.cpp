@@ -155,17 +155,21 @@ int run_range(Console& console, const RangeArguments& arguments) {
   if (!sources) return report_error(console, sources.error());
   const auto models = range_models(options.models, *sources, question);
   if (!models) return report_error(console, models.error());
+  const auto grid = options.grid_json(*sources, question, *sensor);
+  if (!grid) return report_error(console, grid.error());
   if (auto written = options.write(*models, question); !written) return report_error(console, written.error());
   if (console.json()) {
     Json json = range_json(tod, task);
     json["delta_t_k"] = options.asked_delta_t_k;
     json["atmosphere"] = atmosphere_json(*air, task, tod.prediction.r75_m, options, *sensor);
     json["models"] = models_json(*models, *sources, question, tod.twin_r75_m);
+    if (!grid->is_null()) json["grid"] = *grid;
     if (*session) add_accepted_changes(json, arguments.opening, (*session)->accepted_changes);
     console.object(json);
   } else {
     if (arguments.more.asks(RangeModel::tod)) print_range(console, tod, task, *air);
     if (arguments.more.models.size() > 1 || !arguments.more.asks(RangeModel::tod)) print_models(console, *models);
+    if (!grid->is_null()) print_grid(console, *grid);
     if (*session) {
       if (const auto sentence = accepted_sentence(arguments.tod, **session); !sentence.empty()) console.text(sentence);
     }

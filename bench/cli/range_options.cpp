@@ -159,6 +159,23 @@ void RangeOptions::add_to(CLI::App& command) {
                   "relative standard uncertainty of the extinction: joins the intervals")
       ->check(number_in(0, 50))
       ->capture_default_str();
+  command
+      .add_option("--curve-u-percent", curve_u_percent,
+                  "relative standard uncertainty of the thresholds of MRTD, MTDP-like curve and CTF")
+      ->check(number_in(0, 50))
+      ->capture_default_str();
+  auto* sizes = command.add_option("--grid-sizes-m", grid.sizes_m, "sizes of a grid of targets, separated by commas")
+                    ->delimiter(',')
+                    ->check(number_in(1e-6, 1e6));
+  auto* contrasts = command.add_option("--grid-contrasts-k", grid.contrasts_k, "contrasts of the grid")
+                        ->delimiter(',')
+                        ->check(number_in(-5000, 5000))
+                        ->needs(sizes);
+  sizes->needs(contrasts);
+  command.add_option("--grid-ranges-m", grid.ranges_m, "ranges at which the grid has P")
+      ->delimiter(',')
+      ->check(number_in(1e-3, 1e8))
+      ->needs(sizes);
   command.add_option("--svg", svg, "writes the figure of P against range to this file");
   command.add_option("--page", page, "writes figure, table and assumptions to this HTML file");
 }
@@ -237,6 +254,7 @@ RangeQuestion RangeOptions::question(const RangeTask& task, std::optional<double
           .v50 = v50.value_or(task.m75 / m75_from_v50(1)),
           .air = found,
           .extinction_u_percent = extinction_u_percent,
+          .curve_u_percent = curve_u_percent,
           .formula = formula,
           .target_contrast = target_contrast};
 }
@@ -261,6 +279,49 @@ Result<void> RangeOptions::write(const std::vector<ModelRange>& answers, const R
                         .air = question.air.source,
                         .notes = question.air.notes};
   return write_file_atomically(page, render_html(range_page(answers, words)));
+}
+
+namespace {
+
+/// Values as nested lists, the last dimension innermost.
+Json nested(const std::vector<std::optional<double>>& values, std::size_t outer, std::size_t inner) {
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < outer; ++i) {
+    Json row = Json::array();
+    for (std::size_t k = 0; k < inner; ++k) row.push_back(json_number(values[i * inner + k]));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace
+
+Result<Json> RangeOptions::grid_json(const RangeSources& sources, const RangeQuestion& question,
+                                     const std::optional<SensorSpec>& spec) const {
+  if (grid.sizes_m.empty()) return Json();
+  RangeGridAxes axes = grid;
+  for (double& contrast_k : axes.contrasts_k) {
+    const auto equivalent = equivalent_contrast_k(contrast_k, spec, question.air);
+    if (!equivalent) return tl::unexpected(equivalent.error());
+    contrast_k = *equivalent;
+  }
+  const auto grids = range_grid(models, sources, question, axes);
+  if (!grids) return tl::unexpected(grids.error());
+  const std::size_t sizes = axes.sizes_m.size(), contrasts = axes.contrasts_k.size();
+  Json by_model = Json::object();
+  for (const auto& found : *grids) {
+    const Json flat = nested(found.probability, sizes * contrasts, axes.ranges_m.size());
+    Json probability = Json::array();
+    for (std::size_t s = 0; s < sizes; ++s) {
+      Json row = Json::array();
+      for (std::size_t c = 0; c < contrasts; ++c) row.push_back(flat[s * contrasts + c]);
+      probability.push_back(std::move(row));
+    }
+    by_model[std::string(to_string(found.model))] = {{"r75_m", nested(found.r75_m, sizes, contrasts)},
+                                                     {"probability", probability}};
+  }
+  return Json{
+      {"sizes_m", grid.sizes_m}, {"contrasts_k", grid.contrasts_k}, {"ranges_m", grid.ranges_m}, {"models", by_model}};
 }
 
 Json atmosphere_json(const Atmosphere& air, const RangeTask& task, std::optional<double> r75_m,
@@ -320,6 +381,23 @@ Json models_json(const std::vector<ModelRange>& models, const RangeSources& sour
     json[model.name] = std::move(entry);
   }
   return json;
+}
+
+void print_grid(Console& console, const Json& grid) {
+  for (const auto& [name, found] : grid["models"].items()) {
+    TableRow header{"size [m]"};
+    for (const auto& contrast_k : grid["contrasts_k"]) header.push_back(number_text(contrast_k) + " K");
+    std::vector<TableRow> rows;
+    for (std::size_t s = 0; s < grid["sizes_m"].size(); ++s) {
+      TableRow row{number_text(grid["sizes_m"][s])};
+      for (const auto& r75_m : found["r75_m"][s])
+        row.push_back(fixed(r75_m.is_null() ? std::nullopt : std::optional<double>(r75_m), 1));
+      rows.push_back(std::move(row));
+    }
+    console.text("");
+    console.text("R75 in m by size and contrast, " + name);
+    console.table(header, rows);
+  }
 }
 
 void print_models(Console& console, const std::vector<ModelRange>& models) {

@@ -19,7 +19,8 @@ struct RangeOptions {
   std::optional<double> background_k, air_k, surround_k, target_contrast;
   double emissivity = 1;
   double asked_delta_t_k = 0;  ///< as on the command line
-  double n50 = 6, mtdp_n50 = 6, extinction_u_percent = 0;
+  double n50 = 6, mtdp_n50 = 6, extinction_u_percent = 0, curve_u_percent = 0;
+  RangeGridAxes grid{};  ///< no sizes: none is asked for
   FormulaConditions formula{};
 
   /// Adds the options; `this` outlives the parser.
@@ -41,6 +42,10 @@ struct RangeOptions {
   /// The figure and the page that were asked for.
   [[nodiscard]] Result<void> write(const std::vector<ModelRange>& models, const RangeQuestion& question) const;
 
+  /// The grid that was asked for, as JSON; null where none was.
+  [[nodiscard]] Result<Json> grid_json(const RangeSources& sources, const RangeQuestion& question,
+                                       const std::optional<SensorSpec>& sensor) const;
+
   [[nodiscard]] Result<SpectralBand> band_of(const std::optional<SensorSpec>& sensor) const;
   /// Precondition: a background is named.
   [[nodiscard]] RadiativeScene scene(double delta_t_k, const Atmosphere& air) const;
@@ -52,6 +57,8 @@ struct RangeOptions {
 /// "models": the answers by name.
 [[nodiscard]] Json models_json(const std::vector<ModelRange>& models, const RangeSources& sources,
                                const RangeQuestion& question, std::optional<double> twin_r75_m);
+/// A table of R75 for every model of a grid.
+void print_grid(Console& console, const Json& grid);
 void print_models(Console& console, const std::vector<ModelRange>& models);
 
 }  // namespace todbench

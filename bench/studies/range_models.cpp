@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "acquisition/core/normal.h"
+
 namespace todbench {
 namespace {
 
@@ -23,6 +25,14 @@ struct Prepared {
 std::string formula_words(const RangeQuestion& question) {
   return fmt::format("SNR threshold {:g}, eye {:g} s", question.formula.snr_threshold,
                      question.formula.eye_integration_s);
+}
+
+/// The contrast that a model asks its curve for.
+double contrast_for(RangeModel which, const RangeSources& sources, const RangeQuestion& question) {
+  if (which == RangeModel::tod) return contrast_on_curve(sources.thresholds, question.delta_t_k);
+  if (which != RangeModel::ttp) return std::abs(question.delta_t_k);
+  const double on_display = std::abs(question.delta_t_k) / (2 * question.formula.scene_contrast_k);
+  return std::min(1.0, question.target_contrast.value_or(on_display));
 }
 
 Prepared prepared_tod(const RangeSources& sources, const RangeQuestion& question) {
@@ -151,6 +161,17 @@ Interval joined_with_air(const Prepared& model, const RangeQuestion& question, d
   return {side(1 + reach, of_curve.low), side(1 - reach, of_curve.high)};
 }
 
+/// R75 with every threshold of the curve changed, which is the contrast changed the other way.
+Interval interval_of_curve(const Prepared& model, const RangeQuestion& question) {
+  const double factor = std::exp(normal_z95 * question.curve_u_percent / 100);
+  const auto changed = [&](double times) {
+    Prepared other = model;
+    other.target.contrast *= times;
+    return range_at(other, question.air.air, 0.75);
+  };
+  return {changed(1 / factor), changed(factor)};
+}
+
 /// TOD keeps the numbers of the one prediction that the rest of the program uses.
 Result<void> predict_tod(Prepared& model, const RangeSources& sources, const RangeQuestion& question) {
   RangeTask task{
@@ -179,10 +200,11 @@ Result<void> answer(Prepared& model, const RangeSources& sources, const RangeQue
   model.head.r75_m = found.range_m;
   model.head.reason = found.reason;
   if (found.at_least_m) model.head.r75_ci95_m.low = found.at_least_m;
-  // The curve is a formula without an error of its own; what the air does to it is known.
-  if (found.range_m && question.extinction_u_percent > 0) {
-    model.head.r75_ci95_m = joined_with_air(model, question, *found.range_m, {found.range_m, found.range_m});
-    model.head.notes.emplace_back("the interval is that of the air alone: the curve has no stated uncertainty");
+  // The curve is a formula without an error of its own; what is stated of it and what the air does are known.
+  if (found.range_m && (question.extinction_u_percent > 0 || question.curve_u_percent > 0)) {
+    model.head.r75_ci95_m = joined_with_air(model, question, *found.range_m, interval_of_curve(model, question));
+    if (!(question.curve_u_percent > 0))
+      model.head.notes.emplace_back("the interval is that of the air alone: the curve has no stated uncertainty");
   }
   return {};
 }
@@ -254,6 +276,46 @@ Result<std::vector<ModelRange>> range_models(std::span<const RangeModel> asked, 
   std::vector<ModelRange> answers;
   for (auto& model : models) answers.push_back(std::move(model.head));
   return answers;
+}
+
+Result<std::vector<RangeGrid>> range_grid(std::span<const RangeModel> asked, const RangeSources& sources,
+                                          const RangeQuestion& question, const RangeGridAxes& axes) {
+  constexpr std::size_t most = 200000;
+  const std::size_t targets = axes.sizes_m.size() * axes.contrasts_k.size();
+  if (targets == 0) return fail(ErrorCode::invalid_input, "a grid needs at least one size and one contrast");
+  if (targets * std::max<std::size_t>(axes.ranges_m.size(), 1) > most)
+    return fail(ErrorCode::invalid_input, fmt::format("a grid has at most {} probabilities", most));
+  for (const double range_m : axes.ranges_m) {
+    if (!(std::isfinite(range_m) && range_m > 0)) return fail(ErrorCode::invalid_input, "ranges are above 0 m");
+  }
+  std::vector<RangeGrid> grids;
+  for (const RangeModel which : asked) {
+    RangeGrid grid{which, {}, {}};
+    RangeQuestion one = question;
+    one.size_m = axes.sizes_m.front();
+    one.delta_t_k = axes.contrasts_k.front();
+    Prepared model = prepared(which, sources, one);
+    for (const double size_m : axes.sizes_m) {
+      for (const double contrast_k : axes.contrasts_k) {
+        one.size_m = size_m;
+        one.delta_t_k = contrast_k;
+        if (auto checked = check(one); !checked) return tl::unexpected(checked.error());
+        if (!model.resolved) {
+          grid.r75_m.emplace_back();
+          grid.probability.resize(grid.probability.size() + axes.ranges_m.size());
+          continue;
+        }
+        model.target = {size_m, contrast_for(which, sources, one)};
+        grid.r75_m.push_back(range_at(model, question.air.air, 0.75));
+        for (const double range_m : axes.ranges_m) {
+          const auto x = criterion_ratio(model.resolved, model.target, question.air.air, model.criterion, range_m);
+          grid.probability.push_back(x ? std::optional(target_probability(model.criterion.form, *x)) : std::nullopt);
+        }
+      }
+    }
+    grids.push_back(std::move(grid));
+  }
+  return grids;
 }
 
 TtpRanges ttp_ranges(const RangeSources& sources, const RangeQuestion& question, ProbabilityForm form) {

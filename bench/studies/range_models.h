@@ -28,6 +28,7 @@ struct RangeQuestion {
   double v50 = 8.5;
   Atmosphere air{};
   double extinction_u_percent = 0;  ///< relative standard uncertainty of the extinction
+  double curve_u_percent = 0;       ///< of the thresholds of MRTD, MTDP-like curve and CTF; TOD brings its own
   FormulaConditions formula{};
   std::optional<double> target_contrast{};  ///< of luminances, for TTP; else |dT| / (2 x scene contrast)
 };
@@ -44,6 +45,21 @@ struct RangeSources {
 /// uncertainty joined to its interval. `invalid_input`: a number of the question out of its range.
 [[nodiscard]] Result<std::vector<ModelRange>> range_models(std::span<const RangeModel> asked,
                                                            const RangeSources& sources, const RangeQuestion& question);
+
+/// What a grid of targets is asked at; each at least one value above 0.
+struct RangeGridAxes {
+  std::vector<double> sizes_m, contrasts_k;
+  std::vector<double> ranges_m;  ///< may be empty: R75 alone
+};
+struct RangeGrid {
+  RangeModel model = RangeModel::tod;
+  std::vector<std::optional<double>> r75_m;        ///< [size][contrast]
+  std::vector<std::optional<double>> probability;  ///< [size][contrast][range]
+};
+/// Every model at every size, contrast and range; size and contrast of the question do not count. Curves are computed
+/// once. `invalid_input`: values of axes or question out of range, or over 200000 probabilities.
+[[nodiscard]] Result<std::vector<RangeGrid>> range_grid(std::span<const RangeModel> asked, const RangeSources& sources,
+                                                        const RangeQuestion& question, const RangeGridAxes& axes);
 
 /// Ranges by the TTP model with a named form of P.
 struct TtpRanges {

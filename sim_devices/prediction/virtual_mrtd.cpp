@@ -22,7 +22,7 @@
 namespace todbench {
 namespace {
 
-constexpr std::size_t across = 8, along = 2, bar_phases = across * along;
+constexpr std::size_t phases_across = 8, phases_along = 2, bar_phases = phases_across * phases_along;
 constexpr double wanted_share = 0.75, false_alarms = 0.05;
 constexpr double contrast_step = 1.25;
 constexpr int most_steps = 36;  ///< to 2500 times where the ideal observer is right half of the time or so
@@ -143,7 +143,7 @@ class BarTrial {
     }
     std::vector<double> contrasts_k;
     std::vector<Share> all;
-    std::array<std::vector<Share>, across> by_phase;
+    std::array<std::vector<Share>, phases_across> by_phase;
     const auto passed = [](const std::vector<Share>& shares) {
       return !shares.empty() && shares.back().mean >= wanted_share;
     };
@@ -188,10 +188,10 @@ class BarTrial {
 
   /// Of the pattern's middle from that of the window, in samples: across the bars, and along them.
   [[nodiscard]] static double offset_across(std::size_t phase) {
-    return (static_cast<double>(phase % across) + 0.5) / across - 0.5;
+    return (static_cast<double>(phase % phases_across) + 0.5) / phases_across - 0.5;
   }
   [[nodiscard]] static double offset_along(std::size_t phase) {
-    return (static_cast<double>(phase / across) + 0.5) / along - 0.5;
+    return (static_cast<double>(phase / phases_across) + 0.5) / phases_along - 0.5;
   }
 
   [[nodiscard]] Seen of(cv::Mat1f window) const {
@@ -259,7 +259,7 @@ class BarTrial {
     return task_.criterion == BarCriterion::detection ? largest[0] : largest[0] - largest[1];
   }
 
-  void answer(double contrast_k, std::vector<Share>& all, std::array<std::vector<Share>, across>& by_phase) {
+  void answer(double contrast_k, std::vector<Share>& all, std::array<std::vector<Share>, phases_across>& by_phase) {
     const auto scale = static_cast<float>(1 / contrast_k);
     const float own = own_noise(contrast_k);
     if (nothing_.empty()) nothing_.assign(bank_->scores(), 0.0F);
@@ -273,9 +273,9 @@ class BarTrial {
     }
     const auto share = task_.criterion == BarCriterion::bars_resolved ? share_of_yes : share_of_pairs;
     all.push_back(share(pattern, other));
-    for (std::size_t a = 0; a < across; ++a) {
+    for (std::size_t a = 0; a < phases_across; ++a) {
       Responses some, others;
-      for (std::size_t phase = a; phase < bar_phases; phase += across) {
+      for (std::size_t phase = a; phase < bar_phases; phase += phases_across) {
         some.push_back(pattern[phase]);
         others.push_back(other[phase]);
       }
@@ -294,7 +294,7 @@ class BarTrial {
   double noise_k_ = 0;
 };
 
-Result<void> check(const VirtualMrtdTask& task, const SensorSpec& spec) {
+Result<void> check_bars(const VirtualMrtdTask& task, const SensorSpec& spec) {
   if (task.frequencies_per_mrad.empty()) return fail(ErrorCode::invalid_input, "there is no frequency");
   if (task.draws < 64) return fail(ErrorCode::invalid_input, "there must be at least 64 draws");
   for (const double f : task.frequencies_per_mrad) {
@@ -352,7 +352,7 @@ std::string_view to_string(BarCriterion criterion) {
 
 Result<std::vector<VirtualMrtdPoint>> virtual_mrtd(const VirtualMrtdTask& task) {
   const SensorSpec spec = as_planned(task.sensor, task.plan);
-  if (auto fine = check(task, spec); !fine) return tl::unexpected(fine.error());
+  if (auto fine = check_bars(task, spec); !fine) return tl::unexpected(fine.error());
   const SceneImager imager(spec, task.plan, task.accuracy);
   std::vector<VirtualMrtdPoint> points;
   for (const double frequency : task.frequencies_per_mrad) {

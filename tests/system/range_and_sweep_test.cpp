@@ -68,6 +68,14 @@ TEST(RangeCommand, ReadsTheSessionThroughAirAndRefusesWhatIsNone) {
       one_object(range({"--atmosphere", "us-standard", "--models", "all", "--page", "p.html", "--svg", "p.svg"}));
   const Ended beyond = range({"--atmosphere", "./short.csv"});
 
+  const Json grid = one_object(range({"--models", "all", "--grid-sizes-m", "2,4.9", "--grid-contrasts-k", "5,20",
+                                      "--grid-ranges-m", "100,200,400"}))["grid"];
+
+  ASSERT_EQ(grid["models"].size(), 4u);
+  EXPECT_EQ(grid["models"]["acquire"]["probability"][1][1].size(), 3u);
+  EXPECT_NEAR(grid["models"]["tod"]["r75_m"][1][1].get<double>() / plain["r75_m"].get<double>(), 1, 1e-9);
+  expect_refused(range({"--grid-sizes-m", "2,4.9"}), 2, "--grid-contrasts-k");
+  expect_refused(range({"--grid-sizes-m", "2", "--grid-contrasts-k", "0"}), 2, "no contrast");
   EXPECT_EQ(clear["r75_m"], plain["r75_m"]);
   EXPECT_EQ(clear["curve"], plain["curve"]);
   EXPECT_EQ(plain["models"]["tod"]["r75_m"], plain["r75_m"]);

@@ -55,6 +55,66 @@ TEST(RangeModels, TodInClearAirIsTheRangeOfTheTodCurve) {
   EXPECT_EQ(models->front().r75_ci95_m.low, plain->r75_ci95_m.low);
 }
 
+TEST(RangeGrid, IsEveryModelAtEveryTargetOnItsOwn) {
+  const RangeGridAxes axes{.sizes_m = {2, 4.9}, .contrasts_k = {1, 30}, .ranges_m = {200, 700}};
+
+  const auto grids = range_grid(all_range_models, sources(), question("us-standard"), axes);
+
+  ASSERT_TRUE(grids) << grids.error().message;
+  ASSERT_EQ(grids->size(), all_range_models.size());
+  for (std::size_t i = 0; i < axes.sizes_m.size(); ++i) {
+    for (std::size_t k = 0; k < axes.contrasts_k.size(); ++k) {
+      RangeQuestion one = question("us-standard");
+      one.size_m = axes.sizes_m[i];
+      one.delta_t_k = axes.contrasts_k[k];
+      const auto alone = range_models(all_range_models, sources(), one);
+      ASSERT_TRUE(alone);
+      for (std::size_t m = 0; m < grids->size(); ++m) {
+        const std::size_t at = i * axes.contrasts_k.size() + k;
+        ASSERT_EQ((*grids)[m].r75_m[at].has_value(), (*alone)[m].r75_m.has_value());
+        if ((*alone)[m].r75_m) {
+          EXPECT_NEAR(*(*grids)[m].r75_m[at] / *(*alone)[m].r75_m, 1, 1e-9) << m;
+        }
+        const auto near = (*grids)[m].probability[at * 2], far = (*grids)[m].probability[at * 2 + 1];
+        ASSERT_TRUE(near);
+        if (far) {
+          EXPECT_LT(*far, *near);
+        }
+        if (const auto r75_m = (*alone)[m].r75_m) {
+          EXPECT_EQ(*near > 0.75, *r75_m > 200);
+        }
+      }
+    }
+  }
+}
+
+TEST(RangeGrid, RefusesWhatIsNone) {
+  const auto asked = question("clear");
+  const std::vector<double> many(500, 1.0);
+  for (const RangeGridAxes& axes :
+       {RangeGridAxes{{}, {1}, {}}, RangeGridAxes{{1}, {}, {}}, RangeGridAxes{{1}, {0}, {}},
+        RangeGridAxes{{-1}, {1}, {}}, RangeGridAxes{{1}, {1}, {0}}, RangeGridAxes{many, many, {}}}) {
+    EXPECT_FALSE(range_grid(all_range_models, sources(), asked, axes));
+  }
+}
+
+// MRTD a exp(b f), no air: R75 = size ln(C / a) / (b N75), so a threshold u higher shortens it by ln u / ln(C / a).
+TEST(RangeModels, TheUncertaintyOfACurveJoinsTheInterval) {
+  RangeSources given;
+  std::vector<CurvePoint> points;
+  for (int i = 0; i <= 10; ++i) points.push_back({0.3 * i, 0.01 * std::exp(1.8 * i)});
+  given.mrtd = *LogLinearCurve::of(points, "MRTD");
+  RangeQuestion asked = question("clear");
+  asked.curve_u_percent = 10;
+
+  const auto models = range_models(std::array{RangeModel::acquire}, given, asked);
+
+  ASSERT_TRUE(models && models->front().r75_m);
+  const double change = 1.959963984540054 * 0.1 / std::log(3 / 0.01);
+  EXPECT_NEAR(*models->front().r75_ci95_m.low / *models->front().r75_m, 1 - change, 1e-6);
+  EXPECT_NEAR(*models->front().r75_ci95_m.high / *models->front().r75_m, 1 + change, 1e-6);
+}
+
 TEST(RangeModels, TheFormOfPChangesTheTtpRange) {
   const auto asked = question("clear");
   const auto first = ttp_ranges(sources(), asked, ProbabilityForm::ttp_2004);
