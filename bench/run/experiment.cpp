@@ -406,6 +406,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
     outcome.ended_by = std::move(twin.ended_by);
   }
   if (!outcome.ended_by) {
+    if (outcome.measures) compare_picture(*outcome.measures, loaded, inputs);
     auto measures = simulated_measures(loaded, inputs, frame, stop);
     if (measures)
       outcome.twin_measures = *std::move(measures);
