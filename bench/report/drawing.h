@@ -33,11 +33,17 @@ struct Disc {
   double radius = 0;
 };
 
+/// A picture of pixels, stretched over a place.
+struct Raster {
+  Box place;
+  std::string png_base64;  ///< a PNG file; is_base64() holds
+};
+
 /// What a mark is for; style_of() says how that looks.
 enum class Pen { frame, grid, axis, reference, curve, dashed, dotted, bar, marker, hollow, limit, band };
 
 struct Mark {
-  std::variant<Segment, Polyline, Box, Disc> shape;
+  std::variant<Segment, Polyline, Box, Disc, Raster> shape;
   Pen pen = Pen::axis;
   PlotTone tone = PlotTone::first;  ///< where style_of(pen) takes the colour of the tone
 };

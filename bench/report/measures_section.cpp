@@ -5,6 +5,7 @@
 #include <cctype>
 #include <utility>
 
+#include "bench/report/drawing.h"
 #include "bench/report/number_format.h"
 #include "bench/report/plot.h"
 #include "bench/report/report_pieces.h"
@@ -12,7 +13,7 @@
 namespace todbench {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 21> names{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 23> names{{
     {"transfer_slope", "Temperature scale: contrast seen over contrast shown"},
     {"transfer_offset", "Temperature scale: offset"},
     {"transfer_nonlinearity", "Temperature scale: nonlinearity"},
@@ -28,6 +29,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 21> names{{
     {"noise_th", "3-D noise th: columns in time"},
     {"noise_vh", "3-D noise vh: fixed pattern"},
     {"noise_tvh", "3-D noise tvh: pixels in time"},
+    {"picture_residual", "Picture of the plate against the sensor model: residual"},
+    {"picture_residual_over_noise", "Picture of the plate: residual over the temporal noise of the mean"},
     {"mtf_x", "MTF along x"},
     {"mtf50_x", "Frequency of MTF 0.5 along x"},
     {"mtf_x_model", "MTF along x, closed form of the sensor model"},
@@ -130,6 +133,56 @@ std::optional<FigurePairs> mtf_figures(const SessionMeasures& measures, bool cam
   return figures;
 }
 
+/// One panel, with outlines where they are given.
+Figure panel_figure(const PlatePanels& panels, const std::string& png, const std::string& id, const std::string& title,
+                    const std::string& caption, bool outlined) {
+  constexpr double width = 430;
+  const double scale = width / panels.width;
+  Drawing drawing;
+  drawing.id = "plate-" + id, drawing.title = title, drawing.description = caption;
+  drawing.width = width;
+  drawing.height = scale * panels.height;
+  drawing.frame = {0, 0, drawing.width, drawing.height};
+  drawing.inside.push_back({.shape = Raster{drawing.frame, png}});
+  if (outlined) {
+    Polyline line;
+    for (const Polygon& outline : panels.outlines) {
+      std::vector<Place> run;
+      for (std::size_t i = 0; i <= outline.size() && !outline.empty(); ++i) {
+        const cv::Point2d& p = outline[i % outline.size()];
+        run.push_back({(p.x + 0.5) * scale, (p.y + 0.5) * scale});
+      }
+      line.runs.push_back(std::move(run));
+    }
+    drawing.inside.push_back({.shape = std::move(line), .pen = Pen::curve, .tone = PlotTone::second});
+  }
+  return {std::move(drawing), caption};
+}
+
+/// The plate of the camera with what was found, that of the sensor model, the difference; and the difference of the
+/// twin, which is what noise alone makes.
+FigurePairs plate_figures(const PlatePanels& panels, const std::optional<MeasureLines>& twin, bool camera) {
+  const std::string who = camera ? "camera" : "simulated sensor";
+  const auto kelvin = [](double value) { return significant(value, 3) + " K"; };
+  const std::string range = kelvin(panels.black_k) + " black to " + kelvin(panels.white_k) + " white";
+  FigurePairs figures;
+  figures.figures.push_back(panel_figure(
+      panels, panels.seen, "seen", "Plate as the " + who + " saw it",
+      "The plate as the " + who + " saw it, " + range + "; outlines: the triangles where they were found", true));
+  figures.figures.push_back(panel_figure(panels, panels.expected, "expected", "Plate by the sensor model",
+                                         "The same by the sensor model at the same place, without noise, " + range,
+                                         false));
+  const auto difference = [&](const PlatePanels& of, const std::string& id, const std::string& name) {
+    figures.figures.push_back(panel_figure(
+        of, of.difference, id, "Difference, " + name,
+        "Difference, " + name + ": black −" + kelvin(of.difference_k) + ", white +" + kelvin(of.difference_k), false));
+  };
+  difference(panels, "difference", who + " minus sensor model");
+  if (twin && twin->picture)
+    difference(*twin->picture, "difference-twin", "simulated twin minus sensor model: what noise alone makes");
+  return figures;
+}
+
 }  // namespace
 
 std::optional<Section> measures_section(const ReportData& data) {
@@ -156,6 +209,7 @@ std::optional<Section> measures_section(const ReportData& data) {
   if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
   if (auto figures = mtf_figures(*data.measures, data.camera.has_value()))
     section.blocks.emplace_back(*std::move(figures));
+  if (main && main->picture) section.blocks.emplace_back(plate_figures(*main->picture, twin, data.camera.has_value()));
   if (!conditions.empty()) section.blocks.emplace_back(list_of(conditions));
   std::vector<std::string> reasons;
   if (main) reasons = main->reasons;

@@ -51,6 +51,11 @@ struct ShapeElement {
     return fmt::format(R"(<circle class="{}" cx="{}" cy="{}" r="{}"/>)", css, at(disc.centre.x), at(disc.centre.y),
                        at(disc.radius));
   }
+  std::string operator()(const Raster& raster) const {
+    return fmt::format(R"(<image style="image-rendering:pixelated" preserveAspectRatio="none" {} )"
+                       R"(href="data:image/png;base64,{}"/>)",
+                       box_attributes(raster.place), raster.png_base64);
+  }
 };
 
 Markup mark_element(const Mark& mark) {

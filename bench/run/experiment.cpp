@@ -450,6 +450,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
     pair_with_twin(outcome, *result, plan, inputs, frame, stop);
   }
   if (!outcome.ended_by) {
+    if (outcome.measures) compare_picture(*outcome.measures, loaded, inputs);
     auto measures = simulated_measures(loaded, inputs, frame, stop);
     if (measures)
       outcome.twin_measures = *std::move(measures);

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "bench/run/plate_picture.h"
 #include "bench/run/simulated_responses.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "sim_devices/sensor/transfer_functions.h"
@@ -55,19 +56,41 @@ Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan, const 
   return *std::move(measures);
 }
 
+namespace {
+
+std::shared_ptr<const SensorModel> whole_sensor(const LoadedPlan& loaded, const ExperimentInputs& inputs) {
+  SensorSpec sensor = loaded.parts().sensor;
+  sensor.microscan = loaded.plan().simulation.microscan;
+  return std::make_shared<const SensorModel>(sensor, full_plan(sensor, {}, {}), inputs.accuracy, loaded.plan().seed);
+}
+
+void compare_with(CameraMeasures& measures, const SensorModel& model, const ExperimentInputs& inputs) {
+  if (!measures.view || inputs.plates.empty()) return;
+  auto picture = plate_picture(*measures.view, inputs.plates.front(), model, inputs.motion);
+  if (picture)
+    measures.picture = *std::move(picture);
+  else
+    measures.reasons.push_back("picture of the plate: " + picture.error().message);
+}
+
+}  // namespace
+
+void compare_picture(CameraMeasures& measures, const LoadedPlan& loaded, const ExperimentInputs& inputs) {
+  compare_with(measures, *whole_sensor(loaded, inputs), inputs);
+}
+
 Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loaded, const ExperimentInputs& inputs,
                                                          const SessionFrame& frame, std::stop_token stop) {
   const Plan& plan = loaded.plan();
   if (!measures_asked(plan)) return std::nullopt;
-  SensorSpec sensor = loaded.parts().sensor;
-  sensor.microscan = plan.simulation.microscan;
-  const auto model = std::make_shared<const SensorModel>(sensor, full_plan(sensor, {}, {}), inputs.accuracy, plan.seed);
+  const auto model = whole_sensor(loaded, inputs);
   MeasurementOptions options = simulated_options(plan, inputs);
   auto response = simulated_responses(*model, plan, inputs.plates, options, stop);
   if (!response) return tl::unexpected(response.error());
   options.contrast_response = *std::move(response);
   OpenedBench bench = simulated_bench(model, loaded.shown_plates(), plan.target.distance_m, {}, inputs.motion);
   auto measures = physical_measures(plan, options, inputs.mtf_plate, bench, frame, std::move(stop));
+  if (measures && *measures) compare_with(**measures, *model, inputs);
   if (measures && *measures && (*measures)->mtf) add_closed_form(*(*measures)->mtf, *model, inputs);
   return measures;
 }

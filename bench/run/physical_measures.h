@@ -28,4 +28,8 @@ namespace todbench {
                                                                        const ExperimentInputs& inputs,
                                                                        const SessionFrame& frame, std::stop_token stop);
 
+/// Puts the picture of the plan's sensor beside the mean picture of the plate, where there is one; a reason where they
+/// cannot be compared.
+void compare_picture(CameraMeasures& measures, const LoadedPlan& loaded, const ExperimentInputs& inputs);
+
 }  // namespace todbench

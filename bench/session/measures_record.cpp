@@ -6,7 +6,9 @@
 #include <array>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <opencv2/imgcodecs.hpp>
 
+#include "bench/text/base64.h"
 #include "bench/text/json_reader.h"
 #include "tod/measures/pixel_noise.h"
 
@@ -98,6 +100,48 @@ void add_mtf(MeasureLines& out, const MtfMeasure& mtf) {
   out.mtf = MtfCurves{mtf.pitch_mrad, mtf.edges};
 }
 
+/// A grey PNG as base64; values below `black` are black, above `white` white.
+std::string panel_png(const cv::Mat1d& values, double black, double white) {
+  cv::Mat1b grey;
+  const double span = std::max(white - black, 1e-9);
+  values.convertTo(grey, CV_8U, 255 / span, -255 * black / span);
+  std::vector<unsigned char> png;
+  if (!cv::imencode(".png", grey, png)) return "";
+  return base64({reinterpret_cast<const char*>(png.data()), png.size()});
+}
+
+PlatePanels panels_of(const PlatePicture& picture) {
+  const cv::Mat1d& seen = picture.seen.kelvin;
+  PlatePanels panels;
+  panels.width = seen.cols, panels.height = seen.rows;
+  cv::minMaxLoc(picture.expected_k, &panels.black_k, &panels.white_k);
+  constexpr double shown = 4;  // standard deviations of the residual to either side
+  panels.difference_k = std::max(shown * picture.residual_k, 1e-9);
+  panels.seen = panel_png(seen, panels.black_k, panels.white_k);
+  panels.expected = panel_png(picture.expected_k, panels.black_k, panels.white_k);
+  panels.difference = panel_png(seen - picture.expected_k, -panels.difference_k, panels.difference_k);
+  for (Polygon outline : picture.outlines) {
+    for (cv::Point2d& p : outline) p -= cv::Point2d(picture.seen.field.tl());
+    panels.outlines.push_back(std::move(outline));
+  }
+  return panels;
+}
+
+void add_picture(MeasureLines& out, const PlatePicture& picture) {
+  const std::string conditions = fmt::format(
+      "mean of {} frames of {} x {} pixels of the plate at {:g} K against the sensor model without noise; "
+      "fitted: contrast {:.4g} K, level, rotation, scale and place, moved by {:.3f} pixels",
+      picture.seen.frames, picture.seen.kelvin.cols, picture.seen.kelvin.rows, picture.seen.set_delta_t_k,
+      picture.contrast_k, picture.moved_px);
+  const double relative = 1.96 / std::sqrt(2.0 * static_cast<double>(picture.seen.kelvin.total()));
+  const auto line = [&](const char* name, const char* unit, double value) {
+    out.lines.push_back({name, unit, value, {value * (1 - relative), value * (1 + relative)}, conditions});
+  };
+  line("picture_residual", "K", picture.residual_k);
+  if (const auto ratio = picture.residual_over_noise()) line("picture_residual_over_noise", "1", *ratio);
+  out.picture = panels_of(picture);
+}
+
 Json line_json(const MeasureLine& line) {
   return {{"measure", line.measure},
           {"unit", line.unit},
@@ -182,6 +226,45 @@ Json mtf_json(const MtfMeasure& mtf) {
           {"edges", edges}};
 }
 
+Json panels_json(const PlatePanels& panels) {
+  Json outlines = Json::array();
+  for (const Polygon& outline : panels.outlines) {
+    Json corners = Json::array();
+    for (const cv::Point2d& p : outline) corners.push_back({json_number(p.x), json_number(p.y)});
+    outlines.push_back(std::move(corners));
+  }
+  return {{"width", panels.width},
+          {"height", panels.height},
+          {"black_k", json_number(panels.black_k)},
+          {"white_k", json_number(panels.white_k)},
+          {"difference_k", json_number(panels.difference_k)},
+          {"outlines_px", outlines},
+          {"seen_png", panels.seen},
+          {"expected_png", panels.expected},
+          {"difference_png", panels.difference}};
+}
+
+PlatePanels panels_from(const JsonReader& picture) {
+  PlatePanels panels;
+  panels.width = static_cast<int>(picture.at("width").whole());
+  panels.height = static_cast<int>(picture.at("height").whole());
+  panels.black_k = picture.at("black_k").number();
+  panels.white_k = picture.at("white_k").number();
+  panels.difference_k = picture.at("difference_k").number();
+  for (const JsonReader& corners : picture.at("outlines_px").elements()) {
+    Polygon outline;
+    for (const JsonReader& corner : corners.elements()) {
+      const Interval place = corner.interval();
+      outline.emplace_back(place.low.value_or(0), place.high.value_or(0));
+    }
+    panels.outlines.push_back(std::move(outline));
+  }
+  panels.seen = picture.at("seen_png").text();
+  panels.expected = picture.at("expected_png").text();
+  panels.difference = picture.at("difference_png").text();
+  return panels;
+}
+
 std::vector<double> mtf_numbers(const JsonReader& list) {
   std::vector<double> values;
   for (const JsonReader& value : list.elements()) values.push_back(value.number());
@@ -220,6 +303,7 @@ Json side_json(const std::optional<CameraMeasures>& measures) {
           {"noise", measures->noise ? noise_json(*measures->noise) : Json()},
           {"transfer", measures->transfer ? transfer_json(*measures->transfer) : Json()},
           {"mtf", measures->mtf ? mtf_json(*measures->mtf) : Json()},
+          {"picture", found.picture ? panels_json(*found.picture) : Json()},
           {"reasons", found.reasons}};
 }
 
@@ -234,6 +318,14 @@ bool complete(const std::optional<MeasureLines>& side) {
   return side->mtf->pitch_mrad > 0 && std::all_of(side->mtf->edges.begin(), side->mtf->edges.end(), whole);
 }
 
+/// What a page shows as it is has to be what it says.
+bool drawable(const std::optional<MeasureLines>& side) {
+  if (!side || !side->picture) return true;
+  const PlatePanels& panels = *side->picture;
+  return panels.width > 0 && panels.height > 0 && is_base64(panels.seen) && is_base64(panels.expected) &&
+         is_base64(panels.difference);
+}
+
 std::optional<MeasureLines> side_from(const JsonReader& side) {
   if (side.is_null()) return std::nullopt;
   MeasureLines found;
@@ -243,6 +335,8 @@ std::optional<MeasureLines> side_from(const JsonReader& side) {
   }
   const JsonReader mtf = side.at_if_there("mtf");
   if (!mtf.is_null()) found.mtf = mtf_from(mtf);
+  const JsonReader picture = side.at_if_there("picture");
+  if (!picture.is_null()) found.picture = panels_from(picture);
   found.reasons = side.at("reasons").texts();
   return found;
 }
@@ -254,6 +348,7 @@ MeasureLines measure_lines(const CameraMeasures& measures) {
   if (measures.transfer) add_transfer(found, *measures.transfer);
   if (measures.noise) add_noise(found, measures);
   if (measures.mtf) add_mtf(found, *measures.mtf);
+  if (measures.picture) add_picture(found, *measures.picture);
   found.reasons.insert(found.reasons.end(), measures.reasons.begin(), measures.reasons.end());
   return found;
 }
@@ -272,6 +367,8 @@ Result<SessionMeasures> measures_from(const Json& record) {
   const JsonReader reader(record);
   SessionMeasures measures{side_from(reader.at("main")), side_from(reader.at("twin"))};
   if (auto finished = reader.finish(); !finished) return tl::unexpected(finished.error());
+  if (!drawable(measures.main) || !drawable(measures.twin))
+    return fail(ErrorCode::invalid_input, "'picture': expected three PNG files as base64 of one size");
   if (!complete(measures.main) || !complete(measures.twin))
     return fail(ErrorCode::invalid_input, "'mtf.edges': expected lists of one length and a pitch above 0");
   return measures;

@@ -27,10 +27,21 @@ struct MtfCurves {
   std::vector<EdgeMtf> edges;
 };
 
+/// The plate as it was seen, as the sensor model makes it, and the difference: grey PNG files as base64, of the same
+/// part of the picture.
+struct PlatePanels {
+  int width = 0, height = 0;  ///< pixels of each
+  std::string seen, expected, difference;
+  double black_k = 0, white_k = 0;  ///< of the first two
+  double difference_k = 0;          ///< of the third: black at minus, white at plus this
+  std::vector<Polygon> outlines;    ///< of what was found, in pixels of the panels, centres at whole numbers
+};
+
 /// Everything that was measured of one camera, and why something was not.
 struct MeasureLines {
   std::vector<MeasureLine> lines;
   std::optional<MtfCurves> mtf{};
+  std::optional<PlatePanels> picture{};
   std::vector<std::string> reasons;
 };
 [[nodiscard]] MeasureLines measure_lines(const CameraMeasures& measures);
@@ -44,7 +55,8 @@ struct SessionMeasures {
   std::optional<MeasureLines> twin;
 };
 
-/// {"main": {"quantities": [...], "noise": {...}, "transfer": {...}, "mtf": {...}, "reasons": [...]}, "twin": the same
+/// {"main": {"quantities": [...], "noise": {...}, "transfer": {...}, "mtf": {...}, "picture": {...},
+/// "reasons": [...]}, "twin": the same
 /// or null}
 [[nodiscard]] Json measures_json(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin);
 /// `invalid_input`, naming the key, for a record that is not complete or of other types.

@@ -39,6 +39,7 @@ class Run {
       if (auto kept = keep("physical measures", found.error()); !kept) return tl::unexpected(kept.error());
       return measures;
     }
+    measures.view = view_;
     if (options_.transfer) {
       auto transfer = measure_transfer();
       if (transfer)
@@ -106,7 +107,20 @@ class Run {
     auto found = register_plate(picture->kelvin, plate(), registration);
     if (!found) return fail("finding the plate", found.error());
     where_ = *found;
+    keep_view(*picture, largest);
     return {};
+  }
+
+  void keep_view(const AveragedPicture& picture, double delta_t_k) {
+    const auto where = field();
+    if (!where) return;
+    view_ = PlateView{.frames = options_.measurement.registration_frames,
+                      .set_delta_t_k = delta_t_k,
+                      .where = where_,
+                      .picture = picture.kelvin.size(),
+                      .field = *where,
+                      .kelvin = picture.kelvin(*where).clone(),
+                      .temporal_noise_k = picture.temporal_noise_k};
   }
 
   Result<TransferMeasure> measure_transfer() {
@@ -255,6 +269,7 @@ class Run {
   std::stop_token stop_;
   FrameTaker taker_;
   Registration where_;
+  std::optional<PlateView> view_;
 };
 
 }  // namespace
@@ -262,6 +277,11 @@ class Run {
 std::optional<ComponentEstimate> CameraMeasures::temporal_variance_k2() const {
   if (!noise) return std::nullopt;
   return temporal_variance(noise->table);
+}
+
+std::optional<double> PlatePicture::residual_over_noise() const {
+  if (!(seen.temporal_noise_k > 0) || seen.frames < 1) return std::nullopt;
+  return residual_k / (seen.temporal_noise_k / std::sqrt(seen.frames));
 }
 
 std::optional<double> CameraMeasures::netd_k() const {

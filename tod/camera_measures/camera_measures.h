@@ -62,12 +62,37 @@ struct MtfMeasure {
   std::vector<EdgeMtf> edges;      ///< the most central rectangle first
 };
 
+/// The first plate at the contrast that shows it best, as the mean of so many frames.
+struct PlateView {
+  int frames = 0;
+  double set_delta_t_k = 0;
+  Registration where;
+  cv::Size picture{0, 0};
+  cv::Rect field;               ///< of the picture: the plate without its rim
+  cv::Mat1d kelvin;             ///< of the field
+  double temporal_noise_k = 0;  ///< of a pixel in one frame; 0: not known
+};
+
+/// The same beside the picture that the sensor model makes of the plate at the same place.
+struct PlatePicture {
+  PlateView seen;
+  cv::Mat1d expected_k;           ///< without noise, of the field; fitted by contrast, level and place
+  std::vector<Polygon> outlines;  ///< of the triangles where they were found, in pixels of the picture
+  double contrast_k = 0;          ///< that fits
+  double moved_px = 0;            ///< by which the place that fits lies beside the one that was found
+  double residual_k = 0;          ///< root mean square over the field
+  /// Residual over the temporal noise that is left in the mean: near 1 where nothing but white noise is left.
+  [[nodiscard]] std::optional<double> residual_over_noise() const;
+};
+
 /// What was measured. A measure that was asked for and is not there has its reason in `reasons`.
 struct CameraMeasures {
   std::optional<NoiseMeasure> noise{};
   std::optional<TransferMeasure> transfer{};
   std::optional<MtfMeasure> mtf{};
-  std::vector<std::string> reasons{};  ///< sentences
+  std::optional<PlateView> view{};        ///< where the plate was found
+  std::optional<PlatePicture> picture{};  ///< where a sensor model was compared with it
+  std::vector<std::string> reasons{};     ///< sentences
 
   /// Temporal noise of a pixel in kelvin of the camera's scale, with its 95 % interval.
   [[nodiscard]] std::optional<ComponentEstimate> temporal_variance_k2() const;

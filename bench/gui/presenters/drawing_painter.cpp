@@ -1,6 +1,8 @@
 #include "bench/gui/presenters/drawing_painter.h"
 
+#include <QByteArray>
 #include <QFontMetricsF>
+#include <QImage>
 #include <QPainterPath>
 #include <QPolygonF>
 #include <algorithm>
@@ -51,6 +53,10 @@ struct ShapePainter {
     }
   }
   void operator()(const Box& box) const { painter.drawRect(rectangle(box)); }
+  void operator()(const Raster& raster) const {
+    const QByteArray text(raster.png_base64.data(), static_cast<qsizetype>(raster.png_base64.size()));
+    painter.drawImage(rectangle(raster.place), QImage::fromData(QByteArray::fromBase64(text), "PNG"));
+  }
   void operator()(const Disc& disc) const { painter.drawEllipse(point(disc.centre), disc.radius, disc.radius); }
 };
 
