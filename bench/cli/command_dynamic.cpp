@@ -15,7 +15,7 @@ namespace todbench {
 namespace {
 
 struct DynamicArguments {
-  std::string sensor = "sc2000", observer = "hvs-1", accuracy = "normal";
+  std::string sensor = "sc2000", observer = "hvs-1", accuracy = "normal", package;
   double delta_t_k = 16.9;
   std::vector<double> speeds_mrad_s, sizes_pitch;
   int passes = 48, frames = 8;
@@ -49,7 +49,8 @@ Json dynamic_json(const std::vector<DynamicAcuity>& found, const SensorSpec& sen
           {"frames", a.frames},
           {"passes", a.passes},
           {"direction", "x, both ways in turn"},
-          {"lag", "removed"},
+          {"package", a.package.empty() ? Json() : Json(a.package)},
+          {"lag", a.package.empty() ? "removed" : "that of the time constant removed, that of the package not"},
           {"internal_noise", "per decision"},
           {"seed", seed},
           {"speeds", speeds}};
@@ -70,6 +71,13 @@ int run_dynamic(Console& console, const DynamicArguments& a, const Program& prog
                               .accuracy = a.accuracy == "draft" ? Accuracy::draft() : Accuracy::normal(),
                               .seed = program.common.seed,
                               .stop = program.stop->token()};
+  EnhancementPackage package;
+  if (!a.package.empty()) {
+    auto read = read_package(a.package);
+    if (!read) return report_error(console, read.error());
+    package = *std::move(read);
+    options.stages = [&package] { return made_stages(package, {}); };
+  }
   console.phase("simulating " + sensor->name + " before a moving target");
   const auto found = dynamic_acuity(*sensor, observer, std::move(options));
   if (!found) return report_error(console, found.error());
@@ -109,6 +117,7 @@ void add_dynamic_command(CLI::App& app, Program& program) {
       ->expected(2, 32)
       ->check(number_in(0.1, 40));
   command->add_option("--time-constant-ms", a->time_constant_ms, "in place of the sensor's")->check(number_in(0, 1000));
+  command->add_option("--package", a->package, "file of stages behind the camera; their lag is not taken out");
   command->add_option("--accuracy", a->accuracy, "of the simulation")
       ->capture_default_str()
       ->check(CLI::IsMember({"draft", "normal"}));

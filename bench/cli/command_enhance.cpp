@@ -7,6 +7,7 @@
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
 
+#include "bench/cli/session_argument.h"
 #include "bench/enhance/enhancement_page.h"
 #include "bench/judgement/verdict.h"
 #include "bench/report/html.h"
@@ -24,6 +25,7 @@ struct EnhanceArguments {
   std::string plan, out = "enhancement";
   std::vector<std::string> packages;
   bool overwrite = false;
+  Opening opening{};
 };
 
 Json enhanced_points_json(const PackageResult& result) {
@@ -52,7 +54,11 @@ Json enhancement_json(const Enhancement& enhancement, const std::string& folder)
                        {"clipped_pixels", result.clipped_pixels},
                        {"error", result.error ? Json(result.error->message) : Json()}});
   }
-  return {{"settle_frames", enhancement.settle_frames}, {"results", results}, {"folder", folder}};
+  return {{"settle_frames", enhancement.settle_frames},
+          {"results", results},
+          {"camera", enhancement.camera},
+          {"warnings", enhancement.warnings},
+          {"folder", folder}};
 }
 
 Result<void> write_folder(const std::filesystem::path& folder, const LoadedPlan& loaded,
@@ -116,22 +122,26 @@ int run_enhance(Console& console, const EnhanceArguments& a, const Program& prog
     if (!package) return report_error(console, package.error());
     packages.push_back(*std::move(package));
   }
-  const auto plan = load_plan(a.plan);
-  if (!plan) return report_error(console, plan.error());
-  const auto loaded = LoadedPlan::load(*plan);
+  std::error_code problem;
+  const bool recorded = std::filesystem::is_directory(a.plan, problem);
+  const auto loaded = recorded ? recorded_plan(a.plan, a.opening) : read_plan(a.plan);
   if (!loaded) return report_error(console, loaded.error());
   const auto folder = enhancement_folder(a);
   if (!folder) return report_error(console, folder.error());
   const EnhancementOptions options{
-      .on_package = [&](const std::string& name) { console.phase("simulating with " + name); },
+      .on_package =
+          [&](const std::string& name) { console.phase((recorded ? "measuring with " : "simulating with ") + name); },
       .on_progress = [&](std::size_t done, std::size_t planned) { console.progress(done, planned); }};
-  const auto found = compare_packages(*loaded, packages, options, program.stop->token());
+  const auto stop = program.stop->token();
+  const auto found = recorded ? compare_packages_recorded(a.plan, *loaded, packages, options, stop)
+                              : compare_packages(*loaded, packages, options, stop);
   console.end_progress();
   if (!found) return report_error(console, found.error());
   if (auto written = write_folder(*folder, *loaded, packages, *found); !written)
     return report_error(console, written.error());
   if (console.json()) console.object(enhancement_json(*found, folder->string()));
   say_enhancement(console, *found);
+  for (const auto& sentence : found->warnings) console.note(sentence);
   console.text("page: " + (*folder / "enhancement.html").string());
   int code = 0;
   for (const auto& result : found->results) {
@@ -148,10 +158,14 @@ int run_enhance(Console& console, const EnhanceArguments& a, const Program& prog
 void add_enhance_command(CLI::App& app, Program& program) {
   auto* command = app.add_subcommand("enhance", "the same frames through enhancement packages and through none");
   auto a = std::make_shared<EnhanceArguments>();
-  command->add_option("PLAN", a->plan, "plan whose simulated sensor is behind the packages")->required();
+  command
+      ->add_option("PLAN", a->plan,
+                   "plan whose simulated sensor is before the packages, or session folder with recorded frames")
+      ->required();
   command->add_option("--packages", a->packages, "files of packages")->required()->expected(1, 16);
   command->add_option("--out", a->out, "folder for page, numbers and pictures")->capture_default_str();
   command->add_flag("--force", a->overwrite, "overwrite what is in the folder");
+  add_accept_changed(*command, a->opening.accept_changed);
   finish_command(*command, program, [a, &program](Console& console) { return run_enhance(console, *a, program); });
 }
 

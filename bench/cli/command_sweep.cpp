@@ -130,7 +130,7 @@ Counts run_range_of_tasks(Console& console, const RunnableSweep& runnable, Index
         break;
       case TaskOutcome::Kind::locked:
         ++counts.locked;
-        console.note(fmt::format("task {} is being run by another process", i));
+        console.error(fmt::format("task {} is being run by another process", i));
         break;
       case TaskOutcome::Kind::failed:
         ++counts.failed;
@@ -145,9 +145,11 @@ Counts run_range_of_tasks(Console& console, const RunnableSweep& runnable, Index
   return counts;
 }
 
+/// Of tasks that another process holds the code is that of a device that is busy: nothing failed, and not all is done.
 int code_of(const Counts& counts, std::stop_token stop) {
   if (stop.stop_requested()) return exit_code(ErrorCode::interrupted);
-  return counts.first_failure ? exit_code(counts.first_failure->code) : 0;
+  if (counts.first_failure) return exit_code(counts.first_failure->code);
+  return counts.locked > 0 ? exit_code(ErrorCode::not_found) : 0;
 }
 
 /// Which tasks the command line or the environment names; nothing: all.
@@ -225,8 +227,8 @@ int run_sweep(Console& console, const SweepArguments& a, const Program& program)
                     {"locked", counts.locked},
                     {"results", runnable->sweep.file().results.string()}});
   }
-  console.text(
-      fmt::format("{} run, {} were there already, {} failed", counts.done, counts.already_done, counts.failed));
+  console.text(fmt::format("{} run, {} were there already, {} failed, {} held by other processes", counts.done,
+                           counts.already_done, counts.failed, counts.locked));
   return code_of(counts, stop);
 }
 

@@ -1,5 +1,6 @@
 #include "bench/enhance/enhancement.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -14,6 +15,8 @@
 #include "bench/run/experiment_inputs.h"
 #include "bench/run/module_chain.h"
 #include "bench/run/processed_source.h"
+#include "bench/run/recorded_bench.h"
+#include "bench/run/simulated_responses.h"
 #include "bench/run/simulated_set_up.h"
 #include "tod/plate/test_pattern.h"
 
@@ -52,17 +55,10 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-/// One way through the chain: into `result`, its error included.
-void run_one(const LoadedPlan& loaded, const ExperimentInputs& inputs, const EnhancementPackage* package,
-             int settle_frames, const EnhancementOptions& options, PackageResult& result, std::stop_token stop) {
-  const Plan& plan = loaded.plan();
-  auto set_up = simulated_set_up(plan, inputs, {}, stop);
-  if (!set_up) {
-    result.error = set_up.error();
-    return;
-  }
-  set_up->options.frames_after_change = settle_frames;
-  set_up->options.integrity.reject_frozen = false;
+/// One way through the chain behind a bench: into `result`, its error included.
+void run_one(SimulatedSetUp set_up, const Plan& plan, const ExperimentInputs& inputs,
+             const std::vector<ModulePlan>& modules, const EnhancementPackage* package,
+             const EnhancementOptions& options, PackageResult& result, std::stop_token stop) {
   // Where the plate is and which contrast it has is found in the pictures of the camera itself: a package may have a
   // scale of its own.
   const auto shared_record = std::make_shared<ProcessingRecord>();
@@ -70,16 +66,20 @@ void run_one(const LoadedPlan& loaded, const ExperimentInputs& inputs, const Enh
   const auto on_error_line = [&result](std::string_view line) {
     if (result.error_lines.size() < most_error_lines) result.error_lines.emplace_back(line);
   };
-  auto stages = module_stages(inputs.sensor.modules, on_error_line);
+  auto stages = module_stages(modules, on_error_line);
   if (package != nullptr) std::ranges::move(made_stages(*package, on_error_line), std::back_inserter(stages));
-  const auto camera = processed_source(std::move(set_up->bench.camera), std::move(stages), picture_frame, record);
+  const auto camera = processed_source(std::move(set_up.bench.camera), std::move(stages), picture_frame, record);
   TemplateObserver observer(inputs.observer, triangle_alternatives());
   MeasurementListener listener;
   listener.on_progress = options.on_progress;
-  const auto target = watched_target(std::move(set_up->bench.target), shared_record);
+  const auto target = watched_target(std::move(set_up.bench.target), shared_record);
   listener.on_presentation = [&](const Presentation&) { record.handed_out = true; };
-  listener.on_trial = [&](const Trial& trial) { result.trials.push_back(trial); };
-  const auto measured = measure(*camera, *target, observer, *set_up->schedule, set_up->options, *set_up->bench.host,
+  listener.on_trial = [&, simulated = set_up.bench.simulated](Trial trial) {
+    // A simulated exposure happens at no time of the host.
+    if (simulated) trial.host_time_ns = trial.device_time_ns;
+    result.trials.push_back(std::move(trial));
+  };
+  const auto measured = measure(*camera, *target, observer, *set_up.schedule, set_up.options, *set_up.bench.host,
                                 listener, std::move(stop));
   if (!measured)
     result.error = measured.error();
@@ -97,6 +97,49 @@ void run_one(const LoadedPlan& loaded, const ExperimentInputs& inputs, const Enh
   } else if (!result.error) {
     result.error = curve.error();
   }
+}
+
+/// The same with a new simulated sensor.
+void run_simulated_one(const LoadedPlan& loaded, const ExperimentInputs& inputs, const EnhancementPackage* package,
+                       int settle_frames, const EnhancementOptions& options, PackageResult& result,
+                       const std::stop_token& stop) {
+  auto set_up = simulated_set_up(loaded.plan(), inputs, {}, stop);
+  if (!set_up) {
+    result.error = set_up.error();
+    return;
+  }
+  set_up->options.frames_after_change = settle_frames;
+  set_up->options.integrity.reject_frozen = false;
+  run_one(*std::move(set_up), loaded.plan(), inputs, inputs.sensor.modules, package, options, result, stop);
+}
+
+/// The same with the recorded bench of a session: the questions of the measurement have to be those of then.
+void run_recorded_one(const std::filesystem::path& session, const LoadedPlan& loaded, const ExperimentInputs& inputs,
+                      const EnhancementPackage* package, const EnhancementOptions& options, PackageResult& result,
+                      const std::stop_token& stop) {
+  const Plan& plan = loaded.plan();
+  auto recording = open_recorded_bench(session, nullptr);
+  if (!recording) {
+    result.error = recording.error();
+    return;
+  }
+  MeasurementOptions measuring = measurement_options(plan, inputs.plates, plan.camera.ifov_mrad);
+  const SensorModel model(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
+  auto response = simulated_responses(model, plan, inputs.plates, measuring, stop);
+  if (!response) {
+    result.error = response.error();
+    return;
+  }
+  measuring.contrast_response = *std::move(response);
+  measuring.free_running = !recording->bench.simulated;
+  // Frames change from those of the camera to those of the package and back, which looks like a correction. Where the
+  // run itself left frames out for that, the questions to the recording are others, and it says so.
+  measuring.integrity.reject_frozen = false;
+  auto schedule =
+      make_schedule(plan, inputs.plates, plan.camera.ifov_mrad, Side::measured, RandomStream(plan.seed, "schedule"));
+  run_one({std::move(measuring), std::move(recording->bench), std::move(schedule)}, plan, inputs, {}, package, options,
+          result, stop);
+  if (auto agreed = recording->answers->agreed(); !agreed && !result.error) result.error = agreed.error();
 }
 
 /// Counts by size of the trials at one contrast, but for one group of presentations.
@@ -187,7 +230,7 @@ PackageResult simulate_package(const LoadedPlan& loaded, const EnhancementPackag
     result.error = fits.error();
     return result;
   }
-  run_one(loaded, *inputs, package, settle_frames, options, result, std::move(stop));
+  run_simulated_one(loaded, *inputs, package, settle_frames, options, result, stop);
   return result;
 }
 
@@ -222,6 +265,31 @@ std::vector<PairedRatio> paired_ratios(std::span<const Trial> with, std::span<co
   return ratios;
 }
 
+namespace {
+
+/// None first, then every package, with the ratios to none.
+Result<Enhancement> through_all(
+    const Plan& plan, const std::vector<EnhancementPackage>& packages, const EnhancementOptions& options,
+    const std::stop_token& stop,
+    const std::function<void(const EnhancementPackage* package, PackageResult& result)>& run) {
+  Enhancement enhancement;
+  for (std::size_t i = 0; i <= packages.size() && !stop.stop_requested(); ++i) {
+    const EnhancementPackage* package = i == 0 ? nullptr : &packages[i - 1];
+    PackageResult result;
+    result.name = package == nullptr ? "none" : package->name;
+    if (options.on_package) options.on_package(result.name);
+    run(package, result);
+    if (package == nullptr && result.error) return tl::unexpected(*result.error);
+    if (package != nullptr)
+      result.ratios = paired_ratios(result.trials, enhancement.results.front().trials, fit_options(plan));
+    enhancement.results.push_back(std::move(result));
+  }
+  if (stop.stop_requested()) return fail(ErrorCode::interrupted, "interrupted");
+  return enhancement;
+}
+
+}  // namespace
+
 Result<Enhancement> compare_packages(const LoadedPlan& loaded, const std::vector<EnhancementPackage>& packages,
                                      const EnhancementOptions& options, std::stop_token stop) {
   const Plan& plan = loaded.plan();
@@ -230,21 +298,54 @@ Result<Enhancement> compare_packages(const LoadedPlan& loaded, const std::vector
   const auto inputs = full_inputs(loaded);
   if (!inputs) return tl::unexpected(inputs.error());
   if (auto fits = check_simulated_geometry(plan, *inputs); !fits) return tl::unexpected(fits.error());
-  Enhancement enhancement;
-  enhancement.settle_frames = longest_memory(packages);
-  for (std::size_t i = 0; i <= packages.size() && !stop.stop_requested(); ++i) {
-    const EnhancementPackage* package = i == 0 ? nullptr : &packages[i - 1];
-    PackageResult result;
-    result.name = package == nullptr ? "none" : package->name;
-    if (options.on_package) options.on_package(result.name);
-    run_one(loaded, *inputs, package, enhancement.settle_frames, options, result, stop);
-    if (package == nullptr && result.error) return tl::unexpected(*result.error);
-    if (package != nullptr)
-      result.ratios = paired_ratios(result.trials, enhancement.results.front().trials, fit_options(plan));
-    enhancement.results.push_back(std::move(result));
-  }
-  if (stop.stop_requested()) return fail(ErrorCode::interrupted, "interrupted");
+  const int settle = longest_memory(packages);
+  auto enhancement = through_all(plan, packages, options, stop, [&](const auto* package, PackageResult& result) {
+    run_simulated_one(loaded, *inputs, package, settle, options, result, stop);
+  });
+  if (!enhancement) return enhancement;
+  enhancement->settle_frames = settle;
+  enhancement->camera = loaded.sensor().name;
+  enhancement->frame_rate_hz = loaded.sensor().frame_rate_hz;
   return enhancement;
+}
+
+Result<Enhancement> compare_packages_recorded(const std::filesystem::path& session, const LoadedPlan& loaded,
+                                              const std::vector<EnhancementPackage>& packages,
+                                              const EnhancementOptions& options, std::stop_token stop) {
+  const Plan& plan = loaded.plan();
+  if (auto paired = check_paired_plan(plan); !paired) return tl::unexpected(paired.error());
+  if (auto none = refuse_modules(plan, loaded.sensor()); !none) return tl::unexpected(none.error());
+  EffectPlanner planner;
+  const auto inputs = experiment_inputs(loaded, planner);
+  if (!inputs) return tl::unexpected(inputs.error());
+  const auto recording = open_recorded_bench(session, nullptr);
+  if (!recording) return tl::unexpected(recording.error());
+  const SourceInfo& info = recording->bench.camera->info();
+  auto enhancement = through_all(plan, packages, options, stop, [&](const auto* package, PackageResult& result) {
+    run_recorded_one(session, loaded, *inputs, package, options, result, stop);
+  });
+  if (!enhancement) return enhancement;
+  enhancement->settle_frames = plan.measurement.frames_after_change;
+  enhancement->camera = info.model + " " + info.serial;
+  enhancement->frame_rate_hz = info.frame_rate_hz;
+  for (const auto& package : packages) {
+    const int memory = memory_frames({}, package);
+    if (memory <= plan.measurement.frames_after_change) continue;
+    enhancement->warnings.push_back(
+        fmt::format("{} remembers {} frames, and the recorded run left out {} after a change: its first frames hold "
+                    "what was shown before",
+                    package.name, memory, plan.measurement.frames_after_change));
+  }
+  return enhancement;
+}
+
+Result<LoadedPlan> recorded_plan(const std::filesystem::path& session, const Opening& opening) {
+  auto recorded = open_session(session, {.accept_changed = opening.accept_changed, .accept_cut_off = true});
+  if (!recorded) return tl::unexpected(recorded.error());
+  Plan plan = recorded->plan;
+  plan.measurement.record_frames = false;
+  plan.measures = {};
+  return LoadedPlan::of(std::move(plan), recorded->parts);
 }
 
 }  // namespace todbench

@@ -1,6 +1,7 @@
 // Enhancement under test: the same frames of a simulated sensor through several packages and through none.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <stop_token>
@@ -9,6 +10,7 @@
 
 #include "bench/enhance/package_file.h"
 #include "bench/plan/loaded_plan.h"
+#include "bench/session/open_session.h"
 #include "tod/psychometric/tod_curve.h"
 
 namespace todbench {
@@ -36,6 +38,9 @@ struct PackageResult {
 struct Enhancement {
   std::vector<PackageResult> results;  ///< none first, then the packages in their order
   int settle_frames = 0;               ///< exposures left out after every change, the same for all
+  std::string camera;                  ///< whose frames they are
+  double frame_rate_hz = 0;            ///< 0: unknown
+  std::vector<std::string> warnings;   ///< a sentence each
 };
 
 struct EnhancementOptions {
@@ -50,6 +55,16 @@ struct EnhancementOptions {
 [[nodiscard]] Result<Enhancement> compare_packages(const LoadedPlan& loaded,
                                                    const std::vector<EnhancementPackage>& packages,
                                                    const EnhancementOptions& options, std::stop_token stop);
+
+/// The plan of a session, to be measured again from its recording. Errors: as open_session().
+[[nodiscard]] Result<LoadedPlan> recorded_plan(const std::filesystem::path& session, const Opening& opening);
+/// The same with the recorded frames of a session, whose plan is `loaded`: none gives the answers of the session. No
+/// more frames can be left out after a change than the run left out; where a package remembers longer, a warning says
+/// so. Errors: as compare_packages(), and those of open_recorded_bench().
+[[nodiscard]] Result<Enhancement> compare_packages_recorded(const std::filesystem::path& session,
+                                                            const LoadedPlan& loaded,
+                                                            const std::vector<EnhancementPackage>& packages,
+                                                            const EnhancementOptions& options, std::stop_token stop);
 
 /// One way through the chain with every effect: sensor, its own modules, the stages of the package (null: none). What
 /// goes wrong is in the result.

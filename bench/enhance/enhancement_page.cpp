@@ -50,7 +50,7 @@ Section curves_section(const Enhancement& enhancement) {
 
 Section cost_section(const Enhancement& enhancement, double frame_rate_hz) {
   Table table{.caption = "What the packages cost",
-              .header = {"Package", "Frames", "Bench time at the sensor's rate (s)", "Stages, median (ms a frame)",
+              .header = {"Package", "Frames", "Bench time at the camera's rate (s)", "Stages, median (ms a frame)",
                          "Pixels cut off", "Ended by"},
               .rows = {}};
   for (const auto& result : enhancement.results) {
@@ -69,7 +69,7 @@ Section record_section(const LoadedPlan& loaded, const std::vector<EnhancementPa
   values.values = {{"Program", plain("todbench " + std::string(build_info().version) + " (" +
                                      std::string(build_info().commit) + ")")},
                    {"Plan", plain(loaded.plan().name)},
-                   {"Sensor", plain(loaded.sensor().name)},
+                   {"Camera", plain(enhancement.camera)},
                    {"Observer", plain(loaded.observer().name)},
                    {"Seed", plain(std::to_string(loaded.plan().seed))},
                    {"Exposures left out after a change", plain(std::to_string(enhancement.settle_frames))}};
@@ -95,17 +95,18 @@ Document enhancement_page(const LoadedPlan& loaded, const std::vector<Enhancemen
                           const Enhancement& enhancement) {
   Document document{.title = "Enhancement " + loaded.plan().name,
                     .heading = "Enhancement under test",
-                    .subtitle = fmt::format("{} packages behind {}, judged by {}", packages.size(),
-                                            loaded.sensor().name, loaded.observer().name),
+                    .subtitle = fmt::format("{} packages behind {}, judged by {}", packages.size(), enhancement.camera,
+                                            loaded.observer().name),
                     .page_label = loaded.plan().name,
                     .opening = {},
                     .sections = {}};
   document.opening.emplace_back(Paragraph{
-      plain("Every package had the same exposures of the simulated sensor. Their pictures are in pictures.png, in the "
-            "order of the tables. The place of the plate and its contrast were found in the pictures of the sensor "
+      plain("Every package had the same frames. Their pictures are in pictures.png, in the "
+            "order of the tables. The place of the plate and its contrast were found in the pictures of the camera "
             "itself.")});
+  if (!enhancement.warnings.empty()) document.opening.emplace_back(list_of(enhancement.warnings));
   document.sections = {ratios_section(enhancement), curves_section(enhancement),
-                       cost_section(enhancement, loaded.sensor().frame_rate_hz),
+                       cost_section(enhancement, enhancement.frame_rate_hz),
                        record_section(loaded, packages, enhancement)};
   return document;
 }

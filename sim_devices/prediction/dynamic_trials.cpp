@@ -136,8 +136,17 @@ class SequenceJudge {
   std::vector<PreparedSize> sizes_;
 };
 
-Pass exposed_pass(const SensorModel& model, const TargetPlate& plate, const DynamicTrialOptions& options,
-                  double speed_mrad_s, int index) {
+/// Frames that the stages remember.
+int lead_frames(const DynamicTrialOptions& options) {
+  if (!options.stages) return 0;
+  int sum = 0;
+  const auto stages = options.stages();
+  for (const auto& stage : stages) sum += stage->memory_frames();
+  return sum;
+}
+
+Result<Pass> exposed_pass(const SensorModel& model, const TargetPlate& plate, const DynamicTrialOptions& options,
+                          double speed_mrad_s, int index) {
   // The streams are those of camera_trials(): a target that rests gives the answers of a still picture, bit for bit.
   const RandomStream phases = RandomStream(options.seed, "camera_trials.phase").sub(static_cast<std::uint64_t>(index));
   const double along = index % 2 == 0 ? speed_mrad_s : -speed_mrad_s;
@@ -149,13 +158,23 @@ Pass exposed_pass(const SensorModel& model, const TargetPlate& plate, const Dyna
   pass.scene.distance_m = trial_distance_m;
   pass.scene.centre_px = {phases.uniform(0) - 0.5, phases.uniform(1) - 0.5};
   pass.scene.motion = {.x_mrad_s = along, .y_mrad_s = 0};
-  for (int k = 0; k < options.frames; ++k) {
+  auto stages = options.stages ? options.stages() : std::vector<std::unique_ptr<ChainStage>>();
+  const int lead = lead_frames(options);
+  for (int k = -lead; k < options.frames; ++k) {
     PlateScene scene = pass.scene;
     scene.centre_px.x += pass.step_px * k;
-    const auto frame =
-        static_cast<std::uint64_t>(index) * static_cast<std::uint64_t>(options.frames) + static_cast<std::uint64_t>(k);
+    // What stages see before a pass has random numbers behind those of all passes.
+    const int frame = k >= 0 ? index * options.frames + k : options.passes * options.frames + index * lead + (k + lead);
+    cv::Mat1f picture;
+    model.expose(scene, static_cast<std::uint64_t>(frame)).convertTo(picture, CV_32F);
+    for (const auto& stage : stages) {
+      auto answer = stage->process(picture);
+      if (!answer) return tl::unexpected(answer.error());
+      picture = *std::move(answer);
+    }
+    if (k < 0) continue;
     cv::Mat1f kelvin;
-    model.expose(scene, frame).convertTo(kelvin, CV_32F, spec.kelvin_per_count, spec.offset_k - scene.background_k);
+    picture.convertTo(kelvin, CV_32F, spec.kelvin_per_count, spec.offset_k - scene.background_k);
     pass.frames.push_back(std::move(kelvin));
   }
   return pass;
@@ -214,7 +233,8 @@ Result<std::vector<DynamicTrials>> dynamic_trials(const SensorSpec& sensor, Temp
                                                   const DynamicTrialOptions& options) {
   if (auto checked = check_dynamic(sensor, options); !checked) return tl::unexpected(checked.error());
   const double fastest = *std::max_element(options.speeds_mrad_s.begin(), options.speeds_mrad_s.end());
-  const double reach_px = fastest / sensor.ifov_mrad() / sensor.frame_rate_hz * (options.frames - 1);
+  const double reach_px =
+      fastest / sensor.ifov_mrad() / sensor.frame_rate_hz * (options.frames - 1 + lead_frames(options));
   const TargetPlate plate = trial_plate(options.sizes_pitch, sensor.ifov_mrad());
   const SensorSpec camera = cropped_to(sensor, plate, static_cast<int>(std::ceil(reach_px)));
   auto judge = SequenceJudge::prepare(observer, options);
@@ -231,8 +251,9 @@ Result<std::vector<DynamicTrials>> dynamic_trials(const SensorSpec& sensor, Temp
     trials.speed_px = speed / camera.ifov_mrad() / camera.frame_rate_hz;
     for (int p = 0; p < options.passes; ++p) {
       if (options.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-      const Pass pass = exposed_pass(model, plate, options, speed, p);
-      add_answers(*judge, pass, model, noise_k, p, internal.sub(static_cast<std::uint64_t>(p) * 16), trials);
+      const auto pass = exposed_pass(model, plate, options, speed, p);
+      if (!pass) return tl::unexpected(pass.error());
+      add_answers(*judge, *pass, model, noise_k, p, internal.sub(static_cast<std::uint64_t>(p) * 16), trials);
     }
     found.push_back(std::move(trials));
   }

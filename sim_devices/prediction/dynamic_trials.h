@@ -2,12 +2,15 @@
 #pragma once
 
 #include <array>
+#include <functional>
+#include <memory>
 #include <stop_token>
 #include <string_view>
 #include <vector>
 
 #include "acquisition/core/accuracy.h"
 #include "hvs/observer/template_observer.h"
+#include "sim_devices/module/picture_stage.h"
 #include "sim_devices/sensor/sensor_spec.h"
 #include "tod/psychometric/psychometric_fit.h"
 
@@ -31,6 +34,9 @@ struct DynamicTrialOptions {
   int frames = 8;                     ///< of a pass, at least 1
   Accuracy accuracy;
   std::uint64_t seed = 1;
+  /// Made anew for every pass, behind the camera; empty: none. Before the first frame of a pass they see as many
+  /// frames of the same motion as they remember. Their lag is not taken out.
+  std::function<std::vector<std::unique_ptr<ChainStage>>()> stages{};
   std::stop_token stop{};
 };
 
@@ -44,7 +50,7 @@ struct DynamicTrials {
 /// speed, and every pass the same sampling phase in its first frame: ratios between speeds are paired. The picture lags
 /// by nothing: the transfer of the time constant has its mean lag taken out. Internal noise is drawn once for each
 /// decision, whatever the number of frames. `invalid_input` for options that cannot be met, a sensor with modules,
-/// microscan or super-resolution; `interrupted`.
+/// microscan or super-resolution; `interrupted`; errors of the stages.
 [[nodiscard]] Result<std::vector<DynamicTrials>> dynamic_trials(const SensorSpec& sensor, TemplateObserver& observer,
                                                                 const DynamicTrialOptions& options);
 

@@ -55,6 +55,23 @@ TEST_F(Modules, OfASessionRunInAReplayOnlyWhereTheyAreAllowedTo) {
   EXPECT_TRUE(same_content(at("m") / "trials.csv", at("yes") / "trials.csv"));
 }
 
+TEST_F(Modules, AndPackagesAreComparedOnTheRecordedFramesOfASession) {
+  folder_.write("plan.toml", small_measurement(4, "[measurement]\nrecord_frames = true\n"));
+  ASSERT_TRUE(completed(run({"measure", "./plan.toml", "--out", "m"})));
+  folder_.write("same.toml", "[[stage]]\nkind = \"module\"\ncommand = \"" + example + " identity\"\n");
+  folder_.write("slow.toml", "[[stage]]\nkind = \"recursive\"\nshare = 0.25\n");
+
+  const Ended ended = run({"enhance", "m", "--packages", "same.toml", "slow.toml", "--out", "e", "--json"});
+
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Json json = one_object(ended);
+  EXPECT_TRUE(same_content(at("m") / "trials.csv", at("e") / "trials-0.csv"));
+  EXPECT_TRUE(same_content(at("m") / "trials.csv", at("e") / "trials-1.csv"));
+  EXPECT_EQ(json["results"][2]["trials"], json["results"][0]["trials"]);
+  EXPECT_EQ(json["warnings"].size(), 1u) << "the filter remembers longer than the run left out";
+  expect_refused(run({"enhance", ".", "--packages", "same.toml", "--out", "no"}), 2, "");
+}
+
 TEST_F(Modules, ThatAreTheObserverGiveTheAnswersOfTheBuiltInOne) {
   const Ended built_in = simulate("built-in", module_section("identity"));
   const Ended module = simulate("module", module_section("hvs", "place = \"observer\"\nversion = \"echo 1.5\"\n"));

@@ -306,6 +306,32 @@ TEST(MrtdCommand, TellsWhatIsAnMrtdFromWhatAMachineDoesBeyond) {
   expect_refused(mrtd({"--frequencies-per-mrad", "nan"}), 2, "--frequencies-per-mrad");
 }
 
+TEST(SweepCommand, EndsWithACodeOfItsOwnWhereAnotherProcessHoldsATask) {
+  const TemporaryFolder folder;
+  folder.write("s.toml",
+               "kind = \"estimate\"\n[base]\naccuracy = \"draft\"\ndelta_t_k = [16.9]\n[grid]\nnetd_k = [0.07]\n");
+  const auto run = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"sweep", "run", "s.toml"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return todbench(arguments, {.folder = folder.path()});
+  };
+  ASSERT_EQ(run({}).code, 0);
+  // The result becomes a lock of another host, whose process cannot be asked.
+  std::filesystem::path result;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path() / "s.results")) {
+    if (entry.is_regular_file() && entry.path().extension() == ".json") result = entry.path();
+  }
+  ASSERT_FALSE(result.empty());
+  std::filesystem::remove(result);
+  std::ofstream(result.replace_extension(".lock")) << "a-host-that-is-not-this-one\n1\n";
+
+  const Ended held = run({"--json"}), in_processes = run({"--jobs", "2"});
+
+  EXPECT_EQ(held.code, 4) << held.err;
+  EXPECT_EQ(one_object(held)["locked"], 1);
+  EXPECT_EQ(in_processes.code, 4) << in_processes.err;
+}
+
 TEST(SweepCommand, PrintsTaskListsAndRefusesInASentence) {
   const TemporaryFolder folder;
   folder.write("s.toml", "[grid]\nnetd_k = [0.03, 0.05]\n[repeat]\nseeds = 2\n");

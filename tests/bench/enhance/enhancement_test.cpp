@@ -14,6 +14,7 @@
 #include "bench/plan/descriptions.h"
 #include "bench/plan/plan.h"
 #include "bench/report/html.h"
+#include "tests/bench/enhance/paired_ratio_coverage.h"
 #include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
 
@@ -279,6 +280,15 @@ TEST(PairedRatios, OfTheSameTrialsAreOneWithoutWidth) {
   // Sizes in the same proportion at every answer: the ratio is exact and so is every group's.
   EXPECT_NEAR(ratio[0].ratio.value(), 1.25, 1e-6);
   EXPECT_NEAR(ratio[0].ci95.low.value(), 1.25, 1e-4);
+}
+
+TEST(PairedRatios, HoldTheTrueRatioAsOftenAsTheySay) {
+  const auto found = testing::coverage_of({.presentations = 24}, 50, 7);
+
+  EXPECT_EQ(found.intervals, 50);
+  // Of 50 with 95 % fewer than 42 hold it with a probability of 1e-3.
+  EXPECT_GE(found.holding, 42);
+  EXPECT_LT(found.mean_half_width, 0.2);
 }
 
 TEST(PackageFile, IsRefusedInASentence) {

@@ -110,6 +110,7 @@ TEST(ValidPlan, NoNumberLeavesItsRangeWhoeverMadeThePlan) {
   good.limits.acuity = {{16.9, 0.4}};
   good.measures.noise = good.measures.transfer = true;
   good.limits.measures = {{LimitedMeasure::netd, std::nullopt, 0.05}};
+  for (ModulePlan& module : good.modules) module.command = "cat";
   ASSERT_TRUE(validate(good)) << validate(good).error().message;
   int tried = 0;
   for (const KeyAt& at : all_keys()) {

@@ -132,9 +132,42 @@ TEST(DynamicTrials, OfABolometerLoseAcuityWithSpeed) {
   }
 }
 
+TEST(DynamicTrials, BehindARecursiveFilterGainAtRestAndLoseWithSpeed) {
+  TemplateObserverSpec spec;
+  spec.internal_noise = 0;
+  TemplateObserver observer(spec, triangle_alternatives());
+  SensorSpec sensor = test::sc2000();
+  sensor.netd_k = 0.2;
+  const double rate_mrad_s = sensor.ifov_mrad() * sensor.frame_rate_hz;
+  DynamicTrialOptions options{.delta_t_k = 0.4,
+                              .sizes_pitch = {1.4, 2.0},
+                              .speeds_mrad_s = {0},
+                              .passes = 40,
+                              .frames = 3,
+                              .accuracy = Accuracy::draft()};
+  const auto averaged = dynamic_trials(sensor, observer, options);
+  options.frames = 1;
+  options.speeds_mrad_s = {0, 0.5 * rate_mrad_s, 1.5 * rate_mrad_s};
+  options.stages = [] {
+    std::vector<std::unique_ptr<ChainStage>> stages;
+    stages.push_back(recursive_filter(0.5));
+    return stages;
+  };
+
+  const auto filtered = dynamic_trials(sensor, observer, options);
+
+  ASSERT_TRUE(averaged && filtered);
+  // (2 - a) / a = 3 frames. 320 answers each: the difference has a standard error below sqrt(2 / 4 / 320) = 4 %.
+  const double rests = share(of((*filtered)[0], SequenceObserver::single_frame));
+  EXPECT_NEAR(rests, share(of(averaged->front(), SequenceObserver::static_sum)), 4 * 0.04);
+  EXPECT_GT(rests, share(of(averaged->front(), SequenceObserver::single_frame)));
+  EXPECT_LT(share(of((*filtered)[1], SequenceObserver::single_frame)), rests);
+  EXPECT_LT(share(of((*filtered)[2], SequenceObserver::single_frame)),
+            share(of((*filtered)[1], SequenceObserver::single_frame)));
+}
+
 TEST(DynamicTrials, SmearByTheTransferOfTheReference) {
-  const auto reference =
-      nlohmann::json::parse(testing::content_of(source_file("tests/golden/measures/dynamic.json")));
+  const auto reference = nlohmann::json::parse(testing::content_of(source_file("tests/golden/measures/dynamic.json")));
   int compared = 0;
   for (const auto& example : reference["cases"]["motion"]) {
     if (example["integration_frames"] != 0.0) continue;
