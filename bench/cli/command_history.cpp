@@ -9,6 +9,7 @@
 #include "bench/cli/commands.h"
 #include "bench/history/control_chart.h"
 #include "bench/history/history_index.h"
+#include "bench/history/history_series.h"
 #include "bench/judgement/verdict.h"
 #include "bench/session/manifest.h"
 #include "bench/session/provenance.h"
@@ -26,64 +27,14 @@ struct HistoryArguments {
   double horizon_days = 365;
 };
 
-/// Values of one measure of a unit since its last event.
-struct Series {
-  HistoryUnit unit;
-  std::string measure, condition, unit_text, scale;
-  std::vector<ChartValue> values;
-  std::vector<std::string> started_utc;
-};
-
 /// Kinds of events after which a unit is another one.
 constexpr std::array begins_anew{"repair", "firmware", "recalibration", "transport"};
-
-std::optional<double> last_break(const std::vector<HistoryEvent>& events) {
-  std::optional<double> last;
-  for (const HistoryEvent& event : events) {
-    if (const auto days = days_of_utc(event.utc)) last = std::max(last.value_or(*days), *days);
-  }
-  return last;
-}
-
-Result<std::vector<Series>> series_of(const HistoryIndex& index, const HistoryArguments& a) {
-  const auto sessions = index.sessions(a.serial.empty() ? std::nullopt : std::optional(a.serial));
-  if (!sessions) return tl::unexpected(sessions.error());
-  std::vector<Series> all;
-  std::map<std::string, std::optional<double>> breaks;
-  std::map<std::tuple<std::string, std::string, std::string, std::string>, std::string> firmware;
-  for (const HistorySession& session : *sessions) {
-    const HistoryUnit& unit = session.unit;
-    if (!breaks.contains(unit.serial)) {
-      const auto events = index.events(unit.serial);
-      if (!events) return tl::unexpected(events.error());
-      breaks[unit.serial] = last_break(*events);
-    }
-    const double days = days_of_utc(session.started_utc).value_or(0);
-    if (breaks[unit.serial] && days < *breaks[unit.serial]) continue;
-    // Another firmware begins a new series.
-    auto& known = firmware[{unit.vendor, unit.model, unit.serial, unit.lens}];
-    if (!known.empty() && known != session.firmware)
-      std::erase_if(all, [&](const Series& series) { return series.unit == unit; });
-    known = session.firmware;
-    for (const HistoryValue& value : session.values) {
-      if (!a.measure.empty() && value.measure != a.measure) continue;
-      auto found = std::find_if(all.begin(), all.end(), [&](const Series& series) {
-        return series.unit == unit && series.measure == value.measure && series.condition == value.condition;
-      });
-      if (found == all.end())
-        found = all.insert(all.end(), {unit, value.measure, value.condition, value.unit, value.scale, {}, {}});
-      found->values.push_back({days, value.value, value.u});
-      found->started_utc.push_back(session.started_utc);
-    }
-  }
-  return all;
-}
 
 Json unit_json(const HistoryUnit& unit) {
   return {{"vendor", unit.vendor}, {"model", unit.model}, {"serial", unit.serial}, {"lens", unit.lens}};
 }
 
-double months_between(const Series& series) {
+double months_between(const HistorySeries& series) {
   std::vector<double> gaps;
   for (std::size_t i = 1; i < series.values.size(); ++i)
     gaps.push_back(series.values[i].days - series.values[i - 1].days);
@@ -93,14 +44,10 @@ double months_between(const Series& series) {
 }
 
 /// A limit on the scale of the chart.
-std::optional<double> limit_of(const Series& series, const HistoryArguments& a) {
+std::optional<double> limit_of(const HistorySeries& series, const HistoryArguments& a) {
   const auto& limit = a.at_least ? a.at_least : a.at_most;
   if (!limit) return std::nullopt;
   return series.scale == "ln" ? std::log(*limit) : *limit;
-}
-
-double shown_value(const Series& series, double value) {
-  return series.scale == "ln" ? std::exp(value) : value;
 }
 
 Json crossing_json(const Crossing& found) {
@@ -113,7 +60,7 @@ Json crossing_json(const Crossing& found) {
           {"not_after", date(found.latest_days)}};
 }
 
-Json chart_json(const Series& series, const HistoryArguments& a) {
+Json chart_json(const HistorySeries& series, const HistoryArguments& a) {
   const ChartDesign design;
   Json json{{"unit", unit_json(series.unit)}, {"measure", series.measure}, {"condition", series.condition},
             {"unit_text", series.unit_text},  {"scale", series.scale},     {"values", Json::array()}};
@@ -139,7 +86,7 @@ Json chart_json(const Series& series, const HistoryArguments& a) {
     json["chart"] = {{"reference", json_number(shown_value(series, chart->reference))},
                      {"reference_u", json_number(chart->reference_u)},
                      {"scatter", json_number(chart->scatter)},
-                     {"signal", chart->signals()},
+                     {"signal", chart->signalled()},
                      {"run_length_months",
                       {{"ewma_in_control", json_number(months * ewma_run_length(design.lambda, design.ewma_limit, 0))},
                        {"ewma_one_sd", json_number(months * ewma_run_length(design.lambda, design.ewma_limit, 1))},
@@ -224,14 +171,14 @@ int run_show(Console& console, const HistoryArguments& a) {
   const auto index = HistoryIndex::open(a.index);
   if (!index) return report_error(console, index.error());
   if (a.serial.empty()) return show_units(console, *index);
-  const auto all = series_of(*index, a);
+  const auto all = history_series(*index, a.serial, a.measure);
   if (!all) return report_error(console, all.error());
   const auto events = index->events(a.serial);
   if (!events) return report_error(console, events.error());
   if (all->empty())
     return report_error(console, {ErrorCode::not_found, a.serial + ": no values of such a unit in " + a.index});
   Json charts = Json::array();
-  for (const Series& series : *all) charts.push_back(chart_json(series, a));
+  for (const HistorySeries& series : *all) charts.push_back(chart_json(series, a));
   if (console.json()) {
     Json listed = Json::array();
     for (const HistoryEvent& event : *events)
@@ -240,7 +187,7 @@ int run_show(Console& console, const HistoryArguments& a) {
     return 0;
   }
   std::vector<TableRow> rows;
-  for (const Series& series : *all) {
+  for (const HistorySeries& series : *all) {
     for (std::size_t i = 0; i < series.values.size(); ++i) {
       rows.push_back({series.measure + (series.condition.empty() ? "" : " " + series.condition), series.started_utc[i],
                       fixed(shown_value(series, series.values[i].value), 4), fixed(series.values[i].u, 4)});
@@ -269,16 +216,16 @@ int run_check(Console& console, const HistoryArguments& a) {
   if (!index) return report_error(console, index.error());
   const auto sessions = index->sessions(a.serial.empty() ? std::nullopt : std::optional(a.serial));
   if (!sessions) return report_error(console, sessions.error());
-  const auto all = series_of(*index, a);
+  const auto all = history_series(*index, a.serial, a.measure);
   if (!all) return report_error(console, all.error());
   std::vector<std::string> warnings, predicted;
   for (const std::string& path : lost_sessions(*sessions))
     warnings.push_back(path + ": the session is not there as it was added");
-  for (const Series& series : *all) {
+  for (const HistorySeries& series : *all) {
     const std::string name = series.unit.model + " " + series.unit.serial + ", " + series.measure +
                              (series.condition.empty() ? "" : " at " + series.condition);
     const auto chart = control_chart(series.values, {});
-    if (chart && chart->signals()) warnings.push_back(name + ": beyond the limits of its chart");
+    if (chart && chart->signalled()) warnings.push_back(name + ": beyond the limits of its chart");
     const auto limit = limit_of(series, a);
     if (!limit) continue;
     const double last = series.values.back().value;

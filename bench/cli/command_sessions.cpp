@@ -98,13 +98,23 @@ int run_revision(Console& console, const std::string& folder, const std::string&
   return 0;
 }
 
-int run_report(Console& console, const std::string& folder, Opening opening, const std::string& reason) {
+int run_report(Console& console, const std::string& folder, Opening opening, const std::string& reason,
+               const std::string& letterhead_path) {
   if (!reason.empty()) return run_revision(console, folder, reason);
+  std::optional<Letterhead> letterhead;
+  if (!letterhead_path.empty()) {
+    auto loaded = load_letterhead(letterhead_path);
+    if (!loaded) return report_error(console, loaded.error());
+    letterhead = *std::move(loaded);
+  }
   opening.accept_cut_off = true;
   const auto session = opened(console, folder, opening);
   if (!session) return report_error(console, session.error());
+  if (letterhead && (session->cut_off || !session->accepted_changes.empty()))
+    return report_error(
+        console, {ErrorCode::invalid_input, folder + ": nothing vouches for its files, so it keeps no letterhead"});
   const auto path = std::filesystem::path(folder);
-  const auto data = rebuild_report(*session, path, html_page(path));
+  const auto data = rebuild_report(*session, path, letterhead ? html_page_with(path, *letterhead) : html_page(path));
   if (!data) return report_error(console, data.error());
   const bool afterwards = data->verdict->judged == JudgedWhen::afterwards;
   if (afterwards) console.note(std::string(remark_on(data->verdict->judged)));
@@ -228,8 +238,13 @@ void add_report_command(CLI::App& app, Program& program) {
   add_accept_changed(*command, opening->accept_changed);
   auto reason = std::make_shared<std::string>();
   command->add_option("--reason", *reason, "why a signed report is revised: the revision is a page of its own");
-  finish_command(*command, program, [folder, opening, reason](Console& console) {
-    return run_report(console, *folder, *opening, *reason);
+  auto letterhead = std::make_shared<std::string>();
+  command
+      ->add_option("--letterhead", *letterhead,
+                   "logo and texts of the laboratory: a TOML file, which the session keeps")
+      ->excludes("--reason");
+  finish_command(*command, program, [folder, opening, reason, letterhead](Console& console) {
+    return run_report(console, *folder, *opening, *reason, *letterhead);
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -44,6 +45,23 @@ std::string duration(double seconds) {
   return whole < 120 ? fmt::format("{} s", whole) : fmt::format("{}:{:02} min", whole / 60, whole % 60);
 }
 
+/// What is longer than the terminal goes through the reader's pager. False where it has to be printed: no terminal,
+/// room enough, or no such program.
+bool paged(const std::vector<std::string>& lines) {
+  constexpr int not_found = 127;  // sh
+  winsize size{};
+  if (isatty(STDIN_FILENO) != 1 || isatty(STDOUT_FILENO) != 1) return false;
+  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_row == 0 || lines.size() < size.ws_row) return false;
+  const char* asked = std::getenv("PAGER");
+  const std::string command = asked != nullptr && *asked != '\0' ? asked : "less -FRX 2>/dev/null";
+  FILE* pager = ::popen(command.c_str(), "w");
+  if (pager == nullptr) return false;
+  // A reader who has seen enough closes it: nothing is wrong then.
+  for (const std::string& line : lines) std::fputs((line + "\n").c_str(), pager);
+  const int ended = ::pclose(pager);
+  return !(WIFEXITED(ended) && WEXITSTATUS(ended) == not_found);
+}
+
 }  // namespace
 
 Console::Console(ConsoleOptions options) : options_(options) {
@@ -81,12 +99,13 @@ void Console::table(const TableRow& header, const std::vector<TableRow>& given) 
     while (!out.empty() && out.back() == ' ') out.pop_back();
     return out;
   };
-  text(line(header));
   std::string rule;
   for (std::size_t i = 0; i < widths.size(); ++i)
     rule += std::string(i == 0 ? 0 : 3, ' ') + std::string(widths[i], '-');
-  text(rule);
-  for (const auto& row : rows) text(line(row));
+  std::vector<std::string> lines{valid_text(line(header)), rule};
+  for (const auto& row : rows) lines.push_back(valid_text(line(row)));
+  if (options_.json || paged(lines)) return;
+  for (const auto& one : lines) text(one);
 }
 
 void Console::waiting(std::string_view sentence) {

@@ -31,7 +31,8 @@ class Console {
   void object(const Json& json) const;
   /// Text for people on standard output; nothing with --json.
   void text(std::string_view line) const;
-  /// A header and rows; columns of numbers are right-aligned, those of words left-aligned.
+  /// A header and rows; columns of numbers are right-aligned, those of words left-aligned. A table longer than the
+  /// terminal goes through $PAGER (less).
   void table(const TableRow& header, const std::vector<TableRow>& rows) const;
   /// A sentence on standard error; nothing with --quiet.
   void note(std::string_view sentence);

@@ -68,15 +68,16 @@ std::filesystem::path session_folder(const QString& argument) {
 QList<QCommandLineOption> known_options() {
   QCommandLineOption manual("manual", "Writes the page for man(1) and ends.", "FILE");
   manual.setFlags(QCommandLineOption::HiddenFromHelp);
-  return {{"sessions",
-           "Where sessions are listed and written, made where it is not there; default: the current folder, or that of "
-           "SESSION.",
-           "FOLDER"},
-          {"theme", "light or dark; default: as last time.", "NAME"},
-          {"size", "Size of the window in pixels.", "WIDTHxHEIGHT"},
-          {"screenshots", "Writes a picture of every view and ends.", "FOLDER"},
-          {"report", "Writes report.html and report.pdf of a session and ends; needs no screen.", "SESSION"},
-          manual};
+  return {
+      {"sessions",
+       "Where sessions are listed and written, made where it is not there; default: the current folder, or that of "
+       "SESSION.",
+       "FOLDER"},
+      {"theme", "light or dark; default: as last time.", "NAME"},
+      {"size", "Size of the window in pixels.", "WIDTHxHEIGHT"},
+      {"screenshots", "Writes a picture of every view and ends; with SESSION of those that need no camera.", "FOLDER"},
+      {"report", "Writes report.html and report.pdf of a session and ends; needs no screen.", "SESSION"},
+      manual};
 }
 
 }  // namespace
@@ -125,7 +126,11 @@ int main(int argc, char** argv) {
     window.set_theme(options.value("theme") == "dark" ? todbench::Theme::dark : todbench::Theme::light);
   if (const QStringList size = options.value("size").split('x'); size.size() == 2)
     window.resize(size[0].toInt(), size[1].toInt());
-  if (pictures) return todbench::take_screenshots(window, options.value("screenshots").toStdString());
+  if (pictures) {
+    const std::filesystem::path folder = options.value("screenshots").toStdString();
+    return shown.empty() ? todbench::take_screenshots(window, folder)
+                         : todbench::take_session_screenshots(window, folder, shown);
+  }
   window.show();
   window.bench().rescan();
   if (!shown.empty()) window.open_path(shown);

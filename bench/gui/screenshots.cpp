@@ -59,7 +59,33 @@ bool answer_as_a_person(MainWindow& window, const std::filesystem::path& folder)
   return good;
 }
 
+int said(bool good) {
+  if (!good) std::fprintf(stderr, "todbench-gui: not every page is as it has to be\n");
+  return good ? 0 : 7;
+}
+
 }  // namespace
+
+int take_session_screenshots(MainWindow& window, const std::filesystem::path& folder,
+                             const std::filesystem::path& session) {
+  std::error_code problem;
+  std::filesystem::create_directories(folder, problem);
+  window.show();
+  bool good = true;
+  window.show_view(View::start);
+  good &= save(window, folder, "start");
+  window.show_view(View::plan);
+  good &= wait_until([&] { return window.plan().expected_known() && !window.plan().prices().empty(); });
+  good &= save(window, folder, "plan");
+  window.open_path(session);
+  window.show_view(View::report);
+  good &= wait_until([&] { return window.sessions().current() && !window.sessions().sessions().empty(); });
+  good &= save(window, folder, "report");
+  window.history().add_sessions(window.bench().sessions_folder());
+  window.show_view(View::history);
+  good &= save(window, folder, "history");
+  return said(good);
+}
 
 int take_screenshots(MainWindow& window, const std::filesystem::path& folder) {
   std::error_code problem;
@@ -96,8 +122,7 @@ int take_screenshots(MainWindow& window, const std::filesystem::path& folder) {
   window.show_view(View::report);
   good &= wait_until([&] { return window.sessions().current() && !window.sessions().sessions().empty(); });
   good &= save(window, folder, "report");
-  if (!good) std::fprintf(stderr, "todbench-gui: not every page is as it has to be\n");
-  return good ? 0 : 7;
+  return said(good);
 }
 
 }  // namespace todbench

@@ -39,7 +39,7 @@ struct ControlChart {
   double reference = 0, reference_u = 0;
   double scatter = 0;  ///< of the true values between checks, beyond their uncertainties
   std::vector<ChartPoint> points;
-  [[nodiscard]] bool signals() const { return !points.empty() && points.back().signal; }
+  [[nodiscard]] bool signalled() const { return !points.empty() && points.back().signal; }
 };
 
 /// Values in the order of time. Reference: weighted mean of the first ones; its

@@ -98,7 +98,16 @@ struct Signatures {
   std::vector<Signatory> signatories;
 };
 
-using Block = std::variant<Paragraph, List, Table, ValueTable, Figure, FigurePairs, TablePairs, VerdictBox, Signatures>;
+/// Whose report it is: a logo and lines beside it.
+struct Imprint {
+  std::string png;  ///< bytes of a PNG file; empty: no logo
+  std::string png_text;
+  double height_mm = 14;
+  std::vector<std::string> lines;
+};
+
+using Block =
+    std::variant<Paragraph, List, Table, ValueTable, Figure, FigurePairs, TablePairs, VerdictBox, Signatures, Imprint>;
 
 struct Section {
   std::string title;
@@ -112,6 +121,7 @@ struct Document {
   std::string page_label;  ///< at the foot of every printed page: the report and the item
   std::vector<Block> opening;
   std::vector<Section> sections;
+  std::vector<Block> before_heading{};
 };
 
 }  // namespace todbench

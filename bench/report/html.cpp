@@ -1,5 +1,7 @@
 #include "bench/report/html.h"
 
+#include <fmt/format.h>
+
 #include "bench/report/html_style.h"
 #include "bench/report/markup.h"
 #include "bench/report/svg.h"
@@ -107,6 +109,17 @@ struct BlockMarkup {
     return line("div", content, css);
   }
 
+  Markup operator()(const Imprint& imprint) const {
+    Markup content;
+    if (!imprint.png.empty()) {
+      content += literal(fmt::format("<img style=\"height:{:.1f}mm\" alt=\"", imprint.height_mm)) +
+                 escaped(imprint.png_text) + literal("\" src=\"data:image/png;base64," + base64(imprint.png) + "\"/>");
+    }
+    Markup lines;
+    for (const std::string& text : imprint.lines) lines += line("div", escaped(text));
+    return line("div", content + element("div", lines), "class=\"imprint\"");
+  }
+
   Markup operator()(const Signatures& signatures) const {
     Markup columns;
     for (const auto& [role, name] : signatures.signatories) {
@@ -134,8 +147,8 @@ std::string render_html(const Document& document) {
           "<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n") +
       line("title", escaped(document.title)) +
       line("style", literal(page_style(document.page_label) + drawing_style()));
-  Markup body = line(
-      "header", line("h1", escaped(document.heading)) + line("p", escaped(document.subtitle), "class=\"subtitle\""));
+  Markup body = line("header", html(document.before_heading) + line("h1", escaped(document.heading)) +
+                                   line("p", escaped(document.subtitle), "class=\"subtitle\""));
   body += html(document.opening);
   for (const Section& section : document.sections)
     body += line("section", line("h2", escaped(section.title)) + html(section.blocks));

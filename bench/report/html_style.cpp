@@ -51,6 +51,7 @@ p{margin:8px 0}
 .good{color:var(--good)}.bad{color:var(--bad)}.open{color:var(--open)}
 .verdict.good{background:var(--good-ground)}.verdict.bad{background:var(--bad-ground)}.verdict.open{background:var(--open-ground)}
 .badge{white-space:nowrap}
+.imprint{display:flex;flex-wrap:wrap;gap:8px 18px;align-items:center;margin-bottom:14px;font-size:.9em}.imprint div{min-width:0;overflow-wrap:anywhere}.imprint img{max-width:100%;object-fit:contain;background:#fff}
 .wide{overflow-x:auto}.short{break-inside:avoid}.unbroken{white-space:nowrap}
 table{border-collapse:collapse;width:100%;margin:10px 0;font-size:.9em;font-variant-numeric:tabular-nums}
 caption{text-align:left;font-weight:600;padding:4px 0}

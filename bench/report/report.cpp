@@ -20,11 +20,31 @@ std::string subtitle(const ReportData& data) {
 
 /// What every printed page must name: the report and the item.
 std::string page_label(const ReportData& data) {
-  std::string label = data.session.empty() ? data.title : data.session;
+  std::string label;
+  if (data.letterhead && !data.letterhead->foot.empty()) label = data.letterhead->foot + " · ";
+  label += data.session.empty() ? data.title : data.session;
   if (data.camera && !data.camera->serial.empty()) label += ", serial number " + data.camera->serial;
   if (data.revision) label += ", revision " + std::to_string(data.revision->number);
   if (!data.manifest_sha256.empty()) label += " · SHA-256 " + data.manifest_sha256;
   return label;
+}
+
+/// What the laboratory says, around what the report says. It takes nothing away.
+void add_letterhead(const Letterhead& letterhead, Document& document) {
+  if (!letterhead.title.empty()) document.heading = letterhead.title;
+  if (!letterhead.logo_png.empty() || !letterhead.lines.empty())
+    document.before_heading = {
+        Imprint{letterhead.logo_png, letterhead.logo_text, letterhead.logo_height_mm, letterhead.lines}};
+  std::vector<Block> introduction;
+  for (const auto& text : letterhead.introduction) introduction.emplace_back(Paragraph{plain(text)});
+  document.opening.insert(document.opening.begin(), introduction.begin(), introduction.end());
+}
+
+std::optional<Section> closing_section(const ReportData& data) {
+  if (!data.letterhead || data.letterhead->closing_title.empty()) return {};
+  Section section{data.letterhead->closing_title, {}};
+  for (const auto& text : data.letterhead->closing) section.blocks.emplace_back(Paragraph{plain(text)});
+  return section;
 }
 
 }  // namespace
@@ -63,8 +83,10 @@ Document report_document(const ReportData& data) {
   add(provenance_section(data));
   add(notes_section(data));
   add(statements_section(data));
+  add(closing_section(data));
   add(signature_section(data));
   add(answers_section(data));
+  if (data.letterhead) add_letterhead(*data.letterhead, document);
   return document;
 }
 

@@ -12,6 +12,7 @@
 #include "bench/judgement/acuity_uncertainty.h"
 #include "bench/judgement/verdict.h"
 #include "bench/report/document.h"
+#include "bench/report/letterhead.h"
 #include "bench/report/plot.h"
 #include "bench/session/measures_record.h"
 #include "bench/session/signature.h"
@@ -76,6 +77,8 @@ struct ReportData {
   std::map<std::string, std::uint64_t> frames_rejected;  ///< by reason
   std::uint64_t frames_lost = 0;
   double temporal_noise_k = 0;  ///< per pixel; 0: not measured
+
+  std::optional<Letterhead> letterhead;  ///< of the laboratory; nothing: the report as it is
 
   std::vector<std::pair<std::string, std::string>> provenance;  ///< versions, seeds, host
   std::string manifest_sha256;                ///< of the manifest that vouches for all this; empty: there is none

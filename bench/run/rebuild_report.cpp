@@ -18,6 +18,9 @@ Result<ReportData> report_data_of(const Session& session, const std::filesystem:
   auto human = read_human(folder);
   if (!human) return tl::unexpected(human.error());
   if (*human) data->human = std::move((*human)->curve);
+  auto letterhead = kept_letterhead(folder);
+  if (!letterhead) return tl::unexpected(letterhead.error());
+  data->letterhead = *std::move(letterhead);
   return data;
 }
 
@@ -57,6 +60,19 @@ Result<ReportData> revise_report(const Session& session, const std::filesystem::
   }
   if (auto kept = keep_revision(folder, *revision, pages); !kept) return tl::unexpected(kept.error());
   return data;
+}
+
+PageWriter html_page_with(std::filesystem::path folder, Letterhead letterhead) {
+  return [folder = std::move(folder),
+          letterhead = std::move(letterhead)](const ReportData& data) -> Result<std::vector<std::string>> {
+    ReportData with = data;
+    with.letterhead = letterhead;
+    auto kept = keep_letterhead(folder, letterhead);
+    if (!kept) return kept;
+    auto pages = html_page(folder)(with);
+    if (pages) pages->insert(pages->end(), kept->begin(), kept->end());
+    return pages;
+  };
 }
 
 PageWriter html_page(std::filesystem::path folder) {

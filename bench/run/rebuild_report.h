@@ -30,5 +30,7 @@ using PageWriter = std::function<Result<std::vector<std::string>>(const ReportDa
                                                const std::string& reason, const std::string& utc);
 /// Writes report.html and report.csv.
 [[nodiscard]] PageWriter html_page(std::filesystem::path folder);
+/// The same with a letterhead, which the session keeps for every later report.
+[[nodiscard]] PageWriter html_page_with(std::filesystem::path folder, Letterhead letterhead);
 
 }  // namespace todbench

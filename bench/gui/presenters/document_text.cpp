@@ -1,7 +1,10 @@
 #include "bench/gui/presenters/document_text.h"
 
+#include <QByteArray>
+#include <QImage>
 #include <QTextCursor>
 #include <QTextTable>
+#include <QUrl>
 #include <algorithm>
 #include <vector>
 
@@ -203,6 +206,29 @@ class TextWriter {
     end_table();
   }
 
+  void operator()(const Imprint& imprint) {
+    const bool logo = !imprint.png.empty();
+    QTextTable* cells =
+        begin_table(1, logo ? 2 : 1, borderless(logo ? std::vector<double>{30, 70} : std::vector<double>{}));
+    if (logo) {
+      const QImage image =
+          QImage::fromData(QByteArray(imprint.png.data(), static_cast<qsizetype>(imprint.png.size())), "PNG");
+      constexpr double px_per_mm = 96 / 25.4;
+      QTextImageFormat format;
+      cells->document()->addResource(QTextDocument::ImageResource, QUrl("letterhead.png"), image);
+      format.setName("letterhead.png");
+      const double height = imprint.height_mm * px_per_mm;
+      format.setHeight(height);
+      if (!image.isNull()) format.setWidth(height * image.width() / image.height());
+      QTextCursor cursor = cells->cellAt(0, 0).firstCursorPosition();
+      cursor.insertImage(format);
+    }
+    QTextCursor cursor = cells->cellAt(0, logo ? 1 : 0).firstCursorPosition();
+    for (std::size_t i = 0; i < imprint.lines.size(); ++i)
+      cursor.insertText((i == 0 ? "" : "\n") + qt(imprint.lines[i]), letters(text_px));
+    end_table();
+  }
+
  private:
   /// Widths of the columns in per cent; none: by what is in them.
   static QTextTableFormat borderless(const std::vector<double>& widths_percent = {}) {
@@ -282,6 +308,7 @@ class TextWriter {
 
 void write_text(QTextDocument& text, DrawingTextObject& drawings, const Document& document) {
   TextWriter writer(text, drawings);
+  for (const Block& block : document.before_heading) std::visit(writer, block);
   writer.heading(qt(document.heading), 1, heading_px, 0);
   writer.line(qt(document.subtitle), letters(subtitle_px, soft), spaced(0, after_paragraph));
   for (const Block& block : document.opening) std::visit(writer, block);

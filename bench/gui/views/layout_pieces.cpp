@@ -74,6 +74,18 @@ void fit_height(QTableWidget& table, int most_rows) {
                        rows * table.verticalHeader()->defaultSectionSize());
 }
 
+void fit_rows(QTableWidget& table, int least, int most) {
+  const auto fit = [&table, least, most] {
+    const int rows = table.verticalHeader()->length();
+    table.setFixedHeight(
+        std::clamp(table.horizontalHeader()->sizeHint().height() + 2 * table.frameWidth() + rows, least, most));
+  };
+  fit();
+  table.setProperty("whole", true);
+  QObject::connect(table.verticalHeader(), &QHeaderView::sectionResized, &table, fit);
+  QObject::connect(table.verticalHeader(), &QHeaderView::sectionCountChanged, &table, fit);
+}
+
 void fill_table(QTableWidget& table, const QList<QStringList>& rows) {
   table.setUpdatesEnabled(false);
   table.setRowCount(static_cast<int>(rows.size()));

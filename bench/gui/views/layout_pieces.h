@@ -24,6 +24,8 @@ void wrap_words(QTableWidget& table);
 int column_widths(QTableWidget& table, const QStringList& longest);
 /// As high as its rows, between one and so many.
 void fit_height(QTableWidget& table, int most_rows);
+/// As high as its rows are with their words wrapped, now and after every change, between these heights in pixels.
+void fit_rows(QTableWidget& table, int least, int most);
 /// Replaces the rows of a table.
 void fill_table(QTableWidget& table, const QList<QStringList>& rows);
 

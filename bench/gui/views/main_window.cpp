@@ -25,6 +25,7 @@
 
 #include "bench/gui/views/align_view.h"
 #include "bench/gui/views/chain_view.h"
+#include "bench/gui/views/history_view.h"
 #include "bench/gui/views/human_view.h"
 #include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/look_view.h"
@@ -51,6 +52,8 @@ QString name_of(View view) {
       return "See the chain";
     case View::report:
       return "Compare and report";
+    case View::history:
+      return "History";
     case View::start:
       return "Start page";
   }
@@ -75,7 +78,8 @@ MainWindow::MainWindow(const std::filesystem::path& sessions, Memory memory, QWi
       plan_(bench_),
       measure_(bench_),
       chain_(bench_),
-      sessions_(bench_) {
+      sessions_(bench_),
+      history_(memory == Memory::remember ? default_history_file() : sessions / "history.sqlite") {
   setWindowTitle("todbench");
   theme_ = desktop_theme();
   make_views();
@@ -131,6 +135,7 @@ void MainWindow::make_views() {
     measure_.replay(sessions_.current()->folder, sessions_.current()->session.plan);
   });
   views_->addWidget(report);
+  views_->addWidget(new HistoryView(history_, bench_.sessions_folder()));
   views_->addWidget(start_page());
 
   message_ = new QFrame;

@@ -1,4 +1,4 @@
-// The window: seven views and a start page, one message line, one state.
+// The window: eight views and a start page, one message line, one state.
 #pragma once
 
 #include <QMainWindow>
@@ -7,6 +7,7 @@
 
 #include "bench/gui/presenters/align_presenter.h"
 #include "bench/gui/presenters/chain_presenter.h"
+#include "bench/gui/presenters/history_presenter.h"
 #include "bench/gui/presenters/human_presenter.h"
 #include "bench/gui/presenters/look_presenter.h"
 #include "bench/gui/presenters/measure_presenter.h"
@@ -25,10 +26,10 @@ namespace todbench {
 
 class PlanView;
 
-enum class View { look, align, plan, measure, human, chain, report, start };
+enum class View { look, align, plan, measure, human, chain, report, history, start };
 /// Those of the list on the left; the start page is reached by the menu.
-inline constexpr std::array all_views{View::look,  View::align, View::plan,  View::measure,
-                                      View::human, View::chain, View::report};
+inline constexpr std::array all_views{View::look,  View::align, View::plan,   View::measure,
+                                      View::human, View::chain, View::report, View::history};
 [[nodiscard]] QString name_of(View view);
 
 /// What the window remembers from one start to the next.
@@ -57,6 +58,7 @@ class MainWindow final : public QMainWindow {
   [[nodiscard]] HumanPresenter& human() { return human_; }
   [[nodiscard]] ChainPresenter& chain() { return chain_; }
   [[nodiscard]] SessionPresenter& sessions() { return sessions_; }
+  [[nodiscard]] HistoryPresenter& history() { return history_; }
 
  protected:
   void closeEvent(QCloseEvent* event) override;
@@ -85,6 +87,7 @@ class MainWindow final : public QMainWindow {
   HumanPresenter human_;
   ChainPresenter chain_;
   SessionPresenter sessions_;
+  HistoryPresenter history_;
   Theme theme_ = Theme::light;
   bool first_start_ = false;  ///< nothing is remembered
   bool away_ = false;         ///< the message says that a camera is waited for

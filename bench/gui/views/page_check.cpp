@@ -6,6 +6,7 @@
 #include <QFrame>
 #include <QHeaderView>
 #include <QLabel>
+#include <QScrollBar>
 #include <QStyle>
 #include <QStyleOptionComboBox>
 #include <QTableWidget>
@@ -65,6 +66,8 @@ void check_table(const QTableWidget& table, QStringList& faults) {
       if (needed.width() > room.width() || needed.height() > room.height()) faults << cut(table, item->text());
     }
   }
+  if (table.property("whole").toBool() && table.verticalScrollBar()->maximum() > 0)
+    faults << name_of(table) + ": rows are behind its edge";
   const int width = table.horizontalHeader()->length();
   if (width > table.viewport()->width()) faults << name_of(table) + ": wider than its place";
 }

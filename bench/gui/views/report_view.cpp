@@ -138,10 +138,9 @@ QWidget* ReportView::session_panel() {
   column_widths(*limits_, {"Acuity at 16.9 K at least", "0.510 [0.468, 0.556] 1/mrad", "? inconclusive"});
   wrap_words(*limits_);
   fit_height(*ratios_, most_ratios);
-  limits_->setMinimumHeight(120);
-  limits_->setMaximumHeight(260);
+  fit_rows(*limits_, 100, 260);
   layout->addWidget(ratios_);
-  layout->addWidget(limits_, 1);
+  layout->addWidget(limits_);
   auto* buttons = new QHBoxLayout;
   export_ = primary_button("Write HTML and PDF", "exportReports");
   page_ = plain_button("Show the PDF", "showPdf");

@@ -1,0 +1,39 @@
+// History: the measures of every unit over the years, each with its control charts.
+#pragma once
+
+#include <QWidget>
+#include <filesystem>
+
+#include "bench/gui/presenters/history_presenter.h"
+
+class QLabel;
+class QTableWidget;
+
+namespace todbench {
+
+class PlotView;
+
+class HistoryView final : public QWidget {
+  Q_OBJECT
+
+ public:
+  /// `sessions` is the folder whose sessions a button adds.
+  HistoryView(HistoryPresenter& presenter, std::filesystem::path sessions, QWidget* parent = nullptr);
+
+ protected:
+  void showEvent(QShowEvent* event) override;
+
+ private:
+  [[nodiscard]] QWidget* list_panel();
+  [[nodiscard]] QWidget* chart_panel();
+  void list_series();
+  void show_chart();
+
+  HistoryPresenter& presenter_;
+  std::filesystem::path sessions_;
+  QTableWidget* list_;
+  QLabel *title_, *remark_;
+  PlotView *values_, *ewma_, *cusum_;
+};
+
+}  // namespace todbench
