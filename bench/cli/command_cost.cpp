@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
+#include "bench/cli/findings.h"
 #include "bench/cli/session_argument.h"
 #include "bench/judgement/verdict.h"
 #include "bench/report/cost_figure.h"
@@ -94,6 +95,14 @@ Result<void> write_results(const CostFrontier& frontier, const CostArguments& ar
   return into_session(frontier, arguments.session, arguments.opening);
 }
 
+/// What frames and graded answers buy in this plan.
+Result<std::vector<PrecisionChoice>> precision_of(const LoadedPlan& loaded, std::stop_token stop) {
+  EffectPlanner planner;
+  const auto inputs = experiment_inputs(loaded, planner);
+  if (!inputs) return tl::unexpected(inputs.error());
+  return precision_frontier(loaded.plan(), *inputs, std::move(stop));
+}
+
 int run_cost(Console& console, const CostArguments& arguments, const Program& program) {
   const auto asked = plan_of(console, arguments);
   if (!asked) return report_error(console, asked.error());
@@ -110,8 +119,11 @@ int run_cost(Console& console, const CostArguments& arguments, const Program& pr
   const auto frontier = cost_of_plan(*plan, arguments.budget_s, listener, program.stop->token());
   console.end_progress();
   if (!frontier) return report_error(console, frontier.error());
+  const auto precision = precision_of(*plan, program.stop->token());
+  if (!precision && precision.error().code == ErrorCode::interrupted) return report_error(console, precision.error());
   if (console.json()) {
     Json json = cost_json(*frontier);
+    if (precision) json["frontier"] = frontier_json(*precision);
     add_accepted_changes(json, arguments.opening, asked->accepted_changes);
     console.object(json);
   }
@@ -122,6 +134,7 @@ int run_cost(Console& console, const CostArguments& arguments, const Program& pr
   }
   if (auto written = write_results(*frontier, arguments); !written) return report_error(console, written.error());
   print_cost(console, *frontier);
+  if (precision) print_frontier(console, *precision);
   for (const auto& note : frontier->notes) console.note(note);
   return 0;
 }

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
+#include "bench/cli/findings.h"
 #include "bench/cli/simulation_plan.h"
 #include "bench/judgement/verdict.h"
 #include "bench/run/comparison_forecast.h"
@@ -70,14 +71,19 @@ int run_plan(Console& console, SimulationOverrides overrides, const Program& pro
     if (timed.error().code == ErrorCode::interrupted) return report_error(console, timed.error());
     prediction->warnings.push_back("no predicted time: " + timed.error().message);
   }
+  // Where no time can be predicted a warning says so already.
+  const auto frontier = precision_frontier(plan, *inputs, program.stop->token());
+  if (!frontier && frontier.error().code == ErrorCode::interrupted) return report_error(console, frontier.error());
   const auto limits = limit_forecasts(plan, *prediction);
   if (!limits) return report_error(console, limits.error());
   if (console.json()) {
     Json json = plan_json(inputs->effects, prediction->figures);
     if (!plan.limits.acuity.empty()) json["limits"] = limits_json(*limits);
+    if (frontier) json["frontier"] = frontier_json(*frontier);
     console.object(json);
   } else {
     print_plan(console, *inputs, *prediction);
+    if (frontier) print_frontier(console, *frontier);
     for (const LimitForecast& limit : *limits) console.text("limit at " + in_words(limit));
   }
   for (const auto& warning : prediction->warnings) console.note(warning);

@@ -13,6 +13,27 @@ void print_findings(const Console& console, const std::optional<Adequacy>& adequ
     console.text((finding.unfit ? "not fit for a decision: " : "finding: ") + std::string(about) + finding.sentence);
 }
 
+void print_frontier(const Console& console, const std::vector<PrecisionChoice>& choices) {
+  std::vector<TableRow> rows;
+  for (const PrecisionChoice& choice : choices) {
+    std::string remark = choice.planned ? "planned" : "";
+    if (choice.recommended) remark += remark.empty() ? "recommended" : ", recommended";
+    TableRow row{std::string(to_string(choice.answers)), std::to_string(choice.frames), fixed(choice.seconds, 0),
+                 fixed(choice.half_width_percent, 2)};
+    for (const ContrastPrediction& contrast : choice.contrasts) row.push_back(fixed(contrast.uncertainty_percent, 2));
+    row.push_back(std::move(remark));
+    rows.push_back(std::move(row));
+  }
+  if (rows.empty()) return;
+  TableRow header{"answers", "frames", "time [s]", "95 % +- [%]"};
+  for (const ContrastPrediction& contrast : choices.front().contrasts)
+    header.push_back("at " + fixed(contrast.delta_t_k, 2) + " K");
+  header.emplace_back("");
+  console.text("");
+  console.text("what frames and graded answers buy; the half-width of S75 is the largest:");
+  console.table(header, rows);
+}
+
 void print_paired(const Console& console, const Comparison& comparison) {
   std::vector<TableRow> rows;
   for (const ComparisonPoint& point : comparison.points) {

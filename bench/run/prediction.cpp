@@ -6,8 +6,10 @@
 
 #include "bench/plan/plan_options.h"
 #include "bench/run/bench_time.h"
+#include "bench/run/graded_precision.h"
 #include "bench/run/module_chain.h"
 #include "bench/run/time_prediction.h"
+#include "bench/run/twin_shapes.h"
 #include "bench/text/text.h"
 #include "sim_devices/prediction/direct_timing.h"
 #include "tod/comparison/planning.h"
@@ -38,13 +40,42 @@ std::vector<Level> levels_of(const Plan& plan, const std::vector<TargetPlate>& p
   return levels;
 }
 
-std::optional<double> uncertainty_percent(const Plan& plan, const std::vector<Level>& levels, double s75_mrad,
-                                          double slope) {
-  const auto design =
-      design_at(levels, plan.fit.form, s75_mrad, std::clamp(slope, flattest, steepest), plan.fit.lapse.value_or(0.01));
+/// Of the noise that decides an answer at a contrast, in variance: what the sensor has and the observer does not make.
+double sensor_share(const TemplateObserverSpec& observer, double q_eff) {
+  const double own = observer.internal_noise * observer.internal_noise;
+  const double factor = observer.sensor_noise_factor * observer.sensor_noise_factor;
+  return std::max(0.0, q_eff * q_eff - own) / factor / (q_eff * q_eff);
+}
+
+/// Relative standard error of the threshold of a table of proportions (needed_draws(), twin_shapes.h).
+double se_of_shape(const Accuracy& accuracy, double q_eff) {
+  return (0.046 + 0.285 * q_eff) / std::sqrt(std::max<double>(accuracy.noise_draws, twin_shape_draws));
+}
+
+/// Half the interval of ln S75 of graded answers, from the standard error of as many right and wrong ones.
+double graded_half_width(const Plan& plan, const ExperimentInputs& inputs, double q_eff, double binary_se) {
+  const auto set_ups = static_cast<int>(inputs.plates.size() * plan.target.mountings.size());
+  const GradedDesignFigures design{.sensor_share = sensor_share(inputs.observer, q_eff),
+                                   .frames = plan.schedule.frames_per_presentation,
+                                   .draws = MeasurementOptions::graded_draws,
+                                   .set_ups = set_ups,
+                                   .presentations = set_ups * plan.simulation.phases};
+  const double se =
+      std::hypot(binary_se * std::sqrt(graded_variance_ratio(design)), se_of_shape(inputs.accuracy, q_eff));
+  return graded_interval_factor(design) * se;
+}
+
+std::optional<double> uncertainty_percent(const Plan& plan, const ExperimentInputs& inputs,
+                                          const std::vector<Level>& levels, const ContrastOutlook& outlook) {
+  const double s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
+  const auto design = design_at(levels, plan.fit.form, s75_mrad, std::clamp(outlook.weibull_slope, flattest, steepest),
+                                plan.fit.lapse.value_or(0.01));
   const auto fit = expected_fit(design, fit_options(plan));
   if (!fit) return std::nullopt;
-  return 100 * std::expm1(likely_excess * 1.96 * fit->se_ln_threshold);
+  const double half = plan.schedule.answers == AnswerKind::graded
+                          ? graded_half_width(plan, inputs, outlook.q_eff, fit->se_ln_threshold)
+                          : likely_excess * 1.96 * fit->se_ln_threshold;
+  return 100 * std::expm1(half);
 }
 
 /// Of an adaptive schedule, from what constant stimuli would come to: as many trials as make the interval as narrow as
@@ -117,7 +148,7 @@ Result<PlanPrediction> predict_plan(const Plan& plan, const ExperimentInputs& in
     for (const auto& outlook : inputs.outlooks) {
       if (outlook.delta_t_k != delta_t_k) continue;
       point.s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
-      point.uncertainty_percent = uncertainty_percent(plan, levels, *point.s75_mrad, outlook.weibull_slope);
+      point.uncertainty_percent = uncertainty_percent(plan, inputs, levels, outlook);
     }
     adapt(point, plan, inputs.plates);
     trials += point.trials;

@@ -15,7 +15,8 @@ namespace todbench {
 struct ContrastPrediction {
   double delta_t_k = 0;
   std::optional<double> s75_mrad;  ///< of the first tier; nothing: no threshold is expected
-  /// Half the 95 % interval of S75 from the trials, which 19 of 20 runs do not exceed; of an adaptive schedule what is
+  /// Half the 95 % interval of S75 from the trials, right and wrong or graded as the plan has them
+  /// (graded_precision.h), which 19 of 20 runs do not exceed; of an adaptive schedule what is
   /// asked of it, or what its cap allows. Nothing: not identified.
   std::optional<double> uncertainty_percent;
   double trials = 0;  ///< of the simulation at this contrast

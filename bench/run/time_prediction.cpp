@@ -5,6 +5,8 @@
 
 #include "bench/plan/plan_options.h"
 #include "bench/run/devices.h"
+#include "bench/run/paired_comparison.h"
+#include "bench/run/twin_shapes.h"
 #include "sim_devices/prediction/direct_timing.h"
 #include "tod/measurement/frame_taker.h"
 #include "tod/plate/test_pattern.h"
@@ -15,7 +17,9 @@ namespace todbench {
 namespace {
 
 constexpr double shapes_per_first_draw = 1.5;  // a first picture has two of three of the shapes of all mountings
-constexpr double fit_s = 0.01;                 // of one contrast, both intervals
+/// Sizes of a function from chance to certainty over those near the threshold.
+constexpr double sizes_of_shape = 3;
+constexpr double fit_s = 0.01;  // of one contrast, both intervals
 
 /// Seconds of each kind of work on one plate.
 struct PlateSpeed {
@@ -52,7 +56,7 @@ Result<void> time_answers(const TargetPlate& plate, const Registration& registra
     if (!prepared) return tl::unexpected(prepared.error());
     const auto window = patch_window(registration.pixel(t.position_mm), (*prepared)->window_samples());
     if ((window.pixels & cv::Rect({0, 0}, picture.size())) != window.pixels) continue;
-    speed.answers += seconds_of([&] {
+    const auto answer = [&] {
       const Patch patch{.kelvin = picture(window.pixels).clone(), .phase = window.phase, .noise_k = 0};
       const RandomStream noise(1, "time_prediction");
       if (options.answers == AnswerKind::graded) {
@@ -60,7 +64,10 @@ Result<void> time_answers(const TargetPlate& plate, const Registration& registra
       } else {
         (void)(*prepared)->choose(patch, contrast_k, noise);
       }
-    });
+    };
+    // The first graded answer makes what all others use.
+    if (options.answers == AnswerKind::graded) speed.prepare += seconds_of(answer);
+    speed.answers += seconds_of(answer);
   }
   speed.answers *= options.frames_per_presentation;
   return {};
@@ -157,15 +164,26 @@ Result<TimePrediction> predict_time(const Plan& plan, const ExperimentInputs& in
     const double drawing = simulated.presentations * speed->draw + frames_of(plan, simulated) * speed->frame;
     out.simulation_s += response_s(*speed) + looking_s(*speed, simulated) + drawing;
     out.measuring_s += response_s(*speed) + looking_s(*speed, measured) + frames_of(plan, measured) * speed->frame;
+    // The twin sees what the camera saw, so many times.
+    if (pairs_asked(plan) && !plan.camera.id.empty())
+      out.measuring_s +=
+          measured.presentations * PairedTwinOptions::default_draws * speed->answers / options.frames_per_presentation;
     if (plan.target.kind == TargetKind::scene) out.measuring_s += measured.presentations * speed->draw;
   }
   out.simulation_s += simulated.contrasts * fit_s;
+  const bool shaped = plan.fit.estimator == FitEstimator::twin_shape;
   for (const auto& outlook : inputs.outlooks) {
     const double draws = std::min<double>(needed_draws(inputs.accuracy, outlook.q_eff), Accuracy::max_noise_draws);
     const auto seconds = measured_direct_seconds(inputs.sensor, inputs.effects, inputs.observer, outlook.delta_t_k,
                                                  outlook.s75_pitch, draws, inputs.accuracy, inputs.motion);
     if (!seconds) return tl::unexpected(seconds.error());
     out.simulation_s += *seconds;
+    if (!shaped) continue;
+    // Of the curve, and where there is a camera of its own: the same draws whatever tolerance is asked for.
+    const double table_draws = std::max<double>(inputs.accuracy.noise_draws, twin_shape_draws);
+    const double table_s = sizes_of_shape * *seconds * table_draws / draws;
+    out.simulation_s += table_s;
+    out.measuring_s += table_s;
   }
   return out;
 }

@@ -10,8 +10,6 @@
 namespace todbench {
 namespace {
 
-constexpr int least_draws = 4000;
-
 ProportionTable table_of(const ProportionCurve& curve, double ifov_mrad) {
   ProportionTable table{{}, curve.proportion_correct, curve.standard_error};
   for (const double size : curve.sizes_pitch) table.size_mrad.push_back(size * ifov_mrad);
@@ -35,7 +33,7 @@ DirectEstimateOptions direct_options(const TodCurve& curve, const ExperimentInpu
 TwinShapesOutcome fit_twin_shapes(TodCurve& curve, std::span<const Trial> trials, const ExperimentInputs& inputs,
                                   const FitOptions& fit, DirectEstimateOptions options) {
   TemplateObserver observer(inputs.observer, triangle_alternatives());
-  options.accuracy.noise_draws = std::max(options.accuracy.noise_draws, least_draws);
+  options.accuracy.noise_draws = std::max(options.accuracy.noise_draws, twin_shape_draws);
   TwinShapesOutcome outcome;
   for (TodPoint& point : curve.points) {
     const std::string where = "at " + number_text(point.set_delta_t_k) + " K the function is a Weibull function: ";

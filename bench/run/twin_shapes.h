@@ -20,6 +20,9 @@ namespace todbench {
                                                    const std::map<double, double>& shown_delta_t_k, std::uint64_t seed,
                                                    std::stop_token stop);
 
+/// Draws per size of the functions, at least.
+inline constexpr int twin_shape_draws = 4000;
+
 /// What became of it, a sentence for each contrast that keeps its Weibull function.
 struct TwinShapesOutcome {
   std::vector<std::string> notes;

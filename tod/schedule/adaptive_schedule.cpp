@@ -33,6 +33,9 @@ PsiOptions prior_over(const std::vector<TargetPlate>& plates, double distance_m,
 }
 
 bool contradicted(const PsychometricFit& fit) {
+  // Graded answers have another function in the end, and their finding is its own; this one is off by more than they
+  // scatter.
+  if (is_quasi(fit.interval)) return false;
   if (!fit.deviance || fit.degrees_of_freedom < 1 || *fit.deviance <= 0) return false;
   const boost::math::chi_squared law(fit.degrees_of_freedom);
   // Deviance over the clustered variance: trials of one presentation are not independent.

@@ -39,9 +39,9 @@ struct ContrastProgress {
 /// the target, set-ups visited before counting less, so that places on the plate vary. A visit begins at the highest
 /// contrast, where the plate is registered, and goes on with the open ones. A contrast is settled when it has 40 trials
 /// of three sizes in eight presentations or more, a two-sided interval with half-width below the wanted one, and a fit
-/// that the data do not contradict (deviance, p > 0.001); it ends in the middle of a visit. The run ends when all are
-/// settled or at the cap. The shifts of a visit are those of even_phases(), over the mountings of its plate; those of
-/// every further visit of a set-up lie between them.
+/// that the data do not contradict (deviance, p > 0.001; graded answers have their own interval and no deviance); it
+/// ends in the middle of a visit. The run ends when all are settled or at the cap. The shifts of a visit are those of
+/// even_phases(), over the mountings of its plate; those of every further visit of a set-up lie between them.
 class AdaptiveSchedule final : public TrialSchedule {
  public:
   AdaptiveSchedule(AdaptiveOptions options, const RandomStream& stream);

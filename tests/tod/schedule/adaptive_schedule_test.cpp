@@ -33,6 +33,7 @@ const std::map<double, double> shipped_thresholds{{16.9, 2.1}, {0.23, 3.4}};  //
 struct SimulatedAnswers {
   std::map<double, double> threshold_mrad = shipped_thresholds;
   double slope = 4;
+  bool graded = false;  ///< a third of the answers' variance left, a function that is no Weibull function
   std::vector<Trial> all = {};
   std::vector<TargetState> shown = {};
 
@@ -52,6 +53,13 @@ struct SimulatedAnswers {
             psychometric(PsychometricForm::size, trial.size_mrad, threshold_mrad.at(state->delta_t_k), slope, 0);
         trial.truth = Apex::up;
         trial.answer = stream.uniform(all.size() + trials.size()) < right ? Apex::up : Apex::down;
+        if (graded) {
+          const double steep = psychometric(PsychometricForm::size, trial.size_mrad,
+                                            0.9 * threshold_mrad.at(state->delta_t_k), 2 * slope, 0);
+          const double mean = (right + steep) / 2;
+          const double z = static_cast<double>(stream.sub(1).normal(all.size() + trials.size()));
+          trial.probability_correct = mean + std::min(mean, 1 - mean) * std::clamp(0.4 * z, -1.0, 1.0);
+        }
         trials.push_back(trial);
       }
       shown.push_back(*state);
@@ -165,6 +173,19 @@ TEST(AdaptiveSchedule, KeepsCoverageAndTheUncertaintyAskedForOverManySeeds) {
   // 80 intervals: 3.5 standard errors of 95 % are 8.5 %; clustered intervals may be wider than needed.
   EXPECT_GE(inside, 69);
   EXPECT_GE(kept, 76);  // 95 % of 80; below the cap it is what the schedule stops at
+}
+
+TEST(AdaptiveSchedule, StopsByTheIntervalOfGradedAnswers) {
+  const AdaptiveOptions options = both_plates(4);
+  AdaptiveSchedule graded(options, RandomStream(5, "schedule")), binary(options, RandomStream(5, "schedule"));
+  SimulatedAnswers of_graded{.graded = true}, of_binary;
+  of_graded.run(graded, options, RandomStream(5, "answers"));
+  of_binary.run(binary, options, RandomStream(5, "answers"));
+  for (const ContrastProgress& contrast : graded.progress()) {
+    EXPECT_TRUE(contrast.settled) << "that no Weibull function fits them is found afterwards";
+    EXPECT_LT(contrast.half_width_percent.value_or(100), 4);
+  }
+  EXPECT_LT(of_graded.shown.size(), of_binary.shown.size());
 }
 
 }  // namespace

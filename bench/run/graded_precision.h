@@ -1,0 +1,32 @@
+// How much less graded answers scatter than right and wrong ones, before anything is measured.
+#pragma once
+
+namespace todbench {
+
+/// What a design of graded answers is.
+struct GradedDesignFigures {
+  double sensor_share =
+      0;            ///< of the noise that decides an answer, in variance: the sensor's; the rest is the observer's
+  int frames = 1;   ///< per presentation
+  int draws = 32;   ///< of the observer's own noise for each frame
+  int set_ups = 8;  ///< plates times mountings
+  int presentations = 96;  ///< of a contrast
+};
+
+/// Variance of graded answers over that of right and wrong ones: what frames leave of the noise of the sensor, draws of
+/// that of the observer, and set-ups of phases, contrast and registration:
+///
+///   f / F + (1 - f) / (F D) + r,   f = (3/4)^2 (Phi2(z, z; share) - (2/3)^2) / (p (1 - p)),   p = 3/4 = 1/4 + 3/4
+///   Phi(z)
+///
+/// f is the part that noise of the sensor has in an answer at the threshold, which is right by luck in a quarter of the
+/// cases and else by a Gaussian decision variable (Phi2: both of two answers to the same frame are). r is 0.004 where
+/// the mountings cancel the phases (five set-ups or more, `graded_coverage_study` and `paired_comparison_study`), else
+/// 0.15, that of single phases.
+[[nodiscard]] double graded_variance_ratio(const GradedDesignFigures& design);
+
+/// Half a 95 % interval of ln S75 over the standard error behind it (Student's t), times what 19 of 20 runs stay below:
+/// a variance from so few set-ups scatters as chi square over its degrees of freedom.
+[[nodiscard]] double graded_interval_factor(const GradedDesignFigures& design);
+
+}  // namespace todbench

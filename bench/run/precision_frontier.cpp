@@ -1,0 +1,107 @@
+#include "bench/run/precision_frontier.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/run/bench_time.h"
+#include "bench/run/time_prediction.h"
+
+namespace todbench {
+namespace {
+
+Plan with_answers(Plan plan, AnswerKind answers, int frames) {
+  plan.schedule.answers = answers;
+  plan.schedule.frames_per_presentation = frames;
+  if (answers == AnswerKind::graded) {
+    plan.fit.estimator = FitEstimator::twin_shape;
+    plan.fit.lapse = 0.0;
+  }
+  return plan;
+}
+
+/// Computing time of a choice: of the camera's side where there is one.
+Result<double> computing_s(const Plan& plan, const ExperimentInputs& inputs, std::stop_token stop) {
+  const auto time = predict_time(plan, inputs, std::move(stop));
+  if (!time) return tl::unexpected(time.error());
+  return plan.camera.id.empty() ? time->simulation_s : time->measuring_s;
+}
+
+double bench_s(const Plan& plan, const ExperimentInputs& inputs, const std::vector<ContrastPrediction>& contrasts) {
+  if (plan.camera.id.empty()) return 0;
+  const auto presentations = expected_presentations(plan, inputs.plates, contrasts);
+  return bench_time(plan, inputs.plates, inputs.sensor.frame_rate_hz, presentations).total_s();
+}
+
+void recommend(std::vector<PrecisionChoice>& choices) {
+  const auto price = [](const PrecisionChoice& choice) {
+    return std::pow(std::log1p(*choice.half_width_percent / 100), 2) * std::max(choice.seconds, 1e-3);
+  };
+  PrecisionChoice* best = nullptr;
+  for (PrecisionChoice& choice : choices) {
+    if (choice.answers != AnswerKind::graded || !choice.half_width_percent) continue;
+    if (best == nullptr || price(choice) < price(*best)) best = &choice;
+  }
+  if (best != nullptr) best->recommended = true;
+}
+
+}  // namespace
+
+Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const ExperimentInputs& inputs,
+                                                        std::stop_token stop) {
+  std::vector<int> frames{1, 2, 4, 8};
+  const int own = plan.schedule.frames_per_presentation;
+  if (plan.schedule.answers == AnswerKind::graded && std::ranges::find(frames, own) == frames.end()) {
+    frames.push_back(own);
+    std::ranges::sort(frames);
+  }
+  const auto binary_s = computing_s(with_answers(plan, AnswerKind::binary, 1), inputs, stop);
+  if (!binary_s) return tl::unexpected(binary_s.error());
+  const auto one_s = computing_s(with_answers(plan, AnswerKind::graded, 1), inputs, stop);
+  if (!one_s) return tl::unexpected(one_s.error());
+  const auto two_s = computing_s(with_answers(plan, AnswerKind::graded, 2), inputs, stop);
+  if (!two_s) return tl::unexpected(two_s.error());
+  const double frame_s = std::max(0.0, *two_s - *one_s);
+
+  std::vector<PrecisionChoice> choices;
+  const auto add = [&](AnswerKind answers, int count, double computing) -> Result<void> {
+    const Plan other = with_answers(plan, answers, count);
+    auto prediction = predict_plan(other, inputs);
+    if (!prediction) return tl::unexpected(prediction.error());
+    PrecisionChoice choice{.answers = answers, .frames = count};
+    choice.seconds = computing + bench_s(other, inputs, prediction->contrasts);
+    choice.half_width_percent = prediction->figures.predicted_uncertainty_percent;
+    choice.contrasts = std::move(prediction->contrasts);
+    choice.planned = plan.schedule.answers == answers && own == count;
+    choices.push_back(std::move(choice));
+    return {};
+  };
+  if (auto added = add(AnswerKind::binary, 1, *binary_s); !added) return tl::unexpected(added.error());
+  for (const int count : frames) {
+    if (auto added = add(AnswerKind::graded, count, *one_s + (count - 1) * frame_s); !added)
+      return tl::unexpected(added.error());
+  }
+  recommend(choices);
+  return choices;
+}
+
+Json frontier_json(const std::vector<PrecisionChoice>& choices) {
+  Json rows = Json::array();
+  for (const PrecisionChoice& choice : choices) {
+    Json row;
+    row["answers"] = to_string(choice.answers);
+    row["frames_per_presentation"] = choice.frames;
+    row["half_width_percent"] = json_number(choice.half_width_percent);
+    row["predicted_s"] = json_number(choice.seconds);
+    row["planned"] = choice.planned;
+    row["recommended"] = choice.recommended;
+    row["contrasts"] = Json::array();
+    for (const ContrastPrediction& contrast : choice.contrasts) {
+      row["contrasts"].push_back({{"delta_t_k", json_number(contrast.delta_t_k)},
+                                  {"half_width_percent", json_number(contrast.uncertainty_percent)}});
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace todbench
