@@ -15,7 +15,7 @@ namespace todbench {
 namespace {
 
 /// The frames of a pass.
-struct Pass {
+struct MovingPass {
   std::vector<cv::Mat1f> frames;
   PlateScene scene;    ///< of the first
   double step_px = 0;  ///< from frame to frame, along x
@@ -52,8 +52,8 @@ class SequenceJudge {
   [[nodiscard]] std::size_t sizes() const { return sizes_.size(); }
 
   /// Of triangle t in the pass. `noise_k` is the sensor's in one frame.
-  [[nodiscard]] int choose(SequenceObserver kind, const Pass& pass, std::size_t t, cv::Point2d place, double noise_k,
-                           const RandomStream& noise) const {
+  [[nodiscard]] int choose(SequenceObserver kind, const MovingPass& pass, std::size_t t, cv::Point2d place,
+                           double noise_k, const RandomStream& noise) const {
     const PreparedSize& size = sizes_[t / 4];
     const double contrast_k = pass.scene.delta_t_k;
     switch (kind) {
@@ -85,7 +85,7 @@ class SequenceJudge {
 
   /// Mean of the scores over the frames, each at the template that stands where the target is, and the observer's own
   /// noise once.
-  [[nodiscard]] int tracked(const PreparedSize& size, const Pass& pass, cv::Point2d place, double noise_k,
+  [[nodiscard]] int tracked(const PreparedSize& size, const MovingPass& pass, cv::Point2d place, double noise_k,
                             const RandomStream& noise) const {
     const TemplateBank& bank = *size.bank;
     const auto samples = static_cast<std::size_t>(bank.window_samples() * bank.window_samples());
@@ -145,13 +145,13 @@ int lead_frames(const DynamicTrialOptions& options) {
   return sum;
 }
 
-Result<Pass> exposed_pass(const SensorModel& model, const TargetPlate& plate, const DynamicTrialOptions& options,
-                          double speed_mrad_s, int index) {
+Result<MovingPass> exposed_pass(const SensorModel& model, const TargetPlate& plate, const DynamicTrialOptions& options,
+                                double speed_mrad_s, int index) {
   // The streams are those of camera_trials(): a target that rests gives the answers of a still picture, bit for bit.
   const RandomStream phases = RandomStream(options.seed, "camera_trials.phase").sub(static_cast<std::uint64_t>(index));
   const double along = index % 2 == 0 ? speed_mrad_s : -speed_mrad_s;
   const SensorSpec& spec = model.spec();
-  Pass pass;
+  MovingPass pass;
   pass.step_px = along / spec.ifov_mrad() / spec.frame_rate_hz;
   pass.scene.plate = plate;
   pass.scene.delta_t_k = options.delta_t_k;
@@ -180,8 +180,8 @@ Result<Pass> exposed_pass(const SensorModel& model, const TargetPlate& plate, co
   return pass;
 }
 
-void add_answers(const SequenceJudge& judge, const Pass& pass, const SensorModel& model, double noise_k, int index,
-                 const RandomStream& trial, DynamicTrials& trials) {
+void add_answers(const SequenceJudge& judge, const MovingPass& pass, const SensorModel& model, double noise_k,
+                 int index, const RandomStream& trial, DynamicTrials& trials) {
   for (const SequenceObserver kind : all_sequence_observers) {
     const auto k = static_cast<std::size_t>(kind);
     std::vector<Level> levels(judge.sizes());
