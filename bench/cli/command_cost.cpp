@@ -123,7 +123,8 @@ int run_cost(Console& console, const CostArguments& arguments, const Program& pr
   if (!precision && precision.error().code == ErrorCode::interrupted) return report_error(console, precision.error());
   if (console.json()) {
     Json json = cost_json(*frontier);
-    if (precision) json["frontier"] = frontier_json(*precision);
+    // What a session keeps is what is printed of it.
+    if (precision && arguments.session.empty()) json["frontier"] = frontier_json(*precision);
     add_accepted_changes(json, arguments.opening, asked->accepted_changes);
     console.object(json);
   }

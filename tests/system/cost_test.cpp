@@ -28,7 +28,8 @@ TEST(Cost, MeasuresTheFrontierIntoAFigureAndOneObject) {
 
   EXPECT_EQ(ended.code, 0) << ended.err;
   const Json cost = one_object(ended);
-  EXPECT_EQ(keys_of(cost), (std::set<std::string>{"reference", "points", "budget_s", "spent_s", "notes"}));
+  EXPECT_EQ(keys_of(cost), (std::set<std::string>{"reference", "points", "budget_s", "spent_s", "notes", "frontier"}));
+  EXPECT_EQ(cost["frontier"].size(), 5U) << "binary, and graded with 1, 2, 4 and 8 frames";
   for (const char* knob : {"planner", "trials", "tolerance", "draws", "wavelengths", "phases", "wrap", "band"})
     EXPECT_FALSE(points_of(cost, knob).empty()) << knob;
   int chosen = 0;

@@ -35,7 +35,8 @@ TEST_F(Planning, JsonHasTheKeysOfTheContractAndOneDecisionPerEffect) {
 
   ASSERT_EQ(ended.code, 0) << ended.err;
   const Json json = one_object(ended);
-  EXPECT_THAT(keys_of(json), UnorderedElementsAre("effects", "trials", "predicted_uncertainty_percent", "predicted_s"));
+  EXPECT_THAT(keys_of(json),
+              UnorderedElementsAre("effects", "trials", "predicted_uncertainty_percent", "predicted_s", "frontier"));
   ASSERT_EQ(json["effects"].size(), 15u);
   for (const auto& effect : json["effects"]) {
     EXPECT_THAT(keys_of(effect), UnorderedElementsAre("name", "decision", "reason", "predicted_change_percent"));
