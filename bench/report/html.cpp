@@ -5,6 +5,7 @@
 #include "bench/report/html_style.h"
 #include "bench/report/markup.h"
 #include "bench/report/svg.h"
+#include "bench/text/base64.h"
 
 namespace todbench {
 namespace {

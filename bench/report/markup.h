@@ -27,7 +27,4 @@ struct Markup {
 /// <tag attributes>content</tag>. Attributes are written in the program: `class="x"`.
 [[nodiscard]] Markup element(std::string_view tag, const Markup& content, std::string_view attributes = "");
 
-/// Bytes as text (RFC 4648, with padding), for a picture inside a page.
-[[nodiscard]] std::string base64(std::string_view bytes);
-
 }  // namespace todbench
