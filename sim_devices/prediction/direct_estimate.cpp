@@ -192,6 +192,12 @@ Result<PixelContrast> pixel_contrast(const SensorSpec& sensor, const SensorPlan&
     const double sd_k = std::hypot(displayed_k, sensor.fixed_pattern_k);
     out.seen_k = quantiser.reading(delta_t_k, sd_k).mean_k - quantiser.reading(0, sd_k).mean_k;
   }
+  const double highest_k = sensor.offset_k + sensor.kelvin_per_count * (std::exp2(sensor.bits) - 1);
+  if (plan.simulates(Effect::quantisation) && (out.background_k < sensor.offset_k || out.background_k > highest_k)) {
+    return fail(ErrorCode::invalid_input,
+                fmt::format("a scene of {:g} K is beyond what the counts hold, {:g} to {:g} K", out.background_k,
+                            sensor.offset_k, highest_k));
+  }
   if (!(out.seen_k / delta_t_k > 1e-6)) {
     return fail(ErrorCode::invalid_input,
                 fmt::format("a contrast of {:g} K disappears in counts of {:g} K", delta_t_k, sensor.kelvin_per_count));

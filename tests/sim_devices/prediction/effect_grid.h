@@ -110,6 +110,8 @@ inline GridScene random_scene(std::uint64_t set, std::uint64_t number) {
   s.display_blur_samples = strength(0.05, 0.5);
   if (uniform(0, 1) < 0.25) s.display = DisplayReconstruction::bilinear;
   s.kelvin_per_count = decades(0.003, 0.15);
+  // Fine counts end soon: the scene lies in their middle, or nothing of it is seen.
+  s.offset_k = std::max(s.offset_k, s.scene_temperature_k - s.kelvin_per_count * std::exp2(s.bits - 1));
   const double sampling = uniform(0, 1);
   if (sampling > 0.4 && sampling < 0.8) s.microscan = 2;
   if (sampling >= 0.8) s.super_resolution_frames = 16;

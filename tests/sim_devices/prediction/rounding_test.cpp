@@ -53,6 +53,18 @@ TEST(CoarseRounding, ThatHidesTheContrastIsSaid) {
   EXPECT_THAT(points.error().message, HasSubstr("disappears in counts of 0.1 K"));
 }
 
+TEST(CoarseRounding, SaysWhereTheCountsEndBeforeTheScene) {
+  TemplateObserver observer({}, triangle_alternatives());
+  SensorSpec spec = test::sc2000();
+  spec.kelvin_per_count = 0.003;
+  spec.offset_k = spec.scene_temperature_k - 0.003 * 16384;
+
+  const auto points = direct_estimate(spec, full_plan(spec, {}, {}), observer, {2}, {.accuracy = Accuracy::draft()});
+
+  ASSERT_FALSE(points);
+  EXPECT_THAT(points.error().message, HasSubstr("beyond what the counts hold"));
+}
+
 TEST(CoarseRounding, KnowsTheReadingOfACountsMiddleAndEdge) {
   SensorSpec spec = test::rounded_sensor(0);
   const Quantiser quantiser(spec, spec.scene_temperature_k);
