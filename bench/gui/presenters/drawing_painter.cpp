@@ -55,6 +55,8 @@ struct ShapePainter {
   void operator()(const Box& box) const { painter.drawRect(rectangle(box)); }
   void operator()(const Raster& raster) const {
     const QByteArray text(raster.png_base64.data(), static_cast<qsizetype>(raster.png_base64.size()));
+    // Else a PDF holds a JPEG, with grey values that nobody measured.
+    painter.setRenderHint(QPainter::LosslessImageRendering);
     painter.drawImage(rectangle(raster.place), QImage::fromData(QByteArray::fromBase64(text), "PNG"));
   }
   void operator()(const Disc& disc) const { painter.drawEllipse(point(disc.centre), disc.radius, disc.radius); }

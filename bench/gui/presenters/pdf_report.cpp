@@ -64,6 +64,14 @@ void keep_row_together(QTextDocument& document, QTextTable& table) {
   document.markContentsDirty(0, document.characterCount());
 }
 
+/// The first of the headings right over a block: what moves to the next page takes them along.
+QTextBlock with_headings(QTextBlock block) {
+  QTextBlock above = block.previous();
+  while (above.isValid() && above.text().trimmed().isEmpty()) above = above.previous();
+  const bool heading = above.isValid() && table_at(above) == nullptr && above.blockFormat().headingLevel() > 0;
+  return heading ? with_headings(above) : block;
+}
+
 /// A heading, a caption or a figure at the foot of a page moves to the next one, with what it belongs to. Every move
 /// shifts what follows, so the whole document is laid out again each time: Qt leaves blocks without lines where only
 /// the changed one is.
@@ -80,9 +88,10 @@ void keep_together(QTextDocument& document) {
     if (block.blockFormat().headingLevel() == 0 && !stands_over_a_table && !figure) continue;
     const QTextBlock content = belongs_to(block);
     if (!content.isValid() || page_of(document, content) == page_of(document, block)) continue;
-    QTextBlockFormat format = block.blockFormat();
+    const QTextBlock moved = with_headings(block);
+    QTextBlockFormat format = moved.blockFormat();
     format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
-    QTextCursor(block).setBlockFormat(format);
+    QTextCursor(moved).setBlockFormat(format);
     document.markContentsDirty(0, document.characterCount());
   }
 }
@@ -110,9 +119,13 @@ void paint_pages(QPdfWriter& writer, QTextDocument& document, const QString& lab
     font.setStyleStrategy(QFont::PreferNoShaping);
     painter.setFont(font);
     painter.setPen(QColor(80, 80, 80));
-    const QRectF foot_line(0, body_height + foot / 4, document.pageSize().width(), foot);
-    painter.drawText(foot_line, Qt::AlignLeft | Qt::AlignVCenter, label);
-    painter.drawText(foot_line, Qt::AlignRight | Qt::AlignVCenter, QString("page %1 of %2").arg(page + 1).arg(pages));
+    const QRectF foot_line(0, body_height + foot / 4, document.pageSize().width(), 2 * foot);
+    const QString number = QString("page %1 of %2").arg(page + 1).arg(pages);
+    const QRectF place = foot_line.adjusted(0, 0, -painter.fontMetrics().horizontalAdvance("page 999 of 999"), 0);
+    const int by_words = Qt::AlignLeft | Qt::AlignTop | Qt::TextWordWrap;
+    const bool fits = painter.boundingRect(place, by_words, label).width() <= place.width();
+    painter.drawText(place, fits ? by_words : Qt::AlignLeft | Qt::AlignTop | Qt::TextWrapAnywhere, label);
+    painter.drawText(foot_line, Qt::AlignRight | Qt::AlignTop, number);
     painter.translate(0, -page * body_height);
     QAbstractTextDocumentLayout::PaintContext context;
     context.clip = QRectF(0, page * body_height, document.pageSize().width(), body_height);

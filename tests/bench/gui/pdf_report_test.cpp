@@ -92,6 +92,11 @@ TEST_F(PdfReport, LosesNoHeadingWhereverItsPagesBreak) {
     ASSERT_TRUE(write_pdf_report(report, file_));
 
     const QString pages = output_of("pdftotext", {"-raw", QString::fromStdString(file_.string()), "-"});
+    // Without the margin at the foot, in points: a page also holds what its clip leaves out.
+    const QStringList above_the_foot =
+        output_of("pdftotext", {"-raw", "-r", "72", "-x", "0", "-y", "0", "-W", "595", "-H", "770",
+                                QString::fromStdString(file_.string()), "-"})
+            .split('\f');
     for (const QString& page : pages.split('\f'))
       EXPECT_EQ(page.contains("Tested by"), page.contains("Signature:")) << rows << " rows: signatures on two pages";
     const QString raw = squeezed(pages);
@@ -99,6 +104,8 @@ TEST_F(PdfReport, LosesNoHeadingWhereverItsPagesBreak) {
     while (headings.hasNext()) {
       const QString text = headings.next().captured(1);
       EXPECT_TRUE(raw.contains(squeezed(text))) << rows << " rows: " << text.toStdString();
+      for (const QString& page : above_the_foot)
+        EXPECT_FALSE(page.trimmed().endsWith(text)) << rows << " rows: " << text.toStdString() << " ends a page";
     }
     EXPECT_TRUE(raw.contains(squeezed("p different: likelihood-ratio test"))) << rows << " rows";
     EXPECT_FALSE(raw.contains("@@")) << "a figure is missing";
