@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "acquisition/core/correction_watch.h"
 #include "acquisition/core/forwarding_source.h"
 
 namespace todbench {
@@ -24,7 +25,14 @@ class ProcessedSource final : public ForwardingSource {
     auto counts = processed(*frame);
     if (!counts) return tl::unexpected(counts.error());
     if (record_.frame_ms.size() == picture_frame_ + 1) record_.picture = counts->clone();
-    if (record_.handed_out) frame->counts = *counts;
+    if (!record_.handed_out) {
+      watch_.scene_changed();
+      return frame;
+    }
+    // Corrections are seen in the camera's own pictures: where answers begin the pictures differ in everything.
+    if (frame->correction == CorrectionState::unknown)
+      frame->correction = watch_.see(*frame) ? CorrectionState::running : CorrectionState::idle;
+    frame->counts = *counts;
     return frame;
   }
 
@@ -60,6 +68,7 @@ class ProcessedSource final : public ForwardingSource {
   std::vector<std::unique_ptr<ChainStage>> stages_;
   std::size_t picture_frame_;
   ProcessingRecord& record_;
+  CorrectionWatch watch_{CorrectionWatchOptions{}};
 };
 
 }  // namespace

@@ -21,9 +21,10 @@ struct ProcessingRecord {
 };
 
 /// `camera` with the counts of every complete frame through all stages, one after the other; answers are rounded to
-/// counts and cut off at the ends of their range. Frames that are not complete stay as they are. Errors of a stage are
-/// errors of next(). `record` outlives the source; its picture is that of the frame with number `picture_frame`,
-/// counted from 0.
+/// counts and cut off at the ends of their range. Where the camera does not tell of its corrections, `correction` of
+/// a frame whose answer is handed out says what is seen in the pictures as they came. Frames that are not complete stay
+/// as they are. Errors of a stage are errors of next(). `record` outlives the source; its picture is that of the frame
+/// with number `picture_frame`, counted from 0.
 [[nodiscard]] std::unique_ptr<FrameSource> processed_source(std::unique_ptr<FrameSource> camera,
                                                             std::vector<std::unique_ptr<ChainStage>> stages,
                                                             std::size_t picture_frame, ProcessingRecord& record);

@@ -49,7 +49,8 @@ void never_wait(int descriptor) {
 std::vector<std::string> words_of(const ModuleOptions& options) {
   std::vector<std::string> words;
   if (options.network == ModuleNetwork::cut && can_cut_network()) {
-    words = {"bwrap", "--dev-bind", "/", "/", "--unshare-net", "--unshare-pid", "--proc", "/proc", "--die-with-parent"};
+    // Not --die-with-parent: it would die with the thread that started it. A bench that is gone has closed the input.
+    words = {"bwrap", "--dev-bind", "/", "/", "--unshare-net", "--unshare-pid", "--proc", "/proc"};
   }
   const std::string limit =
       options.memory_limit_mib == 0 ? "" : fmt::format("ulimit -v {} || exit 1\n", options.memory_limit_mib * 1024);
@@ -89,7 +90,7 @@ Result<pid_t> spawned_group(std::vector<std::string> words, const Pipe& in, cons
 
 bool can_cut_network() {
   static const bool can = std::system(
-                              "bwrap --dev-bind / / --unshare-net --unshare-pid --proc /proc --die-with-parent true "
+                              "bwrap --dev-bind / / --unshare-net --unshare-pid --proc /proc true "
                               ">/dev/null 2>&1 </dev/null") == 0;
   return can;
 }

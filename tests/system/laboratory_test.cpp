@@ -99,6 +99,20 @@ TEST_F(Laboratories, AMeasurementOverTheNetworkIsAWholeSession) {
   EXPECT_EQ(provenance["camera"]["transport"], "GigE Vision");
 }
 
+#ifdef TODBENCH_MODULE_EXAMPLE
+TEST_F(Laboratories, AProgramBehindALiveCameraCostsNoFrame) {
+  EmulatedLaboratory laboratory;
+  write_plan(laboratory.plan(4) + "[[module]]\ncommand = \"" TODBENCH_MODULE_EXAMPLE " double\"\n");
+
+  const Ended ended = measure();
+
+  ASSERT_TRUE(completed(ended));
+  EXPECT_EQ(one_object(ended)["points"][0]["trials"], 4 * trials_per_frame);
+  // The camera tells nothing of its corrections; twice its picture is none.
+  EXPECT_THAT(content_of(session() / "log.txt"), ::testing::Not(HasSubstr("nonuniformity_correction")));
+}
+#endif
+
 TEST_F(Laboratories, EmulateAndDevicesTellTheAddressesAsJson) {
   EmulatedLaboratory laboratory;
 
