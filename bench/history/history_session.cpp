@@ -19,6 +19,10 @@ namespace {
 
 /// A file of a session that the manifest vouches for.
 Result<std::string> vouched_text(const std::filesystem::path& folder, const std::string& name) {
+  if (!is_there(folder / name)) {
+    return fail(ErrorCode::invalid_input,
+                folder.string() + ": has no " + name + "; a run that ended early has no result");
+  }
   const auto listed = is_listed(folder, name);
   if (!listed) return tl::unexpected(listed.error());
   if (!*listed) return fail(ErrorCode::invalid_input, (folder / name).string() + ": changed after the session ended");

@@ -181,6 +181,16 @@ TEST_F(History, RefusesWhatIsNoSessionAnyMore) {
   EXPECT_THAT(refused.error().message, HasSubstr("curve.csv"));
 }
 
+TEST_F(History, SaysOfASessionWithoutResultThatItHasNone) {
+  const auto folder = session("a");
+  std::filesystem::remove(folder / "curve.csv");
+
+  const auto refused = read_history_session(folder);
+
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("has no curve.csv"));
+}
+
 TEST_F(History, RefusesAnIndexThatIsNone) {
   folder_.write("index/history.sqlite", std::string(5000, 'x'));
   const auto damaged = HistoryIndex::open(file());
