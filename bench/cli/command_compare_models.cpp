@@ -5,12 +5,12 @@
 #include <filesystem>
 #include <memory>
 
+#include "bench/cli/scene_files.h"
 #include "bench/enhance/model_comparison_page.h"
 #include "bench/judgement/verdict.h"
 #include "bench/report/html.h"
 #include "bench/session/json_output.h"
 #include "bench/text/files.h"
-#include "bench/text/folders.h"
 #include "bench/text/text.h"
 #include "tod/psychometric/acuity.h"
 
@@ -77,18 +77,6 @@ Json comparison_of_models_json(const ModelComparison& comparison, const std::str
           {"folder", folder}};
 }
 
-/// A new or an empty folder, or one that may be overwritten.
-Result<std::filesystem::path> models_folder(const CompareModelsArguments& a) {
-  const std::filesystem::path folder = a.out;
-  std::error_code problem;
-  if (std::filesystem::exists(folder, problem) && !std::filesystem::is_directory(folder, problem))
-    return fail(ErrorCode::invalid_input, folder.string() + ": is not a folder");
-  if (auto made = make_folder(folder); !made) return tl::unexpected(made.error());
-  if (!a.overwrite && !std::filesystem::is_empty(folder, problem))
-    return fail(ErrorCode::invalid_input, folder.string() + ": is not empty (--force overwrites what is in it)");
-  return folder;
-}
-
 void say_models(Console& console, const ModelComparison& comparison) {
   std::vector<TableRow> rows;
   const auto acuity_at = [](const PackageResult& result, double set_delta_t_k) -> std::optional<double> {
@@ -123,24 +111,24 @@ int run_compare_models(Console& console, const CompareModelsArguments& a, const 
   if (program.common.seed_given) plan->seed = program.common.seed;
   const auto loaded = LoadedPlan::load(*plan);
   if (!loaded) return report_error(console, loaded.error());
-  const auto folder = models_folder(a);
-  if (!folder) return report_error(console, folder.error());
+  const std::filesystem::path folder = a.out;
+  const auto existing = a.overwrite ? ExistingResults::overwritten : ExistingResults::refused;
+  if (auto made = make_result_folder(folder, existing); !made) return report_error(console, made.error());
   const EnhancementOptions options{
       .on_package = [&](const std::string& name) { console.phase("simulating with " + name); },
       .on_progress = [&](std::size_t done, std::size_t planned) { console.progress(done, planned); }};
   const auto found = compare_models(*loaded, *std::move(first), *std::move(second), options, program.stop->token());
   console.end_progress();
   if (!found) return report_error(console, found.error());
-  const Json json = comparison_of_models_json(*found, folder->string());
-  if (auto written =
-          write_file_atomically(*folder / "models.html", render_html(model_comparison_page(*loaded, *found)));
+  const Json json = comparison_of_models_json(*found, folder.string());
+  if (auto written = write_file_atomically(folder / "models.html", render_html(model_comparison_page(*loaded, *found)));
       !written)
     return report_error(console, written.error());
-  if (auto written = write_file_atomically(*folder / "models.json", to_page(json)); !written)
+  if (auto written = write_file_atomically(folder / "models.json", to_page(json)); !written)
     return report_error(console, written.error());
   if (console.json()) console.object(json);
   say_models(console, *found);
-  console.text("page: " + (*folder / "models.html").string());
+  console.text("page: " + (folder / "models.html").string());
   for (const PackageResult* result : {&found->result_a, &found->result_b}) {
     if (!result->error) continue;
     console.error(

@@ -7,6 +7,7 @@
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
 
+#include "bench/cli/scene_files.h"
 #include "bench/cli/session_argument.h"
 #include "bench/enhance/enhancement_page.h"
 #include "bench/judgement/verdict.h"
@@ -14,7 +15,6 @@
 #include "bench/session/json_output.h"
 #include "bench/session/trials_csv.h"
 #include "bench/text/files.h"
-#include "bench/text/folders.h"
 #include "bench/text/text.h"
 #include "tod/psychometric/acuity.h"
 
@@ -85,18 +85,6 @@ Result<void> write_folder(const std::filesystem::path& folder, const LoadedPlan&
   return write_file_atomically(folder / "pictures.png", std::string(png.begin(), png.end()));
 }
 
-/// A new or an empty folder, or one that may be overwritten.
-Result<std::filesystem::path> enhancement_folder(const EnhanceArguments& a) {
-  const std::filesystem::path folder = a.out;
-  std::error_code problem;
-  if (std::filesystem::exists(folder, problem) && !std::filesystem::is_directory(folder, problem))
-    return fail(ErrorCode::invalid_input, folder.string() + ": is not a folder");
-  if (auto made = make_folder(folder); !made) return tl::unexpected(made.error());
-  if (!a.overwrite && !std::filesystem::is_empty(folder, problem))
-    return fail(ErrorCode::invalid_input, folder.string() + ": is not empty (--force overwrites what is in it)");
-  return folder;
-}
-
 void say_enhancement(Console& console, const Enhancement& enhancement) {
   std::vector<TableRow> rows;
   for (const auto& result : enhancement.results) {
@@ -126,8 +114,9 @@ int run_enhance(Console& console, const EnhanceArguments& a, const Program& prog
   const bool recorded = std::filesystem::is_directory(a.plan, problem);
   const auto loaded = recorded ? recorded_plan(a.plan, a.opening) : read_plan(a.plan);
   if (!loaded) return report_error(console, loaded.error());
-  const auto folder = enhancement_folder(a);
-  if (!folder) return report_error(console, folder.error());
+  const std::filesystem::path folder = a.out;
+  const auto existing = a.overwrite ? ExistingResults::overwritten : ExistingResults::refused;
+  if (auto made = make_result_folder(folder, existing); !made) return report_error(console, made.error());
   const EnhancementOptions options{
       .on_package =
           [&](const std::string& name) { console.phase((recorded ? "measuring with " : "simulating with ") + name); },
@@ -137,12 +126,12 @@ int run_enhance(Console& console, const EnhanceArguments& a, const Program& prog
                               : compare_packages(*loaded, packages, options, stop);
   console.end_progress();
   if (!found) return report_error(console, found.error());
-  if (auto written = write_folder(*folder, *loaded, packages, *found); !written)
+  if (auto written = write_folder(folder, *loaded, packages, *found); !written)
     return report_error(console, written.error());
-  if (console.json()) console.object(enhancement_json(*found, folder->string()));
+  if (console.json()) console.object(enhancement_json(*found, folder.string()));
   say_enhancement(console, *found);
   for (const auto& sentence : found->warnings) console.note(sentence);
-  console.text("page: " + (*folder / "enhancement.html").string());
+  console.text("page: " + (folder / "enhancement.html").string());
   int code = 0;
   for (const auto& result : found->results) {
     if (!result.error) continue;

@@ -1,6 +1,7 @@
 #include "tod/instruments/scpi_target.h"
 
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,20 +15,6 @@
 
 namespace todbench {
 namespace {
-
-std::string description_of(Mounting mounting) {
-  switch (mounting) {
-    case Mounting::identity:
-      return "not turned";
-    case Mounting::rotated_180:
-      return "rotated by 180 degrees";
-    case Mounting::mirrored_horizontally:
-      return "mirrored left to right";
-    case Mounting::mirrored_vertically:
-      return "mirrored top to bottom";
-  }
-  return "";
-}
 
 std::string decimal(double value, int decimals) {
   return fmt::format("{:.{}f}", value, decimals);
@@ -121,7 +108,8 @@ Result<void> ScpiTarget::check_within_limits(const TargetState& state) const {
     return fail(ErrorCode::invalid_input, stage_.name() + ": has no plate '" + state.plate + "', only: " + known);
   }
   if (!stage_.holds(state.mounting))
-    return fail(ErrorCode::invalid_input, stage_.name() + ": holds no plate " + description_of(state.mounting));
+    return fail(ErrorCode::invalid_input,
+                stage_.name() + ": holds no plate " + std::string(mounting_in_words(state.mounting)));
   return {};
 }
 
@@ -164,8 +152,8 @@ std::optional<std::string> ScpiTarget::stage_lacks(const Reading& reading, const
   const bool there = has_stayed(near, options_.stage_table.settled.dwell_s, options_.now, stage_there_);
   if (reading.stage_settled && there) return {};
   const auto describe = [](const TargetState& state) {
-    return "plate '" + state.plate + "' " + description_of(state.mounting) + " at " + position_text(state.shift_mm) +
-           " mm";
+    return "plate '" + state.plate + "' " + std::string(mounting_in_words(state.mounting)) + " at " +
+           position_text(state.shift_mm) + " mm";
   };
   return stage_.name() + ": asked for " + describe(asked) + ", reached " + describe(reached) +
          (reading.stage_settled && !(near && !there) ? ", at rest" : ", still moving");

@@ -2,10 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <string_view>
-
 namespace todbench {
 namespace {
+
+std::string place_in_words(const TargetState& state) {
+  return fmt::format("plate '{}' ({}) at {:.3f}, {:.3f} mm", state.plate, mounting_in_words(state.mounting),
+                     state.shift_mm.x, state.shift_mm.y);
+}
+
+}  // namespace
 
 std::string_view mounting_in_words(Mounting mounting) {
   switch (mounting) {
@@ -20,13 +25,6 @@ std::string_view mounting_in_words(Mounting mounting) {
   }
   return "";
 }
-
-std::string place_in_words(const TargetState& state) {
-  return fmt::format("plate '{}' ({}) at {:.3f}, {:.3f} mm", state.plate, mounting_in_words(state.mounting),
-                     state.shift_mm.x, state.shift_mm.y);
-}
-
-}  // namespace
 
 std::string sentence(const TargetWait& wait) {
   std::string what;

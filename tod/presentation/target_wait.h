@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "tod/presentation/target.h"
 
@@ -21,6 +22,9 @@ struct TargetWait {
 /// Told about twice a second while a target takes its time, and with nothing when the wait is over. Called from the
 /// thread that presents.
 using OnTargetWait = std::function<void(const std::optional<TargetWait>&)>;
+
+/// "rotated by 180 degrees", for people.
+[[nodiscard]] std::string_view mounting_in_words(Mounting mounting);
 
 /// "waiting for the black body: asked for 2.000 K, reached 1.912 K, 12 s of at most 600 s"
 [[nodiscard]] std::string sentence(const TargetWait& wait);
