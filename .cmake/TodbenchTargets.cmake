@@ -61,11 +61,12 @@ function(todbench_precompile target kind)
   endif()
 endfunction()
 
-# Sources of a library compiled together share what their headers cost: always in bench/, whose sources are many, small and include much,
-# and everywhere in the presets of sanitizers and static analysis. Two functions of one name in such a library do not compile; a source that
-# must keep its names is named APART.
+# Sources of a library compiled together share what their headers cost: always in bench/ and in test programs, whose sources are many, small
+# and include much, and everywhere in the presets of sanitizers and static analysis. Two functions of one name in such a library do not
+# compile; a source that must keep its names is named APART.
 option(TODBENCH_UNITY "Compile the sources of every library together" OFF)
 option(TODBENCH_UNITY_BENCH "Compile the sources of every library in bench/ together" ON)
+option(TODBENCH_UNITY_TESTS "Compile the sources of every test program together" ON)
 # A local name is not to be compared with those of another source, a source is not a header because another includes it, and GCC 12 takes
 # the inside of an empty std::optional for a value.
 set(together "$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>")
@@ -104,7 +105,7 @@ endfunction()
 set(todbench_hang_s 1800)
 
 # todbench_test(NAME SOURCES ... DEPENDS ... [LABELS ...] [SANITIZERS address thread] [SHARDS n | EACH_CASE] [COST s]
-# [TIMED] [PRECOMPILED KIND]): one GoogleTest program.
+# [TIMED] [APART ...] [PRECOMPILED KIND]): one GoogleTest program.
 #   LABELS      of its tests for ctest; the target todbench_tests_LABEL builds the programs with that label
 #   SANITIZERS  a build with a sanitizer has only the programs that name it
 #   SHARDS      ctest runs the program as so many processes with a part of the cases each; one when nothing is said: starting a process
@@ -113,7 +114,7 @@ set(todbench_hang_s 1800)
 #   COST        seconds of the whole program; ctest begins with the longest, so that none runs alone at the end
 #   TIMED       its cases run against real time: ctest runs at most one other program beside it
 function(todbench_test name)
-  cmake_parse_arguments(ARG "EACH_CASE;TIMED" "COST;SHARDS;PRECOMPILED" "SOURCES;DEPENDS;LABELS;SANITIZERS" ${ARGN})
+  cmake_parse_arguments(ARG "EACH_CASE;TIMED" "COST;SHARDS;PRECOMPILED" "SOURCES;DEPENDS;LABELS;SANITIZERS;APART" ${ARGN})
   foreach(sanitizer address thread)
     if(TODBENCH_SANITIZE MATCHES "${sanitizer}" AND NOT "${sanitizer}" IN_LIST ARG_SANITIZERS)
       return()
@@ -130,6 +131,8 @@ function(todbench_test name)
     set(ARG_PRECOMPILED tests)
   endif()
   todbench_precompile(${name} ${ARG_PRECOMPILED})
+  set_target_properties(${name} PROPERTIES UNITY_BUILD ${TODBENCH_UNITY_TESTS} UNITY_BUILD_BATCH_SIZE 6)
+  set_source_files_properties(${ARG_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   add_dependencies(todbench_tests ${name})
   foreach(label ${ARG_LABELS})
     if(NOT TARGET todbench_tests_${label})

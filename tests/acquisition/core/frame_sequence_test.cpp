@@ -20,10 +20,10 @@ constexpr std::int64_t power_up_ns = 1'000'000'000'000;
 enum class Clock { none, goes_on, begins_anew };
 
 /// A camera that exposes 50 times a second; the host learns of a frame a little later, by an amount that varies.
-class Camera {
+class NumberedCamera {
  public:
   /// `running_ns`: what its clock shows at the beginning.
-  Camera(FrameNumberKind kind, Clock clock, std::int64_t running_ns = 0)
+  NumberedCamera(FrameNumberKind kind, Clock clock, std::int64_t running_ns = 0)
       : sequence_(kind, rate_hz), clock_(clock), device_ns_(running_ns) {}
 
   /// `exposures` pass; the last of them arrives with this number.
@@ -53,7 +53,7 @@ constexpr FramePlace counted(std::uint64_t sequence) {
 }
 
 TEST(FrameSequence, StartsAtZeroWhateverTheFirstId) {
-  Camera camera(FrameNumberKind::gvsp16, Clock::goes_on);
+  NumberedCamera camera(FrameNumberKind::gvsp16, Clock::goes_on);
 
   EXPECT_EQ(camera.send(65400), counted(0));
   EXPECT_EQ(camera.send(65401), counted(1));
@@ -61,7 +61,7 @@ TEST(FrameSequence, StartsAtZeroWhateverTheFirstId) {
 
 TEST(FrameSequence, ContinuesFrom65535To1WithoutAGap) {
   for (const Clock clock : {Clock::none, Clock::goes_on}) {
-    Camera camera(FrameNumberKind::gvsp16, clock);
+    NumberedCamera camera(FrameNumberKind::gvsp16, clock);
     static_cast<void>(camera.send(65534));
 
     EXPECT_EQ(camera.send(65535), counted(1));
@@ -71,7 +71,7 @@ TEST(FrameSequence, ContinuesFrom65535To1WithoutAGap) {
 }
 
 TEST(FrameSequence, TakesTheZeroOfACameraThatDoesNotSkipIt) {
-  Camera camera(FrameNumberKind::gvsp16, Clock::goes_on);
+  NumberedCamera camera(FrameNumberKind::gvsp16, Clock::goes_on);
   static_cast<void>(camera.send(65535));
 
   EXPECT_EQ(camera.send(0), counted(1));
@@ -80,7 +80,7 @@ TEST(FrameSequence, TakesTheZeroOfACameraThatDoesNotSkipIt) {
 
 TEST(FrameSequence, CountsTheLostFramesOfAGapAcrossTheWrap) {
   for (const Clock clock : {Clock::none, Clock::goes_on}) {
-    Camera camera(FrameNumberKind::gvsp16, clock);
+    NumberedCamera camera(FrameNumberKind::gvsp16, clock);
     static_cast<void>(camera.send(65530));
 
     // 65531 ... 65535 and 1 ... 3 are lost: eight frames.
@@ -90,7 +90,7 @@ TEST(FrameSequence, CountsTheLostFramesOfAGapAcrossTheWrap) {
 
 TEST(FrameSequence, NeverWrapsOverManyPeriodsOfTheId) {
   for (const Clock clock : {Clock::none, Clock::goes_on}) {
-    Camera camera(FrameNumberKind::gvsp16, clock);
+    NumberedCamera camera(FrameNumberKind::gvsp16, clock);
     std::uint64_t expected = 0;
     bool agreed = true;
 
@@ -102,8 +102,8 @@ TEST(FrameSequence, NeverWrapsOverManyPeriodsOfTheId) {
 }
 
 TEST(FrameSequence, WrapsThe32BitsOfADriverAndThe16OfASeek) {
-  Camera driver(FrameNumberKind::wrap32, Clock::goes_on);
-  Camera seek(FrameNumberKind::wrap16, Clock::none);
+  NumberedCamera driver(FrameNumberKind::wrap32, Clock::goes_on);
+  NumberedCamera seek(FrameNumberKind::wrap16, Clock::none);
   static_cast<void>(driver.send(0xFFFFFFFEU));
   static_cast<void>(seek.send(0xFFFE));
 
@@ -114,7 +114,7 @@ TEST(FrameSequence, WrapsThe32BitsOfADriverAndThe16OfASeek) {
 }
 
 TEST(FrameSequence, PutsAFrameWithoutIdAfterTheLastOne) {
-  Camera camera(FrameNumberKind::gvsp16, Clock::goes_on);
+  NumberedCamera camera(FrameNumberKind::gvsp16, Clock::goes_on);
   static_cast<void>(camera.send(100));
 
   EXPECT_EQ(camera.send(std::nullopt), counted(1));
@@ -122,7 +122,7 @@ TEST(FrameSequence, PutsAFrameWithoutIdAfterTheLastOne) {
 }
 
 TEST(FrameSequence, FindsTheTruePlaceAgainAfterAFrameWithoutIdInsideAGap) {
-  Camera camera(FrameNumberKind::gvsp16, Clock::goes_on);
+  NumberedCamera camera(FrameNumberKind::gvsp16, Clock::goes_on);
   static_cast<void>(camera.send(100));
   static_cast<void>(camera.send(std::nullopt));
 
@@ -149,7 +149,7 @@ TEST(FrameSequence, RestartsBehindThePlacesThatFramesWithoutIdWereGiven) {
 
 TEST(FrameSequence, GivesAnOlderFrameItsOlderPlaceAndARepeatedOneItsOwn) {
   for (const Clock clock : {Clock::none, Clock::goes_on}) {
-    Camera camera(FrameNumberKind::gvsp16, clock);
+    NumberedCamera camera(FrameNumberKind::gvsp16, clock);
     static_cast<void>(camera.send(10));
     static_cast<void>(camera.send(13, 3));
 
@@ -160,7 +160,7 @@ TEST(FrameSequence, GivesAnOlderFrameItsOlderPlaceAndARepeatedOneItsOwn) {
 }
 
 TEST(FrameSequence, TakesWideIdsAsTheyAreIncludingZero) {
-  Camera camera(FrameNumberKind::wide, Clock::goes_on);
+  NumberedCamera camera(FrameNumberKind::wide, Clock::goes_on);
 
   EXPECT_EQ(camera.send(0), counted(0));
   EXPECT_EQ(camera.send(1), counted(1));
@@ -175,7 +175,7 @@ class Restarts : public testing::TestWithParam<Restart> {};
 
 TEST_P(Restarts, AreRecognisedAndTheirGapIsEstimatedFromTime) {
   const auto [kind, clock, last, first, lost] = GetParam();
-  Camera camera(kind, clock, 700 * period_ns);
+  NumberedCamera camera(kind, clock, 700 * period_ns);
   const std::uint64_t before = std::min<std::uint64_t>(last, 30);
   for (std::uint64_t k = 0; k < before; ++k) ASSERT_EQ(camera.send(last - before + 1 + k), counted(k));
   camera.begin_anew();
@@ -218,7 +218,7 @@ class DroppedRestarts : public testing::TestWithParam<std::tuple<FrameNumberKind
 
 TEST_P(DroppedRestarts, AreSeenByTime) {
   const auto [kind, clock, last] = GetParam();
-  Camera camera(kind, clock);
+  NumberedCamera camera(kind, clock);
   for (std::uint64_t k = 1; k <= last; ++k) ASSERT_EQ(camera.send(k), counted(k - 1));
   camera.begin_anew();
 
@@ -327,7 +327,7 @@ TEST(FrameSequence, AClockThatIsSetInMidStreamIsNoGap) {
 }
 
 TEST(FrameSequence, AClockThatBeginsAnewWithAFewNumbersIsARestart) {
-  Camera camera(FrameNumberKind::gvsp16, Clock::begins_anew, 700 * period_ns);
+  NumberedCamera camera(FrameNumberKind::gvsp16, Clock::begins_anew, 700 * period_ns);
   for (std::uint64_t k = 0; k < 30; ++k) static_cast<void>(camera.send(65500 + k));
   camera.begin_anew();
 
@@ -337,7 +337,7 @@ TEST(FrameSequence, AClockThatBeginsAnewWithAFewNumbersIsARestart) {
 }
 
 TEST(FrameSequence, AnotherFrameRateIsOneGapAtMost) {
-  Camera camera(FrameNumberKind::wide, Clock::goes_on);
+  NumberedCamera camera(FrameNumberKind::wide, Clock::goes_on);
   for (std::uint64_t k = 0; k < 50; ++k) static_cast<void>(camera.send(k));
   int told = 0;
 
@@ -347,7 +347,7 @@ TEST(FrameSequence, AnotherFrameRateIsOneGapAtMost) {
 }
 
 TEST(FrameSequence, ACorrectionThatInterruptsTheStreamIsNoGap) {
-  Camera camera(FrameNumberKind::wide, Clock::goes_on);
+  NumberedCamera camera(FrameNumberKind::wide, Clock::goes_on);
   for (std::uint64_t k = 0; k < 10; ++k) static_cast<void>(camera.send(k));
 
   const FramePlace place = camera.sequence().next({.number = 10,
@@ -377,7 +377,7 @@ TEST(FrameSequence, LearnsTheRateOfACameraThatStatesNoneOrAWrongOne) {
 }
 
 TEST(FrameSequence, ANumberThatStandsStillIsNotTheSameFrameWhileTheClockGoesOn) {
-  Camera camera(FrameNumberKind::wide, Clock::goes_on);
+  NumberedCamera camera(FrameNumberKind::wide, Clock::goes_on);
   for (std::uint64_t k = 0; k < 10; ++k) EXPECT_EQ(camera.send(0).sequence, k);
 }
 

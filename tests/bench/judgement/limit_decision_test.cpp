@@ -14,10 +14,10 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr double z95 = 1.959963984540054;
+constexpr double two_sided_95 = 1.959963984540054;
 
 LimitQuestion at_least(double value, double u, double limit) {
-  return {.value = value, .interval = {value - z95 * u, value + z95 * u}, .limit = limit};
+  return {.value = value, .interval = {value - two_sided_95 * u, value + two_sided_95 * u}, .limit = limit};
 }
 
 TEST(LimitDecision, IsThatOfConformityByEveryRule) {
@@ -25,7 +25,7 @@ TEST(LimitDecision, IsThatOfConformityByEveryRule) {
   for (const double value : {0.30, 0.35, 0.395, 0.405, 0.45, 0.50}) {
     for (const ConformityRule rule : conformity_rules) {
       const double u = 0.02, limit = 0.4;
-      const auto reference = conformity({.value = value, .u = u}, {.at_least = limit}, rule, z95 * u).value();
+      const auto reference = conformity({.value = value, .u = u}, {.at_least = limit}, rule, two_sided_95 * u).value();
       const LimitAnswer answer = decide(at_least(value, u, limit), rule, std::nullopt);
       EXPECT_EQ(answer.decision, reference.decision) << value << " " << to_string(rule);
       EXPECT_NEAR(answer.p_conformity.value(), reference.p_conformity, 1e-12) << value;
@@ -133,7 +133,7 @@ TEST(MeasureLimits, CountTheScaleOfTheBudget) {
 
   const Demand& netd = demand_of(verdict, DemandKind::netd);
   EXPECT_EQ(netd.decision, VerdictKind::inconclusive);
-  EXPECT_NEAR(netd.interval.high.value(), 0.050 + std::hypot(0.002, z95 * 0.15 * 0.050), 1e-12);
+  EXPECT_NEAR(netd.interval.high.value(), 0.050 + std::hypot(0.002, two_sided_95 * 0.15 * 0.050), 1e-12);
   EXPECT_EQ(netd.statistical.value().high, 0.052);
   EXPECT_EQ(demand_of(verdict, DemandKind::noise_vh).decision, VerdictKind::pass);
 }

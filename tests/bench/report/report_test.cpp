@@ -83,7 +83,7 @@ class WellFormedness {
   std::vector<std::string> open_;
 };
 
-std::string complaint(const std::string& page) {
+std::string malformed(const std::string& page) {
   return WellFormedness(page).complaint();
 }
 
@@ -129,17 +129,17 @@ std::vector<std::string> ids_of_figures(const Document& document) {
 }
 
 TEST(WellFormednessCheck, FindsWhatIsWrong) {
-  EXPECT_EQ(complaint("<p>a &amp; b<br/></p>"), "");
-  EXPECT_NE(complaint("<p><b></p></b>"), "");
-  EXPECT_NE(complaint("<p>"), "");
-  EXPECT_NE(complaint("<p>a & b;</p>"), "");
-  EXPECT_NE(complaint("<p class=x></p>"), "");
+  EXPECT_EQ(malformed("<p>a &amp; b<br/></p>"), "");
+  EXPECT_NE(malformed("<p><b></p></b>"), "");
+  EXPECT_NE(malformed("<p>"), "");
+  EXPECT_NE(malformed("<p>a & b;</p>"), "");
+  EXPECT_NE(malformed("<p class=x></p>"), "");
 }
 
 TEST(Report, IsWellFormedAndNeedsNothingFromOutside) {
   std::string page = render_report(sample_report());
 
-  EXPECT_EQ(complaint(page), "");
+  EXPECT_EQ(malformed(page), "");
   EXPECT_EQ(page.find("<!DOCTYPE html>\n<html lang=\"en\""), 0U);
   EXPECT_FALSE(contains(page, "<script"));
   EXPECT_FALSE(contains(page, "<link"));
@@ -260,7 +260,7 @@ TEST(Report, EscapesEveryTextFromOutside) {
 
   const std::string page = render_report(data);
 
-  EXPECT_EQ(complaint(page), "");
+  EXPECT_EQ(malformed(page), "");
   EXPECT_TRUE(contains(page, "&lt;b&gt;&quot;O&#39;Neil&quot; &amp; Co&lt;/b&gt;"));
   EXPECT_FALSE(contains(page, "O'Neil"));
 }
@@ -272,7 +272,7 @@ TEST(Report, NamesSessionAndItemAtTheFootOfEveryPrintedPage) {
 
   const std::string page = render_report(data);
 
-  EXPECT_EQ(complaint(page), "");
+  EXPECT_EQ(malformed(page), "");
   EXPECT_TRUE(
       contains(page, R"(@bottom-left{content:"a\22 \7d \3c \2f style\3e \5c \2c \20 serial\20 number\20 7é"})"));
   EXPECT_TRUE(contains(page, "counter(page)"));
@@ -294,7 +294,7 @@ TEST(Report, BytesThatAreNoTextBecomeReplacementCharacters) {
 TEST(Report, WithoutAnythingSaysWhatIsMissingAndWhy) {
   const std::string page = render_report(ReportData{});
 
-  EXPECT_EQ(complaint(page), "");
+  EXPECT_EQ(malformed(page), "");
   for (const char* part : {"NO VERDICT", "simulation only, no camera was measured", "not stated in the plan",
                            "no results", "needs a measured and a simulated curve", "nothing was simulated"})
     EXPECT_TRUE(contains(page, part)) << part;
@@ -322,7 +322,7 @@ TEST(Report, NeverShowsANumberThatIsNone) {
 
   const std::string page = render_report(data);
 
-  EXPECT_EQ(complaint(page), "");
+  EXPECT_EQ(malformed(page), "");
   EXPECT_FALSE(has_word(visible_text(page), "nan"));
   EXPECT_FALSE(has_word(visible_text(page), "inf"));
   EXPECT_FALSE(contains(page, "\"nan"));
@@ -371,7 +371,7 @@ TEST(Report, WhatSpeaksAgainstANumberStandsBesideItAndInASentence) {
 
   const std::string page = render_report(data);
 
-  EXPECT_EQ(complaint(page), "");
+  EXPECT_EQ(malformed(page), "");
   EXPECT_TRUE(contains(page, "lapses &lt;that&gt; the fit does not allow for"));
   EXPECT_TRUE(contains(page, "not fit for a decision"));
   EXPECT_TRUE(contains(page, "rounding is no white noise"));
@@ -384,7 +384,7 @@ TEST(Report, CatchTrialsAreInTheAppendixAndNotOnTheLogarithmicAxis) {
 
   const std::string page = render_report(data);
 
-  EXPECT_EQ(complaint(page), "");
+  EXPECT_EQ(malformed(page), "");
   EXPECT_TRUE(contains(page, "0 (catch trials)"));
 }
 

@@ -15,7 +15,7 @@
 
 namespace todbench::test {
 
-struct BruteForce {
+struct ThresholdByTrials {
   double s75_pitch = 0, standard_error_pitch = 0;
 };
 
@@ -88,7 +88,7 @@ inline Trials trials_of(const SensorSpec& spec, const TemplateObserverSpec& obse
 }
 
 /// At the sizes of a direct estimate, with its interpolation: a weighted quadratic of ln((P - 0.25) / (1 - P)) in ln S.
-inline BruteForce brute_force(const SensorSpec& spec, const TemplateObserver& observer, const DirectPoint& direct,
+inline ThresholdByTrials threshold_by_trials(const SensorSpec& spec, const TemplateObserver& observer, const DirectPoint& direct,
                               double scene_k, int scenes, std::uint64_t seed) {
   const double middle = direct.sizes_pitch[2];
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
@@ -136,7 +136,7 @@ inline void expect_estimate_is_what_trials_say(const RoundedCase& rounded, Templ
 
   ASSERT_TRUE(direct) << direct.error().message;
   const DirectPoint& point = direct->front();
-  const BruteForce trials = brute_force(spec, observer, point, contrast_k, scenes, 17);
+  const ThresholdByTrials trials = threshold_by_trials(spec, observer, point, contrast_k, scenes, 17);
   const double error = std::hypot(point.standard_error_pitch, trials.standard_error_pitch);
   std::printf(
       "noise %5.2f counts, contrast %6.1f counts, seen %6.2f: direct %.4f +- %.4f, trials %.4f +- %.4f (%+.2f %%)\n",

@@ -90,10 +90,10 @@ TEST(EffectPlanner, ObeysWhatIsRequestedAndSaysSo) {
 
   ASSERT_TRUE(plan.has_value());
   EXPECT_EQ(decision_of(*plan, Effect::detector).decision, Decision::skip);
-  EXPECT_THAT(decision_of(*plan, Effect::detector).reason, testing::HasSubstr("on request"));
+  EXPECT_THAT(decision_of(*plan, Effect::detector).reason, ::testing::HasSubstr("on request"));
   EXPECT_EQ(decision_of(*plan, Effect::quantisation).decision, Decision::simulate);
-  EXPECT_THAT(decision_of(*plan, Effect::quantisation).reason, testing::HasSubstr("on request"));
-  EXPECT_THAT(plan->warnings, testing::ElementsAre(testing::HasSubstr("detector is skipped on request")));
+  EXPECT_THAT(decision_of(*plan, Effect::quantisation).reason, ::testing::HasSubstr("on request"));
+  EXPECT_THAT(plan->warnings, ::testing::ElementsAre(::testing::HasSubstr("detector is skipped on request")));
 }
 
 TEST(EffectPlanner, WarnsWhereWhatIsSkippedOnRequestBreaksTheTolerance) {
@@ -105,8 +105,8 @@ TEST(EffectPlanner, WarnsWhereWhatIsSkippedOnRequestBreaksTheTolerance) {
   const auto kept = plan_of(test::sc2000(), {0.23}, keeps);
 
   ASSERT_TRUE(broken && kept);
-  EXPECT_THAT(broken->warnings, testing::ElementsAre(testing::HasSubstr("the tolerance of 1 % is not kept")));
-  EXPECT_THAT(kept->warnings, testing::IsEmpty());
+  EXPECT_THAT(broken->warnings, ::testing::ElementsAre(::testing::HasSubstr("the tolerance of 1 % is not kept")));
+  EXPECT_THAT(kept->warnings, ::testing::IsEmpty());
 }
 
 TEST(EffectPlanner, RefusesAPlanWithoutAnyThresholdAndNamesTheContrast) {
@@ -114,9 +114,9 @@ TEST(EffectPlanner, RefusesAPlanWithoutAnyThresholdAndNamesTheContrast) {
   const auto one = plan_of(test::sc2000(), {1e-4, 16.9});
 
   ASSERT_FALSE(none.has_value());
-  EXPECT_THAT(none.error().message, testing::HasSubstr("no identifiable threshold: at 0.0001 K"));
+  EXPECT_THAT(none.error().message, ::testing::HasSubstr("no identifiable threshold: at 0.0001 K"));
   ASSERT_TRUE(one.has_value());
-  EXPECT_THAT(one->warnings, testing::ElementsAre(testing::HasSubstr("at 0.0001 K")));
+  EXPECT_THAT(one->warnings, ::testing::ElementsAre(::testing::HasSubstr("at 0.0001 K")));
 }
 
 TEST(EffectPlanner, DecidesForAKnownSceneAsForANewOne) {

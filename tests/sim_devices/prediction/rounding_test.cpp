@@ -90,7 +90,7 @@ TEST(ClippedTarget, IsEstimatedAsTheCameraShowsIt) {
 
     ASSERT_TRUE(direct) << direct.error().message;
     EXPECT_NEAR(direct->front().seen_delta_t_k, seen_k, 0.05);
-    const test::BruteForce trials = test::brute_force(spec, observer, direct->front(), scene_k, 2, 17);
+    const test::ThresholdByTrials trials = test::threshold_by_trials(spec, observer, direct->front(), scene_k, 2, 17);
     const double error = std::hypot(direct->front().standard_error_pitch, trials.standard_error_pitch);
     EXPECT_NEAR(direct->front().s75_pitch, trials.s75_pitch, 0.01 * trials.s75_pitch + 3 * error) << scene_k;
   }

@@ -25,7 +25,7 @@ using todbench::testing::true_mapping;
 /// 0.07 K per frame, 32 frames averaged.
 const double averaged_noise_k = 0.07 / std::sqrt(32.0);
 
-RegistrationOptions planned() {
+RegistrationOptions planned_plate() {
   RegistrationOptions options;
   options.expected_scale_px_per_mm = expected_scale;
   return options;
@@ -113,7 +113,7 @@ TEST(Registration, PlacesAllTrianglesWithinAHundredthOfAPixelInEveryMountingAtHi
         spec.noise_k = averaged_noise_k;
         spec.centre_px += {0.13 * contrast, 0.37};
 
-        const auto found = register_plate(plate_picture(plate, spec), plate, planned());
+        const auto found = register_plate(plate_picture(plate, spec), plate, planned_plate());
 
         ASSERT_TRUE(found) << found.error().message;
         EXPECT_LT(place_error(plate, *found, spec), 0.01) << name << " " << to_string(mounting) << " " << contrast;
@@ -143,7 +143,7 @@ TEST(Registration, HoldsForARotatedPlateWithAGradientBehindItAndOtherThingsInThe
     add_triangle(picture, triangle(4.6, Apex::up, {205, 30}), 16.9, 0.3);
     add_triangle(picture, triangle(3.6, Apex::left, {202, 112}), 16.9, 0.3);
 
-    const auto found = register_plate(picture, plate, planned());
+    const auto found = register_plate(picture, plate, planned_plate());
 
     ASSERT_TRUE(found) << found.error().message;
     EXPECT_LT(place_error(plate, *found, spec), 0.01) << rotation;
@@ -158,7 +158,7 @@ TEST(Registration, FindsTheBlurOfThePicture) {
     spec.gaussian_px = gaussian;
     spec.noise_k = averaged_noise_k;
 
-    const auto found = register_plate(plate_picture(plate, spec), plate, planned());
+    const auto found = register_plate(plate_picture(plate, spec), plate, planned_plate());
 
     ASSERT_TRUE(found) << found.error().message;
     // Variances of Gaussian and box add; a least-squares Gaussian is within 5 % of it, plus 0.01 in its logarithm from
@@ -174,7 +174,7 @@ TEST(Registration, FollowsAPlateSeenAslant) {
   spec.noise_k = averaged_noise_k;
   spec.tilt_per_mm = {8e-5, 4e-5};  // about 9 degrees at 2 m
 
-  const auto found = register_plate(plate_picture(plate, spec), plate, planned());
+  const auto found = register_plate(plate_picture(plate, spec), plate, planned_plate());
 
   ASSERT_TRUE(found) << found.error().message;
   EXPECT_EQ(found->mapping, PlateMapping::homography);
@@ -190,7 +190,7 @@ TEST(Registration, LeavesOutATriangleThatDoesNotShow) {
   const cv::Point corner(static_cast<int>(covered.x) - 8, static_cast<int>(covered.y) - 8);
   picture(cv::Rect(corner, cv::Size(17, 17))) = 300;
 
-  const auto found = register_plate(picture, plate, planned());
+  const auto found = register_plate(picture, plate, planned_plate());
 
   ASSERT_TRUE(found) << found.error().message;
   EXPECT_EQ(found->triangles_used, 7);
@@ -207,7 +207,7 @@ TEST(Registration, LeavesOutATriangleThatABadPixelPullsAside) {
   const cv::Point2d on_edge = mapped(true_mapping(spec), plate.triangles[2].position_mm) + cv::Point2d(2, 1);
   picture(static_cast<int>(std::lround(on_edge.y)), static_cast<int>(std::lround(on_edge.x))) += 25;
 
-  const auto found = register_plate(picture, plate, planned());
+  const auto found = register_plate(picture, plate, planned_plate());
 
   ASSERT_TRUE(found) << found.error().message;
   EXPECT_EQ(found->triangles_used, 7);
@@ -221,7 +221,7 @@ TEST(Registration, LocatesAPlateOfOneTriangleWhenThatIsAllowed) {
   plate.triangles = {{"only", {3, -2}, 13.5, Apex::right}};
   PictureSpec spec;
   spec.noise_k = averaged_noise_k;
-  RegistrationOptions options = planned();
+  RegistrationOptions options = planned_plate();
   options.min_triangles = 1;
 
   const auto found = register_plate(plate_picture(plate, spec), plate, options);
@@ -243,7 +243,8 @@ TEST(Registration, NamesTheMountingThatFitsWhenThePlateHangsOtherwise) {
         spec.noise_k = averaged_noise_k;
         spec.contrast_k = 5;
 
-        const auto found = register_plate(plate_picture(mounted(plate, real), spec), mounted(plate, stated), planned());
+        const auto found =
+            register_plate(plate_picture(mounted(plate, real), spec), mounted(plate, stated), planned_plate());
 
         EXPECT_THAT(refusal(found), HasSubstr("seems to be mounted " + std::string(to_string(real)) + ", not " +
                                               std::string(to_string(stated))));
@@ -256,7 +257,8 @@ TEST(Registration, RefusesAnotherPlate) {
   PictureSpec spec;
   spec.noise_k = averaged_noise_k;
 
-  const auto found = register_plate(plate_picture(shipped_plate("tcat-b"), spec), shipped_plate("tcat-a"), planned());
+  const auto found =
+      register_plate(plate_picture(shipped_plate("tcat-b"), spec), shipped_plate("tcat-a"), planned_plate());
 
   EXPECT_NE(refusal(found), "registered");
 }
@@ -268,7 +270,7 @@ TEST(Registration, RefusesAPlateWhoseTrianglesPointElsewhere) {
   PictureSpec spec;
   spec.noise_k = averaged_noise_k;
 
-  const auto found = register_plate(plate_picture(other, spec), plate, planned());
+  const auto found = register_plate(plate_picture(other, spec), plate, planned_plate());
 
   EXPECT_THAT(refusal(found), HasSubstr("only 0 of 8 point as they should"));
 }
@@ -280,7 +282,7 @@ TEST(Registration, ReportsBothScalesWhenTheyContradictEachOther) {
     spec.noise_k = averaged_noise_k;
     spec.scale = factor * expected_scale;
 
-    const std::string message = refusal(register_plate(plate_picture(plate, spec), plate, planned()));
+    const std::string message = refusal(register_plate(plate_picture(plate, spec), plate, planned_plate()));
 
     EXPECT_THAT(message, AllOf(HasSubstr("another scale than planned"), HasSubstr("give 0.3821 px/mm"))) << factor;
     ASSERT_THAT(message, AllOf(HasSubstr("shows "), HasSubstr("a deviation of ")));
@@ -299,7 +301,7 @@ TEST(Registration, RefusesARotationBeyondItsLimitWithTheAngle) {
   spec.noise_k = averaged_noise_k;
   spec.rotation_deg = 14;
 
-  const auto found = register_plate(plate_picture(plate, spec), plate, planned());
+  const auto found = register_plate(plate_picture(plate, spec), plate, planned_plate());
 
   EXPECT_THAT(refusal(found), HasSubstr("is rotated by 14.0 degrees where 10.0 are allowed"));
 }
@@ -310,8 +312,9 @@ TEST(Registration, FindsNoPlateInAnEmptyPictureOrInNoise) {
   cv::Mat1d noise = flat.clone();
   testing::add_noise(noise, 0.07, 3);
 
-  EXPECT_THAT(refusal(register_plate(flat, plate, planned())), HasSubstr("not found: 0 of its 8 large triangles"));
-  EXPECT_THAT(refusal(register_plate(noise, plate, planned())), HasSubstr("not found"));
+  EXPECT_THAT(refusal(register_plate(flat, plate, planned_plate())),
+              HasSubstr("not found: 0 of its 8 large triangles"));
+  EXPECT_THAT(refusal(register_plate(noise, plate, planned_plate())), HasSubstr("not found"));
 }
 
 TEST(Registration, RefusesAPlateThatIsPartlyOutOfThePicture) {
@@ -321,7 +324,7 @@ TEST(Registration, RefusesAPlateThatIsPartlyOutOfThePicture) {
   for (const cv::Point2d centre : {cv::Point2d(26, 70), cv::Point2d(135, 70)}) {
     spec.centre_px = centre;
 
-    const std::string message = refusal(register_plate(plate_picture(plate, spec), plate, planned()));
+    const std::string message = refusal(register_plate(plate_picture(plate, spec), plate, planned_plate()));
 
     EXPECT_THAT(message, AllOf(HasSubstr("is partly out of the picture of 160 x 140 pixels: 5 of 20 triangles"),
                                HasSubstr("would be at (")));
@@ -335,7 +338,7 @@ TEST(Registration, RefusesWhenTooFewTrianglesShow) {
   PictureSpec spec;
   spec.noise_k = averaged_noise_k;
 
-  const auto found = register_plate(plate_picture(damaged, spec), plate, planned());
+  const auto found = register_plate(plate_picture(damaged, spec), plate, planned_plate());
 
   EXPECT_THAT(refusal(found), HasSubstr("too few usable triangles in the picture: 5 of 8 large ones were located, 6"));
 }
@@ -347,7 +350,7 @@ TEST(Registration, RefusesAPlateThatIsNotMadeAsItsFileSays) {
   PictureSpec spec;
   spec.noise_k = averaged_noise_k;
 
-  const auto found = register_plate(plate_picture(bent, spec), plate, planned());
+  const auto found = register_plate(plate_picture(bent, spec), plate, planned_plate());
 
   EXPECT_THAT(refusal(found), AllOf(HasSubstr("does not fit its file"), HasSubstr("0.250 px are allowed")));
 }
@@ -355,7 +358,7 @@ TEST(Registration, RefusesAPlateThatIsNotMadeAsItsFileSays) {
 TEST(Registration, RefusesOptionsUnderWhichNoPictureCouldBeRegistered) {
   const TargetPlate plate = shipped_plate("tcat-a");
   const cv::Mat1d picture(140, 160, 300.0);
-  RegistrationOptions far = planned();
+  RegistrationOptions far = planned_plate();
   far.expected_scale_px_per_mm = expected_scale / 2;
   cv::Mat1d broken = picture.clone();
   broken(3, 4) = std::nan("");
@@ -363,7 +366,8 @@ TEST(Registration, RefusesOptionsUnderWhichNoPictureCouldBeRegistered) {
   EXPECT_THAT(refusal(register_plate(picture, plate, {}), ErrorCode::invalid_input), HasSubstr("must be positive"));
   EXPECT_THAT(refusal(register_plate(picture, plate, far), ErrorCode::invalid_input),
               HasSubstr("only 4 of its 20 triangles are at least 2.5 px"));
-  EXPECT_THAT(refusal(register_plate(broken, plate, planned()), ErrorCode::invalid_input), HasSubstr("not finite"));
+  EXPECT_THAT(refusal(register_plate(broken, plate, planned_plate()), ErrorCode::invalid_input),
+              HasSubstr("not finite"));
 }
 
 TEST(Registration, MovesWithThePlateAndWithThePicture) {
