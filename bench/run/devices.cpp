@@ -103,7 +103,7 @@ Result<void> write_settings(FrameSource& camera, const std::map<std::string, std
 
 }  // namespace
 
-CameraRegistry camera_registry([[maybe_unused]] std::stop_token stop, [[maybe_unused]] SayProgress on_progress) {
+CameraRegistry camera_registry([[maybe_unused]] std::stop_token stop, [[maybe_unused]] const SayProgress& on_progress) {
   CameraRegistry registry;
 #ifdef TODBENCH_WITH_ARAVIS
   for (const auto transport : {AravisTransport::gige_vision, AravisTransport::usb3_vision}) {

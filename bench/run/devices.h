@@ -23,7 +23,7 @@ using SayProgress = std::function<void(std::string_view sentence)>;
 
 /// Every back end of this build: GigE Vision, USB3 Vision, V4L2, recordings, simulated sensors. `stop` ends the opening
 /// of a camera that takes its time (`interrupted`), `on_progress` tells of it about once a second.
-[[nodiscard]] CameraRegistry camera_registry(std::stop_token stop = {}, SayProgress on_progress = {});
+[[nodiscard]] CameraRegistry camera_registry(std::stop_token stop = {}, const SayProgress& on_progress = {});
 
 struct ProcessingRecord;
 

@@ -224,7 +224,7 @@ tl::unexpected<Error> ModuleProcess::refused(Error error) {
   return tl::unexpected(std::move(error));
 }
 
-Result<NpyPlace> ModuleProcess::answer_to(std::string messages, const std::vector<std::size_t>& shape) {
+Result<NpyPlace> ModuleProcess::answer_to(const std::string& messages, const std::vector<std::size_t>& shape) {
   if (process_ < 0) return fail(ErrorCode::disconnected, "the module has ended");
   // What stands there before anything was asked is no answer.
   std::array<char, 64> early{};
@@ -256,8 +256,8 @@ Result<cv::Mat1f> ModuleProcess::exchange(const cv::Mat1f& picture) {
   return answer;
 }
 
-Result<std::vector<double>> ModuleProcess::ask(std::string messages, const std::vector<std::size_t>& shape) {
-  const auto found = answer_to(std::move(messages), shape);
+Result<std::vector<double>> ModuleProcess::ask(const std::string& messages, const std::vector<std::size_t>& shape) {
+  const auto found = answer_to(messages, shape);
   if (!found) return tl::unexpected(found.error());
   auto read = read_message(read_, found->count);
   if (!read) return refused(read.error());

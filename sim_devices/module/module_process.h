@@ -49,11 +49,11 @@ class ModuleProcess {
   /// a number that is not finite, bytes behind the answer.
   [[nodiscard]] Result<cv::Mat1f> exchange(const cv::Mat1f& picture);
   /// Any messages, answered by one array of this shape; its numbers, last index fastest. Errors as exchange().
-  [[nodiscard]] Result<std::vector<double>> ask(std::string messages, const std::vector<std::size_t>& shape);
+  [[nodiscard]] Result<std::vector<double>> ask(const std::string& messages, const std::vector<std::size_t>& shape);
 
  private:
   explicit ModuleProcess(const ModuleOptions& options) : options_(options) {}
-  [[nodiscard]] Result<NpyPlace> answer_to(std::string messages, const std::vector<std::size_t>& shape);
+  [[nodiscard]] Result<NpyPlace> answer_to(const std::string& messages, const std::vector<std::size_t>& shape);
   [[nodiscard]] tl::unexpected<Error> refused(Error error);
   [[nodiscard]] Result<NpyPlace> transfer(std::chrono::steady_clock::time_point until, std::size_t most_values);
   void take_errors();

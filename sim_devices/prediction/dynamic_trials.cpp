@@ -36,8 +36,9 @@ class SequenceJudge {
     judge.steps_ = static_cast<int>(std::lround(1 / judge.spec_.search_step_samples));
     judge.reach_ = static_cast<int>(std::lround(judge.spec_.search_range_samples * judge.steps_));
     TemplateObserverSpec wider = judge.spec_;
-    wider.search_range_samples += static_cast<double>((judge.steps_ + 1) / 2) / judge.steps_;
-    judge.wide_reach_ = judge.reach_ + (judge.steps_ + 1) / 2;
+    const int half_a_sample = (judge.steps_ + 1) / 2;
+    wider.search_range_samples += static_cast<double>(half_a_sample) / judge.steps_;
+    judge.wide_reach_ = judge.reach_ + half_a_sample;
     if (auto valid = validate(wider); !valid) return tl::unexpected(valid.error());
     for (const double size : options.sizes_pitch) {
       auto prepared = observer.prepare(size, 1);

@@ -23,8 +23,9 @@ TargetPlate trial_plate(const std::vector<double>& sizes_pitch, double ifov_mrad
   for (std::size_t t = 0; t < 4 * sizes_pitch.size(); ++t) {
     PlateTriangle triangle;
     triangle.name = std::to_string(t);
+    const auto row = t / 8;
     triangle.position_mm = {(static_cast<double>(t % 8) - 3.5) * cell_mm,
-                            (static_cast<double>(t / 8) + 0.5) * cell_mm - half_height_mm};
+                            (static_cast<double>(row) + 0.5) * cell_mm - half_height_mm};
     triangle.size_mm = sizes_pitch[t / 4] * ifov_mrad;
     triangle.apex = static_cast<Apex>((t + t / 4) % 4);
     plate.triangles.push_back(triangle);

@@ -191,7 +191,8 @@ class BarTrial {
     return (static_cast<double>(phase % phases_across) + 0.5) / phases_across - 0.5;
   }
   [[nodiscard]] static double offset_along(std::size_t phase) {
-    return (static_cast<double>(phase / phases_across) + 0.5) / phases_along - 0.5;
+    const std::size_t row = phase / phases_across;
+    return (static_cast<double>(row) + 0.5) / phases_along - 0.5;
   }
 
   [[nodiscard]] Seen of(cv::Mat1f window) const {

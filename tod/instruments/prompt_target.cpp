@@ -14,7 +14,7 @@ class PromptTarget final : public Target {
     capabilities_.sets_shift = false;
   }
 
-  const TargetCapabilities& capabilities() const override { return capabilities_; }
+  [[nodiscard]] const TargetCapabilities& capabilities() const override { return capabilities_; }
 
   Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) override {
     if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped before the operator was asked");

@@ -43,7 +43,7 @@ class ScpiTarget final : public Target {
 
   Result<void> open(const std::stop_token& stop);
 
-  const TargetCapabilities& capabilities() const override { return capabilities_; }
+  [[nodiscard]] const TargetCapabilities& capabilities() const override { return capabilities_; }
   Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) override;
 
  private:

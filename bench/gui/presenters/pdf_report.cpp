@@ -65,7 +65,7 @@ void keep_row_together(QTextDocument& document, QTextTable& table) {
 }
 
 /// The first of the headings right over a block: what moves to the next page takes them along.
-QTextBlock with_headings(QTextBlock block) {
+QTextBlock with_headings(const QTextBlock& block) {
   QTextBlock above = block.previous();
   while (above.isValid() && above.text().trimmed().isEmpty()) above = above.previous();
   const bool heading = above.isValid() && table_at(above) == nullptr && above.blockFormat().headingLevel() > 0;
