@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Runs every command of docs/first-hour.md, in order, in one empty folder: first_hour_test.py PROGRAM WINDOW SOURCES.
+"""Runs every command of docs/first-hour.md, in order, in one empty folder: first_hour_test.py PROGRAM WINDOW SOURCES PICTURES.
+
+The window is shown on an X server where xvfb-run is installed; the pictures of its pages are left in the folder PICTURES.
 
 Also here: a long table goes through the pager of a terminal. Exit code 77: what is not there is said.
 """
@@ -7,6 +9,7 @@ import os
 import pathlib
 import pty
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -65,22 +68,34 @@ def is_paged(folder, environment, rows):
     return went and b"sim:sc2000" not in shown
 
 
+def put_window(tools, window):
+    """`todbench-gui` on an X server of its own; without one the environment says that there is no screen."""
+    name = tools / "todbench-gui"
+    if not shutil.which("xvfb-run"):
+        name.symlink_to(window)
+        return "offscreen"
+    name.write_text(f'#!/bin/sh\nexec xvfb-run -a -s "-screen 0 1366x768x24" "{window}" "$@"\n', encoding="utf-8")
+    name.chmod(0o755)
+    return "xcb"
+
+
 def main():
-    program, window, sources = sys.argv[1:4]
+    program, window, sources, pictures = sys.argv[1:5]
     page = pathlib.Path(sources, "docs/first-hour.md").read_text(encoding="utf-8")
     with tempfile.TemporaryDirectory() as folder:
         tools = pathlib.Path(folder, "bin")
         tools.mkdir()
         (tools / "todbench").symlink_to(program)
-        if window:
-            (tools / "todbench-gui").symlink_to(window)
-        environment = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}", "QT_QPA_PLATFORM": "offscreen",
+        screen = put_window(tools, window) if window else "offscreen"
+        environment = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}", "QT_QPA_PLATFORM": screen,
                        "HOME": folder, "NO_COLOR": "1"}
         work = pathlib.Path(folder, "work")
         work.mkdir()
         if not window:
             page = re.sub(r"^(todbench-gui|ls pictures).*$", "true", page, flags=re.M)
         ran = walk(page, work, environment)
+        if (work / "pictures").is_dir():
+            shutil.copytree(work / "pictures", pictures, dirs_exist_ok=True)
         if ran is None:
             return 1
         wanted = ["unit-1/report.html", "curve/verdict.json", "mine.toml"]
@@ -97,7 +112,7 @@ def main():
         if not is_paged(work, environment, 3) or is_paged(work, environment, 100):
             print("a table is paged where it is longer than the terminal, and only there")
             return 1
-    print(f"{ran} commands" + ("" if window else ", without the window, which was not built"))
+    print(f"{ran} commands" + (f", the window on {screen}" if window else ", without the window, which was not built"))
     return 0
 
 
