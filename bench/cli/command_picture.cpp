@@ -19,7 +19,7 @@ namespace {
 struct PictureArguments {
   std::string scene, out;
   ChainOptions chain;
-  double range_m = 0, rotation_deg = 0, x_pitch = 0, y_pitch = 0, tolerance_percent = 1;
+  double range_m = 0, rotation_deg = 0, x_pitch = 0, y_pitch = 0, tolerance_percent = 1, cn2 = 0;
   int field_pitch = 0;
   bool overwrite = false;
 };
@@ -32,6 +32,11 @@ Result<ScenePicturesTask> picture_task(const PictureArguments& a, std::uint64_t 
   if (!chain) return tl::unexpected(chain.error());
   task.scene = *std::move(scene);
   task.sensor = std::move(chain->sensor);
+  if (a.cn2 > 0) {
+    task.sensor.turbulence_cn2_m_minus_2_3 = a.cn2;
+    task.sensor.turbulence_path_m = a.range_m;
+    if (auto valid = validate(task.sensor); !valid) return fail("--cn2", valid.error());
+  }
   task.observer = std::move(chain->observer);
   task.air = std::move(chain->air);
   task.accuracy = chain->accuracy;
@@ -64,6 +69,12 @@ Document picture_document(const ScenePicturesTask& task, const ScenePictures& pi
                               pictures.signature->dt_rss_k()));
   }
   add("contrast behind the air", fmt::format("{:.3g} K", pictures.apparent_dt_k));
+  if (const auto& t = pictures.turbulence) {
+    add("turbulence",
+        fmt::format("Cn2 {:.3g} m^-2/3 over {:g} m: coherence diameter {:.3g} m, transfer {:.4f} at the Nyquist "
+                    "frequency over many frames; short frames dance by {:.2g} pitches per axis",
+                    t->path.cn2_m_minus_2_3, t->path.path_m, t->r0_m, t->mtf_at_nyquist, t->tilt_sd_pitch));
+  }
   add("background as the camera shows it", fmt::format("{:.2f} K", pictures.background_k));
   add("grey scale", grey_sentence(pictures));
   Table effects{"", {"Effect", "Decision", "Reason"}, {}};
@@ -111,12 +122,20 @@ Json picture_json(const ScenePicturesTask& task, const ScenePictures& pictures) 
               {"sd_k", json_number(pictures.signature->sd_k)},
               {"dt_rss_k", json_number(pictures.signature->dt_rss_k())}};
   }
+  Json turbulence;
+  if (const auto& t = pictures.turbulence) {
+    turbulence = {{"cn2_m_minus_2_3", t->path.cn2_m_minus_2_3},       {"path_m", t->path.path_m},
+                  {"wavelength_um", t->path.wavelength_um},           {"r0_m", json_number(t->r0_m)},
+                  {"mtf_at_nyquist", json_number(t->mtf_at_nyquist)}, {"tilt_sd_mrad", json_number(t->tilt_sd_mrad)},
+                  {"tilt_sd_pitch", json_number(t->tilt_sd_pitch)}};
+  }
   return {
       {"scene", task.scene.name},
       {"sensor", task.sensor.name},
       {"samples_per_pitch", task.sensor.samples_per_pitch()},
       {"range_m", json_number(task.view.range_m)},
       {"atmosphere", {{"name", task.air.name}, {"source", task.air.source}, {"decisions", air}}},
+      {"turbulence", turbulence},
       {"transmittance", json_number(pictures.transmittance)},
       {"background_k", json_number(pictures.background_k)},
       {"target", target},
@@ -203,6 +222,10 @@ void add_picture_command(CLI::App& app, Program& program) {
   command->add_option("--tolerance-percent", a->tolerance_percent, "of the acuity, for effects that are left out")
       ->check(number_in(0.01, 50))
       ->capture_default_str();
+  command
+      ->add_option("--cn2", a->cn2,
+                   "structure parameter of the turbulence along the path in m^(-2/3); default: that of the sensor, 0")
+      ->check(number_in(0, 1e-11));
   command->add_flag("--force", a->overwrite, "overwrite what is in the folder");
   finish_command(*command, program,
                  [a, &program](Console& console) { return run_picture(console, *a, program.common.seed); });

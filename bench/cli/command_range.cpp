@@ -9,7 +9,9 @@
 #include "bench/cli/range_options.h"
 #include "bench/cli/session_argument.h"
 #include "bench/judgement/verdict.h"
+#include "bench/studies/turbulent_ranges.h"
 #include "bench/text/text.h"
+#include "sim_devices/sensor/effect_turbulence.h"
 #include "tod/range/range_prediction.h"
 
 namespace todbench {
@@ -127,6 +129,67 @@ Result<Atmosphere> into_task(RangeTask& task, const RangeOptions& options, const
   return air;
 }
 
+/// The answers behind turbulence, and what was decided about it.
+struct TurbulentAnswers {
+  std::vector<ModelRange> models;
+  TurbulenceDecision decision;
+  std::optional<TurbulentPath> at_r75;  ///< of the first model that has a range
+};
+
+Result<TurbulentAnswers> through_turbulence(const RangeOptions& options, const RangeTask& task,
+                                            const RangeQuestion& question, const RangeSources& sources,
+                                            const std::optional<Session>& session, TodAnswer& tod) {
+  const auto still = range_models(options.models, sources, question);
+  if (!still) return tl::unexpected(still.error());
+  double longest_m = tod.prediction.r75_ci95_m.high.value_or(tod.prediction.r75_m.value_or(0));
+  for (const auto& model : *still) {
+    for (const auto& range_m : {model.r75_m, model.r50_m, model.r75_ci95_m.high})
+      longest_m = std::max(longest_m, range_m.value_or(0));
+  }
+  if (!sources.sensor) return fail(ErrorCode::invalid_input, "--cn2 needs a sensor: --sensor or --tod");
+  TurbulentAnswers out;
+  out.decision =
+      decide_turbulence(*sources.sensor, options.cn2, question, tod.prediction.r75_m, options.tolerance_percent);
+  const bool simulated = out.decision.simulated && !sources.thresholds.empty() && session;
+  const auto behind = TurbulentSources::of(sources, simulated ? std::optional(session->parts.observer) : std::nullopt,
+                                           options.cn2, std::max(2.2 * longest_m, 1.0));
+  if (!behind) return tl::unexpected(behind.error());
+  if (simulated) {
+    auto notes = std::move(tod.prediction.notes);
+    auto prediction = turbulent_prediction(*behind, sources.thresholds, task);
+    if (!prediction) return tl::unexpected(prediction.error());
+    tod.prediction = *std::move(prediction);
+    tod.prediction.notes = std::move(notes);
+    if (tod.twin_r75_m) {
+      const auto twin = turbulent_prediction(*behind, thresholds_of(*session->twin, task.delta_t_k).thresholds, task);
+      tod.twin_r75_m = twin ? twin->r75_m : std::nullopt;
+    }
+  }
+  auto models = turbulent_range_models(options.models, *behind, question);
+  if (!models) return tl::unexpected(models.error());
+  out.models = *std::move(models);
+  for (const auto& model : out.models) {
+    if (!out.at_r75 && model.r75_m) out.at_r75 = turbulent_path(behind->sensor_at(*model.r75_m));
+  }
+  return out;
+}
+
+Json turbulence_json(const TurbulentAnswers& answers, const SensorSpec& sensor, double cn2) {
+  Json json{{"cn2_m_minus_2_3", cn2},
+            {"decision", answers.decision.simulated ? "simulate" : "skip"},
+            {"bound_percent", json_number(answers.decision.bound_percent)},
+            {"reason", answers.decision.reason},
+            {"path_m", nullptr}};
+  if (const auto& path = answers.at_r75) {
+    json["path_m"] = path->path_m;
+    json["r0_m"] = json_number(fried_spherical_m(*path));
+    json["mtf_at_nyquist"] =
+        json_number(long_exposure_mtf(*path, 0.5 * sensor.samples_per_pitch() / sensor.ifov_mrad()));
+    json["tilt_sd_mrad"] = json_number(tilt_sd_mrad(*path, sensor.focal_length_mm / sensor.f_number / 1000));
+  }
+  return json;
+}
+
 int run_range(Console& console, const RangeArguments& arguments) {
   RangeTask task = arguments.task;
   RangeOptions options = arguments.more;
@@ -153,7 +216,15 @@ int run_range(Console& console, const RangeArguments& arguments) {
   const RangeQuestion question = options.question(task, arguments.v50, *air);
   auto sources = options.sources(selection.thresholds, *sensor);
   if (!sources) return report_error(console, sources.error());
-  const auto models = range_models(options.models, *sources, question);
+  std::optional<TurbulentAnswers> turbulent;
+  if (options.cn2 > 0) {
+    auto answers = through_turbulence(options, task, question, *sources, *session, tod);
+    if (!answers) return report_error(console, answers.error());
+    turbulent = *std::move(answers);
+    if (options.asks(RangeModel::tod)) console.note("turbulence: " + turbulent->decision.reason);
+  }
+  const auto models =
+      turbulent ? Result<std::vector<ModelRange>>(turbulent->models) : range_models(options.models, *sources, question);
   if (!models) return report_error(console, models.error());
   const auto grid = options.grid_json(*sources, question, *sensor);
   if (!grid) return report_error(console, grid.error());
@@ -163,6 +234,11 @@ int run_range(Console& console, const RangeArguments& arguments) {
     json["delta_t_k"] = options.asked_delta_t_k;
     json["atmosphere"] = atmosphere_json(*air, task, tod.prediction.r75_m, options, *sensor);
     json["models"] = models_json(*models, *sources, question, tod.twin_r75_m);
+    if (turbulent) {
+      json["turbulence"] = turbulence_json(*turbulent, *sources->sensor, options.cn2);
+      // Both forms of P are those of the curve without turbulence.
+      if (json["models"].contains("ttp")) json["models"]["ttp"].erase("forms");
+    }
     if (!grid->is_null()) json["grid"] = *grid;
     if (*session) add_accepted_changes(json, arguments.opening, (*session)->accepted_changes);
     console.object(json);

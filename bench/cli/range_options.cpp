@@ -164,6 +164,14 @@ void RangeOptions::add_to(CLI::App& command) {
                   "relative standard uncertainty of the thresholds of MRTD, MTDP-like curve and CTF")
       ->check(number_in(0, 50))
       ->capture_default_str();
+  auto* turbulence =
+      command.add_option("--cn2", cn2, "structure parameter of the turbulence along the path in m^(-2/3)")
+          ->check(number_in(0, 1e-11));
+  command
+      .add_option("--tolerance-percent", tolerance_percent,
+                  "of the acuity: below it turbulence is left out of the TOD model")
+      ->check(number_in(0.01, 50))
+      ->capture_default_str();
   auto* sizes = command.add_option("--grid-sizes-m", grid.sizes_m, "sizes of a grid of targets, separated by commas")
                     ->delimiter(',')
                     ->check(number_in(1e-6, 1e6));
@@ -172,6 +180,7 @@ void RangeOptions::add_to(CLI::App& command) {
                         ->check(number_in(-5000, 5000))
                         ->needs(sizes);
   sizes->needs(contrasts);
+  sizes->excludes(turbulence);
   command.add_option("--grid-ranges-m", grid.ranges_m, "ranges at which the grid has P")
       ->delimiter(',')
       ->check(number_in(1e-3, 1e8))

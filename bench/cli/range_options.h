@@ -20,6 +20,7 @@ struct RangeOptions {
   double emissivity = 1;
   double asked_delta_t_k = 0;  ///< as on the command line
   double n50 = 6, mtdp_n50 = 6, extinction_u_percent = 0, curve_u_percent = 0;
+  double cn2 = 0, tolerance_percent = 1;
   RangeGridAxes grid{};  ///< no sizes: none is asked for
   FormulaConditions formula{};
 

@@ -8,6 +8,7 @@
 
 #include "sim_devices/atmosphere/radiative_path.h"
 #include "sim_devices/sensor/effect_quantisation.h"
+#include "sim_devices/sensor/effect_turbulence.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "tod/plate/test_pattern.h"
 
@@ -105,7 +106,23 @@ std::vector<AirDecision> air_decisions(const ScenePicturesTask& task, const Scen
            ? fmt::format("moves scene and background alike by {:.3g} K, which places them among the counts{}",
                          level_shift_k, clipped ? "; the contrast reaches an end of them" : "")
            : "the path adds what it takes of the background: it drops out of the contrast"});
+  for (const auto& d : out.effects.plan.decisions) {
+    if (d.effect == Effect::turbulence) decisions.push_back({"turbulence", d.decision, d.reason});
+  }
   return decisions;
+}
+
+std::optional<TurbulenceSeen> turbulence_seen(const SensorSpec& sensor) {
+  const auto path = turbulent_path(sensor);
+  if (!path) return std::nullopt;
+  const double aperture_m = sensor.focal_length_mm / sensor.f_number / 1000;
+  const double tilt_mrad = tilt_sd_mrad(*path, aperture_m);
+  return TurbulenceSeen{
+      .path = *path,
+      .r0_m = fried_spherical_m(*path),
+      .mtf_at_nyquist = long_exposure_mtf(*path, 0.5 * sensor.samples_per_pitch() / sensor.ifov_mrad()),
+      .tilt_sd_mrad = tilt_mrad,
+      .tilt_sd_pitch = tilt_mrad / sensor.ifov_mrad()};
 }
 
 }  // namespace
@@ -138,6 +155,7 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   out.apparent_dt_k = *tau * contrast_of(out.signature, levels);
   out.effects = planned(task, out.apparent_dt_k);
   out.air = air_decisions(task, out, scale.kelvin(seen - radiance));
+  out.turbulence = turbulence_seen(task.sensor);
   const SensorPlan& plan = out.effects.plan;
   const SensorModel model(task.sensor, plan, task.accuracy, task.seed);
   const SensorSpec& spec = model.spec();
@@ -181,8 +199,10 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   out.stages = {
       {"1-scene", "At the sensor", air_note, as_float(bare_scene(task, fine, scale, fine_view, fine_size), *tau),
        static_cast<double>(fine_per_pitch)},
-      {"2-optics", "Behind the optics", "diffraction, and aberration where it matters", as_float(*behind_optics, *tau),
-       static_cast<double>(fine_per_pitch)},
+      {"2-optics", "Behind the optics",
+       plan.simulates(Effect::turbulence) ? "turbulence of the air, diffraction, and aberration where it matters"
+                                          : "diffraction, and aberration where it matters",
+       as_float(*behind_optics, *tau), static_cast<double>(fine_per_pitch)},
       {"3-detector", "On the detectors", "the mean over the sensitive area round every place",
        as_float(*behind_detector, *tau), static_cast<double>(fine_per_pitch)},
       {"4-sampled", "Sampled", fmt::format("{} samples a pitch and axis", n), unit(samples).clone(),

@@ -9,6 +9,7 @@
 #include "acquisition/core/accuracy.h"
 #include "bench/plan/atmospheres.h"
 #include "hvs/observer/template_observer.h"
+#include "sim_devices/atmosphere/turbulence.h"
 #include "sim_devices/prediction/effect_planner.h"
 #include "sim_devices/scene/field_scene.h"
 #include "sim_devices/sensor/scene_signal.h"
@@ -42,6 +43,14 @@ struct AirDecision {
   std::string reason;
 };
 
+/// What turbulence does before this camera.
+struct TurbulenceSeen {
+  TurbulentPath path{};
+  double r0_m = 0;                             ///< Fried's coherence diameter, spherical wave
+  double mtf_at_nyquist = 1;                   ///< long exposure, at the Nyquist frequency of the samples
+  double tilt_sd_mrad = 0, tilt_sd_pitch = 0;  ///< of the dance of short frames, per axis; part of the long exposure
+};
+
 struct ScenePictures {
   std::vector<SceneStage> stages;          ///< at the sensor, optics, detector, sampled, noise, display, observer
   cv::Mat1f frame;                         ///< all of the camera's frame, as displayed
@@ -52,6 +61,7 @@ struct ScenePictures {
   double apparent_dt_k = 0;                  ///< contrast behind the air that effects were planned for
   EffectPlan effects;
   std::vector<AirDecision> air;
+  std::optional<TurbulenceSeen> turbulence;  ///< nothing where there is none
 };
 
 /// Stages 1 to 3 are drawn finer than the detectors, 4 and 5 a pixel a sample, 6 and 7 eight a sample. The effects that

@@ -10,11 +10,6 @@ double wavelength_m(const TurbulentPath& path) {
   return path.wavelength_um * 1e-6;
 }
 
-/// 3.44 (lambda nu / r0)^(5/3), nu in cycles per radian.
-double exponent(const TurbulentPath& path, double cycles_per_mrad) {
-  return 3.44 * std::pow(wavelength_m(path) * cycles_per_mrad * 1000 / fried_spherical_m(path), 5.0 / 3);
-}
-
 }  // namespace
 
 double fried_plane_m(const TurbulentPath& path) {
@@ -26,8 +21,12 @@ double fried_spherical_m(const TurbulentPath& path) {
   return std::pow(8.0 / 3, 0.6) * fried_plane_m(path);
 }
 
+double long_exposure_exponent(const TurbulentPath& path, double cycles_per_mrad) {
+  return 3.44 * std::pow(wavelength_m(path) * cycles_per_mrad * 1000 / fried_spherical_m(path), 5.0 / 3);
+}
+
 double long_exposure_mtf(const TurbulentPath& path, double cycles_per_mrad) {
-  return std::exp(-exponent(path, cycles_per_mrad));
+  return std::exp(-long_exposure_exponent(path, cycles_per_mrad));
 }
 
 std::optional<double> short_exposure_mtf(const TurbulentPath& path, double aperture_m, PropagationField field,
@@ -35,7 +34,7 @@ std::optional<double> short_exposure_mtf(const TurbulentPath& path, double apert
   const double relative = wavelength_m(path) * cycles_per_mrad * 1000 / aperture_m;
   if (relative > 1) return std::nullopt;
   const double a = field == PropagationField::near_field ? 1 : 0.5;
-  return std::exp(-exponent(path, cycles_per_mrad) * (1 - a * std::cbrt(relative)));
+  return std::exp(-long_exposure_exponent(path, cycles_per_mrad) * (1 - a * std::cbrt(relative)));
 }
 
 double tilt_sd_mrad(const TurbulentPath& path, double aperture_m) {

@@ -17,6 +17,8 @@ struct TurbulentPath {
 /// one.
 [[nodiscard]] double fried_spherical_m(const TurbulentPath& path);
 
+/// 3.44 (lambda nu / r0)^(5/3), r0 spherical (Fried 1966).
+[[nodiscard]] double long_exposure_exponent(const TurbulentPath& path, double cycles_per_mrad);
 /// Long exposure: exp[-3.44 (lambda nu / r0)^(5/3)], r0 spherical (Fried 1966).
 [[nodiscard]] double long_exposure_mtf(const TurbulentPath& path, double cycles_per_mrad);
 enum class PropagationField { near_field, far_field };

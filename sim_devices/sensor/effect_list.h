@@ -7,6 +7,7 @@
 
 // NOLINTBEGIN(cppcoreguidelines-macro-usage)
 #define TODBENCH_EFFECTS(EFFECT) \
+  EFFECT(turbulence)             \
   EFFECT(diffraction)            \
   EFFECT(spectral_band)          \
   EFFECT(aberration)             \

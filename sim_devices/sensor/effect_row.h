@@ -85,6 +85,7 @@ struct Spread {
   double period = 0;    ///< more of the period, so that tails do not wrap round
   double window = 0;    ///< more round a window, within which shapes are computed exactly
   double variance = 0;  ///< per axis, pitches squared
+  double far = 0;       ///< of a plane, what lies more than r pitches away adds far r^(-5/3)
 };
 
 /// Which samples share one random number.

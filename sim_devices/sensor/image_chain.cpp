@@ -103,7 +103,8 @@ void ImageChain::add_far_field(InfinitePlane& near, const Polygon& shape_pitch, 
       largest = std::max(largest, added);
     }
   }
-  near.max_error_estimate += largest * (9 * (spread_.variance + 0.1) / (near_field * near_field) + 1e-5);
+  near.max_error_estimate += largest * (9 * (spread_.variance + 0.1) / (near_field * near_field) + 1e-5) +
+                             spread_.far * std::pow(half_width, -5.0 / 3);
 }
 
 ImageChain::InfinitePlane ImageChain::extrapolated(const Polygon& shape_pitch, cv::Point2d first, double step,

@@ -28,7 +28,9 @@ struct SensorSpec {
   double focal_length_mm = 36.3;
   double f_number = 1;
   double wavelength_min_um = 7.5, wavelength_max_um = 13;
-  double optics_transmission = 0.8;   ///< normalised out of the signal: NETD is referred to the scene
+  double turbulence_cn2_m_minus_2_3 = 0;  ///< structure parameter of the air before the lens; 0: none
+  double turbulence_path_m = 1000;        ///< along which it acts
+  double optics_transmission = 0.8;       ///< normalised out of the signal: NETD is referred to the scene
   double aberration_sigma_pitch = 0;  ///< Gaussian blur of the lens beyond diffraction, per axis, in detector pitches
   double netd_k = 0.07;               ///< temporal noise per sample
   double noise_correlation = 0;       ///< of a sample's temporal noise in successive exposures

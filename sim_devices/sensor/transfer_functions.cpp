@@ -86,6 +86,7 @@ Spread spread_of(const ChainScope& scope) {
     sum.period += own.period;
     sum.window += own.window;
     sum.variance += own.variance;
+    sum.far += own.far;
   }
   return sum;
 }

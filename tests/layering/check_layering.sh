@@ -35,7 +35,7 @@ BEGIN {
   may["sim_devices/scene"] = hvs " tod/plate sim_devices/atmosphere"
   may["sim_devices/atmosphere"] = core " tod/range"
   may["sim_devices/module"] = hvs
-  may["sim_devices/sensor"] = hvs " tod/plate tod/presentation sim_devices/scene sim_devices/module"
+  may["sim_devices/sensor"] = hvs " tod/plate tod/presentation sim_devices/atmosphere sim_devices/scene sim_devices/module"
   may["sim_devices/prediction"] = tod " sim_devices/scene sim_devices/module sim_devices/sensor"
   may["sim_devices/lab/device_nodes"] = core
   may["sim_devices/lab/instruments"] = core " tod/plate tod/instruments"

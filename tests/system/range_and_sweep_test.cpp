@@ -93,6 +93,19 @@ TEST(RangeCommand, ReadsTheSessionThroughAirAndRefusesWhatIsNone) {
   expect_refused(range({"--atmosphere", "us-standrd"}), 2, "us-standard");
   expect_refused(range({"--background-k", "-3"}), 2, "above 0 K");
   expect_refused(range({"--air-k", "0"}), 2, "above 0 K");
+  const Json weak = one_object(range({"--cn2", "1e-16"}));
+  const Json strong = one_object(range({"--cn2", "1e-11", "--models", "all"}));
+  EXPECT_EQ(weak["r75_m"], plain["r75_m"]);
+  EXPECT_EQ(weak["turbulence"]["decision"], "skip");
+  EXPECT_EQ(strong["turbulence"]["decision"], "simulate");
+  for (const char* name : {"tod", "acquire", "ttp", "mtdp"}) {
+    EXPECT_LT(strong["models"][name]["r75_m"].get<double>(),
+              all["models"][name]["r75_m"].get<double>() / all["atmosphere"]["transmittance_at_r75"].get<double>())
+        << name;
+  }
+  EXPECT_NEAR(strong["models"]["tod"]["r75_m"].get<double>() / strong["r75_m"].get<double>(), 1, 1e-6);
+  expect_refused(range({"--cn2", "1e-14", "--grid-sizes-m", "2", "--grid-contrasts-k", "5"}), 2, "--cn2");
+  expect_refused(range({"--cn2", "-1"}), 2, "--cn2");
   expect_refused(range({"--models", "tod,nvthermip"}), 2, "unknown model");
   expect_refused(range({"--atmosphere", "tropical", "--extinction-per-km", "0.2"}), 2, "beside");
 }
@@ -191,6 +204,15 @@ TEST(PictureCommand, WritesEveryStageOnOneGreyScale) {
   }
   EXPECT_EQ(cv::imread((folder.path() / "p/frame.tiff").string(), -1).size(), cv::Size(320, 240));
   EXPECT_EQ(content(folder.path() / "p/pictures.html").find("<script"), std::string::npos);
+
+  auto turbulent = asked;
+  turbulent.insert(turbulent.end(), {"--force", "--cn2", "1e-11"});
+  const Json blurred = one_object(todbench(turbulent, {.folder = folder.path()}));
+  EXPECT_TRUE(json["turbulence"].is_null());
+  EXPECT_EQ(blurred["turbulence"]["path_m"], 300.0);
+  EXPECT_EQ(blurred["atmosphere"]["decisions"].back()["name"], "turbulence");
+  turbulent.back() = "1e-3";
+  expect_refused(todbench(turbulent, {.folder = folder.path()}), 2, "--cn2");
 }
 
 TEST(PictureCommand, RefusesScenesAndRangesThatCannotBe) {

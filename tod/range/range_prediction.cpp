@@ -154,6 +154,13 @@ std::optional<double> TargetLine::crossing(Side side) const {
   return std::nullopt;
 }
 
+std::vector<TodThreshold> sorted_by_contrast(std::span<const TodThreshold> thresholds) {
+  std::vector<TodThreshold> sorted(thresholds.begin(), thresholds.end());
+  std::sort(sorted.begin(), sorted.end(),
+            [](const TodThreshold& a, const TodThreshold& b) { return a.delta_t_k < b.delta_t_k; });
+  return sorted;
+}
+
 Result<void> check(std::span<const TodThreshold> thresholds, const RangeTask& task) {
   const auto positive = [](double value) { return std::isfinite(value) && value > 0; };
   if (!positive(task.size_m)) return fail(ErrorCode::invalid_input, "the target's size must be above 0 m");
@@ -188,19 +195,22 @@ std::optional<double> probability(std::optional<double> ln_m) {
   return identification_probability(std::exp(*ln_m));
 }
 
+RangePoint point_of(const TargetLine& line, double range_m) {
+  RangePoint point;
+  point.range_m = range_m;
+  point.apparent_delta_t_k = std::exp(line.ln_contrast(range_m));
+  point.probability = probability(line.ln_m_over_m75(range_m, Side::estimate));
+  point.probability_ci95 = {probability(line.ln_m_over_m75(range_m, Side::low)),
+                            probability(line.ln_m_over_m75(range_m, Side::high))};
+  return point;
+}
+
 std::vector<RangePoint> probabilities(const TargetLine& line, double up_to_m) {
   const double step = round_step(up_to_m / 60);
   std::vector<RangePoint> curve;
   for (int i = 1; i * step <= up_to_m * (1 + 1e-12); ++i) {
-    RangePoint point;
-    point.range_m = i * step;
-    const double ln_contrast = line.ln_contrast(point.range_m);
-    if (std::isinf(ln_contrast)) break;  // the table of the air has ended
-    point.apparent_delta_t_k = std::exp(ln_contrast);
-    point.probability = probability(line.ln_m_over_m75(point.range_m, Side::estimate));
-    point.probability_ci95 = {probability(line.ln_m_over_m75(point.range_m, Side::low)),
-                              probability(line.ln_m_over_m75(point.range_m, Side::high))};
-    curve.push_back(point);
+    if (std::isinf(line.ln_contrast(i * step))) break;  // the table of the air has ended
+    curve.push_back(point_of(line, i * step));
   }
   return curve;
 }
@@ -302,12 +312,20 @@ std::optional<double> interpolated_acuity_per_mrad(std::span<const TodThreshold>
   return std::exp(found->value);
 }
 
+Result<RangePoint> range_point(std::span<const TodThreshold> thresholds, const RangeTask& asked, double range_m) {
+  RangeTask task = asked;
+  task.delta_t_k = contrast_on_curve(thresholds, asked.delta_t_k);
+  const std::vector<TodThreshold> sorted = sorted_by_contrast(thresholds);
+  if (auto checked = check(sorted, task); !checked) return tl::unexpected(checked.error());
+  if (!(std::isfinite(range_m) && range_m > 0)) return fail(ErrorCode::invalid_input, "a range is above 0 m");
+  const std::vector<Node> nodes = nodes_of(sorted);
+  return point_of(TargetLine(nodes, task), range_m);
+}
+
 Result<RangePrediction> predict_range(std::span<const TodThreshold> thresholds, const RangeTask& asked) {
   RangeTask task = asked;
   task.delta_t_k = contrast_on_curve(thresholds, asked.delta_t_k);
-  std::vector<TodThreshold> sorted(thresholds.begin(), thresholds.end());
-  std::sort(sorted.begin(), sorted.end(),
-            [](const TodThreshold& a, const TodThreshold& b) { return a.delta_t_k < b.delta_t_k; });
+  const std::vector<TodThreshold> sorted = sorted_by_contrast(thresholds);
   if (auto checked = check(sorted, task); !checked) return tl::unexpected(checked.error());
   const std::vector<Node> nodes = nodes_of(sorted);
   const TargetLine line(nodes, task);

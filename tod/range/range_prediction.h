@@ -85,5 +85,8 @@ struct ThresholdSelection {
 /// out of its range, an extinction beside the air, no thresholds, thresholds that are not positive and finite, or two
 /// at one contrast.
 [[nodiscard]] Result<RangePrediction> predict_range(std::span<const TodThreshold> thresholds, const RangeTask& task);
+/// The same at one range; contrast 0 beyond the end of the air's table. Errors: as predict_range().
+[[nodiscard]] Result<RangePoint> range_point(std::span<const TodThreshold> thresholds, const RangeTask& task,
+                                             double range_m);
 
 }  // namespace todbench

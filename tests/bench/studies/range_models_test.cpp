@@ -5,9 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "bench/report/html.h"
 #include "bench/report/range_figure.h"
+#include "bench/studies/turbulent_ranges.h"
+#include "sim_devices/sensor/effect_turbulence.h"
 #include "tests/support/temporary_folder.h"
 
 namespace todbench {
@@ -145,6 +148,95 @@ TEST(RangeModels, WithoutSensorOrCurveSayWhy) {
     EXPECT_FALSE(model.r75_m);
     EXPECT_FALSE(model.reason.empty()) << model.name;
   }
+}
+
+// A curve a exp(b f) behind turbulence is a exp(b f + c (R) f^(5/3)): its range solved here on its own.
+TEST(TurbulentRanges, OfAnExponentialCurveSolveTheClosedForm) {
+  constexpr double a = 0.01, b = 1.1, cn2 = 1e-13;
+  RangeSources given = sources();
+  std::vector<CurvePoint> points;
+  for (int i = 0; i <= 600; ++i) points.push_back({0.01 * i, a * std::exp(b * 0.01 * i)});
+  given.mrtd = *LogLinearCurve::of(points, "MRTD");
+  const auto asked = question("clear");
+  const auto still = range_models(std::array{RangeModel::acquire}, given, asked);
+  ASSERT_TRUE(still && still->front().r75_m);
+  const double still_m = *still->front().r75_m;
+  const auto behind = TurbulentSources::of(given, std::nullopt, cn2, 2.2 * *still->front().r50_m);
+  ASSERT_TRUE(behind) << behind.error().message;
+
+  const auto models = turbulent_range_models(std::array{RangeModel::acquire}, *behind, asked);
+
+  ASSERT_TRUE(models && models->front().r75_m) << models->front().reason;
+  const double wavelength_m = turbulent_path(behind->sensor_at(1))->wavelength_um * 1e-6;
+  const double k = 2 * std::numbers::pi / wavelength_m;
+  const double n75 = 6 * 1.3516;  // sheet of facts: Johnson's x for 75 %
+  const auto excess = [&](double range_m) {
+    const double f = n75 * range_m / 4.9;  // cycles per radian
+    const double r0_m = std::pow(0.423 * k * k * cn2 * range_m * 3 / 8, -0.6);
+    return std::log(a) + b * f / 1000 + 3.44 * std::pow(wavelength_m * f / r0_m, 5.0 / 3) - std::log(3);
+  };
+  double low = 1, high = still_m;
+  for (int i = 0; i < 100; ++i) (excess((low + high) / 2) < 0 ? low : high) = (low + high) / 2;
+  EXPECT_LT(low, 0.97 * still_m) << "the case is one in which turbulence matters";
+  // Four digits of x; the curve is linear between points 0.01 apart.
+  EXPECT_NEAR(*models->front().r75_m / low, 1, 1e-4);
+  const auto& curve = models->front().curve;
+  ASSERT_GT(curve.size(), 20u);
+  for (std::size_t i = 1; i < curve.size(); ++i) {
+    if (!curve[i].probability) continue;
+    EXPECT_LE(*curve[i].probability, *curve[i - 1].probability);
+    EXPECT_EQ(*curve[i].probability > 0.75 + 2e-3, curve[i].range_m < low * (1 - 2e-3)) << curve[i].range_m;
+  }
+}
+
+TEST(TurbulentRanges, LeaveTheTodRangeAsItIsWhereTheyCannotMatter) {
+  const auto asked = question("us-standard");
+  const RangeTask task{.size_m = asked.size_m, .delta_t_k = asked.delta_t_k, .air = asked.air.air};
+  const auto still = predict_range(tod, task);
+  ASSERT_TRUE(still && still->r75_m);
+  const SensorSpec sensor = *sources().sensor;
+
+  const auto weak = decide_turbulence(sensor, 1e-15, asked, still->r75_m, 1);
+  const auto strong = decide_turbulence(sensor, 1e-11, asked, still->r75_m, 1);
+  const auto behind = TurbulentSources::of(sources(), std::nullopt, 1e-15, 3 * *still->r75_m);
+
+  EXPECT_FALSE(weak.simulated) << weak.reason;
+  EXPECT_TRUE(strong.simulated) << strong.reason;
+  ASSERT_TRUE(behind);
+  const auto models = turbulent_range_models(std::array{RangeModel::tod}, *behind, asked);
+  ASSERT_TRUE(models);
+  EXPECT_EQ(models->front().r75_m, still->r75_m);
+}
+
+TEST(TurbulentRanges, OfTheTodCurveMeetTheCriterionBehindTheirOwnPath) {
+  const auto asked = question("clear");
+  const RangeTask task{.size_m = asked.size_m, .delta_t_k = asked.delta_t_k};
+  const auto still = predict_range(tod, task);
+  ASSERT_TRUE(still && still->r75_ci95_m.high);
+  const auto behind = TurbulentSources::of(sources(), TemplateObserverSpec{}, 1e-11, 2.2 * *still->r75_ci95_m.high);
+  ASSERT_TRUE(behind) << behind.error().message;
+
+  const auto prediction = turbulent_prediction(*behind, tod, task);
+
+  ASSERT_TRUE(prediction && prediction->r75_m) << prediction->reason;
+  EXPECT_LT(*prediction->r75_m, *still->r75_m);
+  // By the bound of the planner at the range without it, which is further.
+  const double most = decide_turbulence(*sources().sensor, 1e-11, asked, still->r75_m, 1).bound_percent;
+  EXPECT_GT(*prediction->r75_m, *still->r75_m / (1 + most / 100));
+  const auto point = range_point(behind->thresholds_at(tod, *prediction->r75_m), task, *prediction->r75_m);
+  ASSERT_TRUE(point && point->probability);
+  EXPECT_NEAR(*point->probability, 0.75, 1e-5);
+  EXPECT_LT(*prediction->r75_ci95_m.low, *prediction->r75_m);
+  EXPECT_GT(*prediction->r75_ci95_m.high, *prediction->r75_m);
+}
+
+TEST(TurbulentRanges, RefuseWhatIsNone) {
+  RangeSources without = sources();
+  without.sensor.reset();
+
+  EXPECT_FALSE(TurbulentSources::of(without, std::nullopt, 1e-14, 1000));
+  EXPECT_FALSE(TurbulentSources::of(sources(), std::nullopt, 0, 1000));
+  EXPECT_FALSE(TurbulentSources::of(sources(), std::nullopt, 1e-14, 0));
 }
 
 TEST(RangePage, HasTheFigureAndEveryModel) {

@@ -11,6 +11,7 @@
 
 #include "sim_devices/prediction/direct_estimate.h"
 #include "sim_devices/prediction/effect_planner.h"
+#include "sim_devices/sensor/effect_turbulence.h"
 #include "tests/sim_devices/reference.h"
 #include "tod/plate/test_pattern.h"
 
@@ -127,6 +128,33 @@ inline GridScene random_scene(std::uint64_t set, std::uint64_t number) {
                 static_cast<int>(number), scene.observer.name.c_str(), s.samples_per_pitch(), s.samples_per_pitch(),
                 scene.delta_t_k / noise, smear);
   scene.name = name;
+  return scene;
+}
+
+/// A scene of random_scene() at the far end of a path of air: the contrast is what the air leaves of it, turbulence is
+/// drawn so that it is nothing, little or much before this camera, and the path's own radiance moves the level.
+inline GridScene random_air_scene(std::uint64_t set, std::uint64_t number) {
+  GridScene scene = random_scene(set, number);
+  const RandomStream random = RandomStream(set, "effect_planner.air").sub(number);
+  SensorSpec& s = scene.sensor;
+  // Narrow fields, in which turbulence decides, as often as wide ones; the same smear in pitches.
+  const double wide_mrad = s.ifov_mrad();
+  s.focal_length_mm *= std::pow(30.0, random.uniform(0));
+  scene.motion.x_mrad_s *= s.ifov_mrad() / wide_mrad;
+  scene.motion.y_mrad_s *= s.ifov_mrad() / wide_mrad;
+  s.turbulence_path_m = 200 * std::pow(40.0, random.uniform(1));
+  s.turbulence_cn2_m_minus_2_3 = 1e-15 * std::pow(1e3, random.uniform(2));
+  // Beyond a blur of a pitch and a half there is nothing to plan: every effect is small beside it.
+  while (turbulence_strength(s) > 20) s.turbulence_cn2_m_minus_2_3 /= 2;
+  // The air takes up to nine tenths, and what is left is seen in noise.
+  const double noise = s.netd_k * scene.observer.sensor_noise_factor / std::sqrt(s.exposures_per_sample());
+  const double transmittance = std::exp(-2.3 * random.uniform(3));
+  scene.delta_t_k = std::max(transmittance * scene.delta_t_k, 1.5 * std::max(noise, s.fixed_pattern_k));
+  s.offset_k -= 20 * (1 - transmittance) * random.uniform(4);
+  char name[120];
+  std::snprintf(name, sizeof name, ", tau %.2f, Cn2 %.1e over %.0f m, strength %.2g", transmittance,
+                s.turbulence_cn2_m_minus_2_3, s.turbulence_path_m, turbulence_strength(s));
+  scene.name += name;
   return scene;
 }
 

@@ -87,5 +87,14 @@ TEST(EffectPlannerStudy, TheTrueChangeStaysWithinTheToleranceInEveryFreshScene) 
   print("fresh", summaries);
 }
 
+TEST(EffectPlannerStudy, TheTrueChangeStaysWithinTheToleranceInEverySceneBehindAir) {
+  constexpr std::uint64_t set = 2, scenes = 60;
+  test::Observers observers;
+  std::map<double, Summary> summaries;
+  for (std::uint64_t k = 0; k < scenes; ++k)
+    hold_against_brute_force(test::random_air_scene(set, k), observers, summaries);
+  print("air", summaries);
+}
+
 }  // namespace
 }  // namespace todbench

@@ -210,5 +210,33 @@ TEST(EffectPlannerProof, TheTrueChangeStaysWithinTheToleranceForRandomScenes) {
   }
 }
 
+TEST(EffectPlannerProof, TheTrueChangeStaysWithinTheToleranceBehindAir) {
+  test::Observers observers;
+  const test::GridScene scene = test::random_air_scene(9, 0);
+  TemplateObserver& observer = observers.of(scene.observer);
+  test::BruteForce brute(scene, observer, 1, 50);
+
+  const auto plan = test::planned(scene, observer, 5);
+
+  ASSERT_TRUE(plan.has_value()) << plan.error().message;
+  EXPECT_LE(std::abs(brute.change(plan->plan, 5).percent), 5) << scene.name;
+}
+
+TEST(EffectPlanner, SimulatesTurbulenceOnlyWhereItMatters) {
+  SensorSpec wide = test::sc2000();
+  wide.turbulence_cn2_m_minus_2_3 = 1e-13;
+  wide.turbulence_path_m = 1000;
+  SensorSpec narrow = wide;
+  narrow.focal_length_mm = 1000;
+
+  const auto skipped = plan_of(wide, {1.93}), simulated = plan_of(narrow, {1.93});
+
+  // The sheet of facts: 1 km at 1e-13 is negligible at 0.38 cycles/mrad and decides at 10.
+  ASSERT_TRUE(skipped && simulated);
+  EXPECT_EQ(decision_of(*skipped, Effect::turbulence).decision, Decision::skip);
+  EXPECT_GT(decision_of(*skipped, Effect::turbulence).predicted_change_percent.value(), 0);
+  EXPECT_EQ(decision_of(*simulated, Effect::turbulence).decision, Decision::simulate);
+}
+
 }  // namespace
 }  // namespace todbench

@@ -9,8 +9,11 @@
 #include "sim_devices/sensor/effect_motion.h"
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/effect_row.h"
+#include "sim_devices/sensor/effect_turbulence.h"
+#include "sim_devices/sensor/image_chain.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "sim_devices/sensor/super_resolution.h"
+#include "sim_devices/sensor/transfer_functions.h"
 #include "tests/sim_devices/prediction/effect_grid.h"
 
 namespace todbench {
@@ -20,6 +23,8 @@ SensorSpec small(int microscan = 1) {
   SensorSpec spec = test::sensor_with_everything(3, microscan);
   spec.width = 64;
   spec.height = 48;
+  spec.turbulence_cn2_m_minus_2_3 = 1e-13;
+  spec.turbulence_path_m = 3000;
   return spec;
 }
 
@@ -296,6 +301,86 @@ TEST(Effects, MotionSmearsAlongItsWayAndLeavesTheCentroid) {
   EXPECT_NEAR(std::arg(h), 0, 1e-7);  // third cumulant: 2 (2 pi f s)^3 / 6
   EXPECT_NEAR(std::abs(h), 1 - 2 * std::pow(std::numbers::pi * f * s, 2), 1e-9);
   EXPECT_EQ(motion_transfer(0, f, {s, 0}), std::complex<double>(1, 0));
+}
+
+/// A narrow field: 15 um behind 1 m, 0.2 m of aperture.
+SensorSpec narrow_field(double cn2) {
+  SensorSpec spec = test::sc2000();
+  spec.pitch_um = 15;
+  spec.detector_um = 14;
+  spec.focal_length_mm = 1000;
+  spec.f_number = 5;
+  spec.turbulence_cn2_m_minus_2_3 = cn2;
+  spec.turbulence_path_m = 2000;
+  return spec;
+}
+
+TEST(Effects, TurbulenceMultipliesTheOpticsByFriedsLongExposure) {
+  for (const double cn2 : {1e-15, 1e-14, 1e-13}) {
+    const SensorSpec spec = narrow_field(cn2);
+    const OpticsMtf with(spec, full_plan(spec, {}, {}), 16);
+    const OpticsMtf without(spec, full_plan(spec, {Effect::turbulence}, {}), 16);
+    const double wavelength_m = turbulent_path(spec)->wavelength_um * 1e-6;
+    const double k = 2 * std::numbers::pi / wavelength_m;
+    // Spherical wave, constant Cn2: the weight (z / L)^(5/3) has the mean 3/8 (Fried 1966).
+    const double r0_m = std::pow(0.423 * k * k * cn2 * 2000 * 3 / 8, -0.6);
+    for (const double per_pitch : {0.05, 0.1, 0.2}) {
+      const double cycles_per_rad = per_pitch * 1000 / spec.ifov_mrad();
+      EXPECT_NEAR(with(per_pitch),
+                  without(per_pitch) * std::exp(-3.44 * std::pow(wavelength_m * cycles_per_rad / r0_m, 5.0 / 3)),
+                  1e-12);
+    }
+  }
+}
+
+// A second way: phases along the aperture drawn as sums of waves of random direction whose structure function is
+// 6.88 (r / r0)^(5/3), as Kolmogorov's; their mean coherence is the transfer function.
+TEST(Effects, TurbulenceIsTheMeanCoherenceOfDrawnPhaseScreens) {
+  const SensorSpec spec = narrow_field(2e-14);
+  const double wavelength_m = turbulent_path(spec)->wavelength_um * 1e-6;
+  const double r0_m = fried_spherical_m(*turbulent_path(spec));
+  const OpticsMtf with(spec, full_plan(spec, {Effect::diffraction}, {}), 16);
+  constexpr int screens = 2000, waves = 90;
+  const std::array separations{0.02, 0.05, 0.1};
+  std::array<double, 3> coherence{};
+  // Structure function of a plane wave of wave number q and random direction: 2 a^2 (1 - J0(q r)); with powers
+  // a^2 = g q^(-5/3) per ln q: 2 g r^(5/3) int x^(-8/3) (1 - J0(x)) dx = 2 g r^(5/3) x 1.1183.
+  const double integral = std::pow(2, -5.0 / 3) * 1.2 * std::tgamma(1.0 / 6) / std::tgamma(11.0 / 6) / 2;
+  const double g = 6.88 * std::pow(r0_m, -5.0 / 3) / (2 * integral);
+  const double lowest = 1e-5, highest = 1e3, step = std::log(highest / lowest) / waves;  // rad/m
+  for (int s = 0; s < screens; ++s) {
+    const RandomStream random = RandomStream(3, "screens").sub(static_cast<std::uint64_t>(s));
+    std::array<double, 3> difference{};
+    for (int n = 0; n < waves; ++n) {
+      const auto at = static_cast<std::uint64_t>(4 * n);
+      const double q = lowest * std::exp(step * (n + random.uniform(at)));
+      const double along = q * std::cos(2 * std::numbers::pi * random.uniform(at + 1));
+      const double amplitude = std::sqrt(2 * g * std::pow(q, -5.0 / 3) * step);
+      const double start = 2 * std::numbers::pi * random.uniform(at + 2);
+      for (std::size_t i = 0; i < separations.size(); ++i)
+        difference[i] += amplitude * (std::cos(start + along * separations[i]) - std::cos(start));
+    }
+    for (std::size_t i = 0; i < separations.size(); ++i) coherence[i] += std::cos(difference[i]) / screens;
+  }
+  for (std::size_t i = 0; i < separations.size(); ++i) {
+    const double per_pitch = separations[i] / wavelength_m / 1000 * spec.ifov_mrad();
+    // Four standard errors of a mean of cosines, at most 1 / sqrt(2 N).
+    EXPECT_NEAR(coherence[i], with(per_pitch), 4 / std::sqrt(2.0 * screens)) << separations[i];
+  }
+}
+
+TEST(Effects, PicturesThroughTurbulenceAreThoseOfTheInfinitePlane) {
+  // Far tails: the same triangle by a lattice and by one twice as long.
+  SensorSpec spec = test::sc2000();
+  spec.turbulence_cn2_m_minus_2_3 = 1e-11;
+  spec.turbulence_path_m = 5000;
+  ASSERT_GT(turbulence_strength(spec), 0.5);
+  const ImageChain chain(spec, full_plan(spec, {}, {}), Accuracy::normal());
+
+  const auto plane = chain.infinite_plane(triangle(3, Apex::up), {-4, -4}, 1, {9, 9});
+
+  const cv::Mat1d lattice = chain.image(triangle(3, Apex::up)).sample({-4, -4}, 1, {9, 9});
+  EXPECT_LT(cv::norm(plane.values, lattice, cv::NORM_INF), Accuracy::normal().wrap_tolerance);
 }
 
 TEST(Effects, SuperResolutionOfShiftedExposuresIsTheSimulatedPicture) {
