@@ -8,6 +8,7 @@
 
 #include "bench/judgement/limit_decision.h"
 #include "bench/judgement/measure_demands.h"
+#include "bench/judgement/zone_demands.h"
 #include "bench/text/text.h"
 #include "tod/psychometric/acuity.h"
 
@@ -348,6 +349,10 @@ const auto& table() {
       measure_row(DemandKind::temperature_scale_at_most),
       measure_row(DemandKind::mtf_x),
       measure_row(DemandKind::mtf_y),
+      zone_row(DemandKind::zone_bad_pixels),
+      zone_row(DemandKind::zone_substituted_pixels),
+      zone_row(DemandKind::zone_clusters),
+      zone_row(DemandKind::zone_largest_cluster),
   };
   return rows;
 }

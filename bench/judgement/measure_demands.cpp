@@ -173,6 +173,10 @@ DemandKindRow measure_row(DemandKind kind) {
     case DemandKind::acuity:
     case DemandKind::identified:
     case DemandKind::equivalence:
+    case DemandKind::zone_bad_pixels:
+    case DemandKind::zone_substituted_pixels:
+    case DemandKind::zone_clusters:
+    case DemandKind::zone_largest_cluster:
       break;
   }
   assert(false && "no measure");

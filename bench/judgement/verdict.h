@@ -58,7 +58,8 @@ struct Demand {
   /// Probability that the demand is met, given the result (decide()). Nothing: not known.
   std::optional<double> p_conformity{};
 
-  std::optional<RatioKind> ratio{};  ///< of a demanded equivalence that could be judged
+  std::optional<std::string> zone{};  ///< of the frame; nothing where the demand is not about one
+  std::optional<RatioKind> ratio{};   ///< of a demanded equivalence that could be judged
 
   /// Specific risks of this decision: of a wrong acceptance where it is to pass, of a wrong rejection where to fail.
   [[nodiscard]] std::optional<double> consumer_risk() const;

@@ -34,6 +34,7 @@ Json demand_json(const Demand& demand) {
   if (demand.statistical) json["statistical_interval"] = json_interval(*demand.statistical);
   json["decision"] = to_string(demand.decision);
   json["reason"] = demand.reason;
+  if (demand.zone) json["zone"] = *demand.zone;
   if (demand.ratio) json["ratio"] = to_string(*demand.ratio);
   if (demand.conformity) {
     json["conformity"] = {{"decision", to_string(*demand.conformity)},
@@ -57,6 +58,7 @@ Demand demand_from(const JsonReader& reader) {
     demand.statistical = statistical.interval();
   demand.decision = reader.at("decision").named(decisions);
   demand.reason = reader.at("reason").text();
+  if (const JsonReader zone = reader.at_if_there("zone"); !zone.is_null()) demand.zone = zone.text();
   if (const JsonReader ratio = reader.at_if_there("ratio"); !ratio.is_null())
     demand.ratio = ratio.named(all_ratio_kinds);
   if (const JsonReader conformity = reader.at_if_there("conformity"); !conformity.is_null()) {

@@ -38,6 +38,9 @@ constexpr const auto& values_of(const ConformityRule&) {
 constexpr const auto& values_of(const LimitedMeasure&) {
   return limited_measures;
 }
+constexpr const auto& values_of(const PixelArea&) {
+  return all_pixel_areas;
+}
 constexpr const auto& values_of(const BudgetDistribution&) {
   return budget_distributions;
 }

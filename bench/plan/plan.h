@@ -121,6 +121,11 @@ enum class DemandKind {
   temperature_scale_at_most,
   mtf_x,
   mtf_y,
+  // Pixels of a zone, [[limits.zone]].
+  zone_bad_pixels,
+  zone_substituted_pixels,
+  zone_clusters,
+  zone_largest_cluster,
 };
 
 /// [[limits.acuity]]: the 75 % acuity demanded at a contrast.
@@ -162,11 +167,24 @@ struct MeasureLimit {
   bool operator==(const MeasureLimit&) const = default;
 };
 
+/// Where a zone named so begins and ends, in place of its own.
+inline constexpr std::string_view whole_frame_zone = "whole";
+
+/// [[limits.zone]]: most pixels of a kind in a part of the frame.
+struct ZoneLimit {
+  std::string name;
+  /// Left, top, right, bottom in fractions of the frame. Default: the middle half of each side.
+  std::vector<double> area{0.25, 0.25, 0.75, 0.75};
+  std::optional<double> bad_pixels{}, substituted_pixels{}, clusters{}, largest_cluster{};
+  bool operator==(const ZoneLimit&) const = default;
+};
+
 /// [limits]
 struct LimitsPlan {
   std::vector<AcuityLimit> acuity;
   std::optional<double> equivalence_margin_percent;  ///< demanded agreement with the twin; nothing: not demanded
   std::vector<MeasureLimit> measures{};
+  std::vector<ZoneLimit> zones{};
   ConformityRule rule = ConformityRule::guarded_acceptance_and_rejection;
   /// Of a wrong acceptance at the acceptance limit, in place of the 95 % interval as guard band.
   std::optional<double> guard_band_risk{};
@@ -191,11 +209,27 @@ struct MeasurementPlan {
   bool operator==(const MeasurementPlan&) const = default;
 };
 
+/// Where pixels are looked at.
+enum class PixelArea {
+  plate,  ///< what the plate covers
+  frame,  ///< everything: the flat field fills the picture
+};
+inline constexpr std::array all_pixel_areas{PixelArea::plate, PixelArea::frame};
+[[nodiscard]] constexpr std::string_view to_string(PixelArea area) {
+  return area == PixelArea::frame ? "frame" : "plate";
+}
+
 /// [measures]: physical measures after the trials, with the same camera and target, and of the twin.
 struct MeasuresPlan {
   bool noise = false;     ///< temporal noise, NETD and 3-D noise, of the first plate at a contrast of 0
   int noise_frames = 64;  ///< of the cube
-  bool transfer = false;  ///< contrast seen over contrast shown
+  bool pixels = false;    ///< bad and substituted ones, from the cube of the noise
+  PixelArea pixels_area = PixelArea::plate;
+  double pixels_response = 0.25;  ///< dead: response off the median's by more than this part of it
+  double pixels_offset = 5;       ///< dead or hot: level off by so many 1.4826 median deviations
+  double pixels_noisy = 3;        ///< temporal noise above so many medians
+  double pixels_blinking = 3;     ///< change of level above so many medians of it
+  bool transfer = false;          ///< contrast seen over contrast shown
   std::vector<double> transfer_steps_k{-4, -2, -1, 1, 2, 4};
   bool mtf = false;                       ///< along both axes, from the edges of a plate of its own
   std::string mtf_plate = "edge";         ///< name or file

@@ -91,6 +91,46 @@ ValueMistakes check_transfer_steps(const Plan& plan, std::size_t /*row*/) {
   return {{std::nullopt, "expected three steps or more that differ, found " + std::to_string(steps.size())}};
 }
 
+ValueMistakes check_pixels(const Plan& plan, std::size_t /*row*/) {
+  constexpr int least_frames = 48;
+  if (!plan.measures.pixels) return {};
+  if (!plan.measures.noise) return {{std::nullopt, "bad pixels are looked for in the cube of noise = true"}};
+  if (plan.measures.noise_frames >= least_frames) return {};
+  return {{std::nullopt, "bad pixels need noise_frames of " + std::to_string(least_frames) + " or more, found " +
+                             std::to_string(plan.measures.noise_frames)}};
+}
+
+ValueMistakes check_zone_name(const Plan& plan, std::size_t row) {
+  const std::string& name = plan.limits.zones[row].name;
+  if (name.empty()) return {{std::nullopt, "a zone needs a name"}};
+  for (std::size_t other = 0; other < row; ++other)
+    if (plan.limits.zones[other].name == name) return {{std::nullopt, "a second zone '" + name + "'"}};
+  if (!plan.measures.pixels) return {{std::nullopt, "limits of a zone need pixels = true in [measures]"}};
+  return {};
+}
+
+ValueMistakes check_zone_area(const Plan& plan, std::size_t row) {
+  const ZoneLimit& zone = plan.limits.zones[row];
+  if (zone.name == whole_frame_zone || zone.area.size() != 4) return {};
+  const auto& a = zone.area;
+  if (!(a[0] < a[2]) || !(a[1] < a[3]))
+    return {{std::nullopt, "expected left below right and top below bottom, as in [0.25, 0.25, 0.75, 0.75]"}};
+  for (std::size_t other = 0; other < row; ++other) {
+    const ZoneLimit& before = plan.limits.zones[other];
+    if (before.name == whole_frame_zone || before.area.size() != 4) continue;
+    const auto& b = before.area;
+    if (a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3])
+      return {{std::nullopt, "zone '" + zone.name + "' overlaps zone '" + before.name + "'"}};
+  }
+  return {};
+}
+
+ValueMistakes check_zone_limits(const Plan& plan, std::size_t row) {
+  const ZoneLimit& zone = plan.limits.zones[row];
+  if (zone.bad_pixels || zone.substituted_pixels || zone.clusters || zone.largest_cluster) return {};
+  return {{std::nullopt, "there is no limit on zone '" + zone.name + "'"}};
+}
+
 ValueMistakes check_mtf_contrast(const Plan& plan, std::size_t /*row*/) {
   if (!plan.measures.mtf || plan.measures.mtf_delta_t_k != 0) return {};
   return {{std::nullopt, "an edge without contrast has no MTF"}};

@@ -29,6 +29,14 @@ using ValueMistakes = std::vector<ValueMistake>;
 [[nodiscard]] ValueMistakes check_estimator(const Plan& plan, std::size_t row);
 /// Three or more that differ.
 [[nodiscard]] ValueMistakes check_transfer_steps(const Plan& plan, std::size_t row);
+/// The noise is measured too, in frames enough to tell a pixel that blinks.
+[[nodiscard]] ValueMistakes check_pixels(const Plan& plan, std::size_t row);
+/// Pixels are measured, and no earlier row has the name.
+[[nodiscard]] ValueMistakes check_zone_name(const Plan& plan, std::size_t row);
+/// Not empty, and beside those of the rows before but for that of the whole frame.
+[[nodiscard]] ValueMistakes check_zone_area(const Plan& plan, std::size_t row);
+/// One limit at least.
+[[nodiscard]] ValueMistakes check_zone_limits(const Plan& plan, std::size_t row);
 /// Not 0 where an MTF is asked for.
 [[nodiscard]] ValueMistakes check_mtf_contrast(const Plan& plan, std::size_t row);
 /// Among the contrasts of the target, and not in an earlier row.

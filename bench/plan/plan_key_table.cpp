@@ -382,6 +382,32 @@ PlanSection measures_section() {
                     .type = WholeKey{5, 10000},
                     .sentence = "of the cube that the noise is measured in",
                     .place = of(&MeasuresPlan::noise_frames)},
+                   {.name = "pixels",
+                    .type = FlagKey{},
+                    .sentence = "bad, blinking and substituted pixels, in the first 256 frames of the noise",
+                    .place = of(&MeasuresPlan::pixels),
+                    .form = {"Look for bad pixels", "planPixels"},
+                    .check = check_pixels},
+                   {.name = "pixels_area",
+                    .type = ChoiceKey{names_of(all_pixel_areas)},
+                    .sentence = "where: what the plate covers, or the frame, where a flat field fills it",
+                    .place = of(&MeasuresPlan::pixels_area)},
+                   {.name = "pixels_response",
+                    .type = NumberKey{NumberRange::above_to(0, 1)},
+                    .sentence = "dead: response to temperature off the median's by more than this part of it",
+                    .place = of(&MeasuresPlan::pixels_response)},
+                   {.name = "pixels_offset",
+                    .type = NumberKey{NumberRange::between(1, 1000)},
+                    .sentence = "dead or hot: level off by so many times 1.4826 median deviations",
+                    .place = of(&MeasuresPlan::pixels_offset)},
+                   {.name = "pixels_noisy",
+                    .type = NumberKey{NumberRange::between(1.5, 1000)},
+                    .sentence = "temporal noise above so many times the median's",
+                    .place = of(&MeasuresPlan::pixels_noisy)},
+                   {.name = "pixels_blinking",
+                    .type = NumberKey{NumberRange::between(2, 1000)},
+                    .sentence = "largest change of level, in its standard uncertainty, in the same way",
+                    .place = of(&MeasuresPlan::pixels_blinking)},
                    {.name = "transfer",
                     .type = FlagKey{},
                     .sentence = "signal transfer: the contrast seen over the contrast shown",
@@ -471,6 +497,38 @@ PlanSection measure_limits_section() {
                 .place = in_row(rows, &MeasureLimit::at_most),
                 .check = check_measure_limits}},
       .rows = rows_of(rows)};
+}
+
+PlanSection zone_limits_section() {
+  const auto rows = [](auto& plan) -> auto& {
+    return plan.limits.zones;
+  };
+  const auto most = [rows](std::string_view name, std::string_view sentence, std::optional<double> ZoneLimit::*member) {
+    return PlanKey{
+        .name = name, .type = OptionalNumberKey{not_negative}, .sentence = sentence, .place = in_row(rows, member)};
+  };
+  PlanSection section{
+      .name = "limits.zone",
+      .sentence = "Most bad and substituted pixels in a part of the frame. Zones do not overlap, but for 'whole'.",
+      .keys = {{.name = "name",
+                .type = TextKey{},
+                .sentence = "of the zone; 'whole' is the frame, whatever its area",
+                .place = in_row(rows, &ZoneLimit::name),
+                .required = Required::always,
+                .check = check_zone_name},
+               {.name = "area",
+                .type = NumbersKey{share, "four numbers: left, top, right, bottom", 4},
+                .sentence = "in fractions of the frame",
+                .place = in_row(rows, &ZoneLimit::area),
+                .check = check_zone_area},
+               most("bad_pixels", "stuck, dead, hot, noisy and blinking ones", &ZoneLimit::bad_pixels),
+               most("substituted_pixels", "that the camera has replaced by their neighbours",
+                    &ZoneLimit::substituted_pixels),
+               most("clusters", "of two bad or substituted pixels that touch, or more", &ZoneLimit::clusters),
+               most("largest_cluster", "pixels", &ZoneLimit::largest_cluster)},
+      .rows = rows_of(rows)};
+  section.keys.back().check = check_zone_limits;
+  return section;
 }
 
 PlanSection acuity_limits_section() {
@@ -675,10 +733,11 @@ PlanSection module_section() {
 
 const std::vector<PlanSection>& plan_sections() {
   static const std::vector<PlanSection> sections{
-      about_section(),       camera_section(),     target_section(),        observer_section(),
-      simulation_section(),  schedule_section(),   fit_section(),           measurement_section(),
-      measures_section(),    limits_section(),     acuity_limits_section(), measure_limits_section(),
-      uncertainty_section(), budget_row_section(), instrument_section(),    module_section()};
+      about_section(),       camera_section(),      target_section(),        observer_section(),
+      simulation_section(),  schedule_section(),    fit_section(),           measurement_section(),
+      measures_section(),    limits_section(),      acuity_limits_section(), measure_limits_section(),
+      zone_limits_section(), uncertainty_section(), budget_row_section(),    instrument_section(),
+      module_section()};
   return sections;
 }
 

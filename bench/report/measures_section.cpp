@@ -7,6 +7,7 @@
 
 #include "bench/report/drawing.h"
 #include "bench/report/number_format.h"
+#include "bench/report/pixel_figures.h"
 #include "bench/report/plot.h"
 #include "bench/report/report_pieces.h"
 
@@ -40,6 +41,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 23> names{{
 }};
 
 std::string name_of(const MeasureLine& line) {
+  if (const std::string name = pixel_measure_name(line.measure); !name.empty())
+    return name + (line.unit == "1" ? "" : " (" + line.unit + ")");
   const auto found =
       std::find_if(names.begin(), names.end(), [&](const auto& row) { return row.first == line.measure; });
   return (found == names.end() ? line.measure : std::string(found->second)) +
@@ -49,6 +52,7 @@ std::string name_of(const MeasureLine& line) {
 RichText value_of(const MeasureLine* line) {
   if (line == nullptr) return missing("not measured");
   if (!line->value) return missing("not known");
+  if (line->ci95.low == line->value && line->ci95.high == line->value) return plain(stated(*line->value));
   if (!line->ci95.low && !line->ci95.high) return plain(significant(*line->value, 3));
   return interval_or_missing(line->value, line->ci95, "not measured");
 }
@@ -210,6 +214,8 @@ std::optional<Section> measures_section(const ReportData& data) {
   if (auto figures = mtf_figures(*data.measures, data.camera.has_value()))
     section.blocks.emplace_back(*std::move(figures));
   if (main && main->picture) section.blocks.emplace_back(plate_figures(*main->picture, twin, data.camera.has_value()));
+  if (auto figures = pixel_figures(*data.measures, data.camera.has_value()))
+    section.blocks.emplace_back(*std::move(figures));
   if (!conditions.empty()) section.blocks.emplace_back(list_of(conditions));
   std::vector<std::string> reasons;
   if (main) reasons = main->reasons;

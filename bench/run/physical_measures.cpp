@@ -31,6 +31,24 @@ void add_closed_form(MtfMeasure& mtf, const SensorModel& model, const Experiment
 
 }  // namespace
 
+namespace {
+
+std::optional<PixelOptions> pixel_options(const Plan& plan) {
+  const MeasuresPlan& measures = plan.measures;
+  if (!measures.pixels) return std::nullopt;
+  PixelOptions options{.whole_frame = measures.pixels_area == PixelArea::frame, .rules = {}, .zones = {}};
+  options.rules.bad = {
+      .dead_responsivity = measures.pixels_response, .noisy = measures.pixels_noisy, .offset = measures.pixels_offset};
+  options.rules.blinking = measures.pixels_blinking;
+  for (const ZoneLimit& zone : plan.limits.zones) {
+    if (zone.name != whole_frame_zone)
+      options.zones.push_back({zone.name, zone.area[0], zone.area[1], zone.area[2], zone.area[3]});
+  }
+  return options;
+}
+
+}  // namespace
+
 bool measures_asked(const Plan& plan) {
   return plan.measures.noise || plan.measures.transfer || plan.measures.mtf;
 }
@@ -43,6 +61,7 @@ Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan, const 
   auto measures = measure_camera(*bench.camera, *bench.target,
                                  {.noise = plan.measures.noise,
                                   .noise_frames = plan.measures.noise_frames,
+                                  .pixels = pixel_options(plan),
                                   .transfer = plan.measures.transfer,
                                   .transfer_steps_k = plan.measures.transfer_steps_k,
                                   .mtf_plate = plan.measures.mtf ? mtf_plate : std::nullopt,

@@ -6,7 +6,6 @@
 #include <array>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 
 #include "bench/text/base64.h"
 #include "bench/text/json_reader.h"
@@ -56,6 +55,41 @@ void add_noise(MeasureLines& out, const CameraMeasures& measures) {
         deviation("noise_" + std::string(to_string(component)), estimate_of(noise.table, component), conditions));
 }
 
+/// "bad_pixels" of the whole frame, "bad_pixels (NAME)" of a zone. What was not seen may hold more.
+void add_pixels(MeasureLines& out, const PixelMeasure& pixels) {
+  for (const PixelMeasure::Zone& zone : pixels.zones) {
+    const ZoneCount& count = zone.count;
+    const std::string name = zone.area.name == "whole" ? "" : " (" + zone.area.name + ")";
+    const std::string conditions =
+        fmt::format("zone '{}': {} of its {} pixels were seen, in {} frames at a contrast of 0", zone.area.name,
+                    count.measured, count.pixels, pixels.defects.frames);
+    const auto line = [&](const char* measure, int found) {
+      Interval most{.low = found, .high = found};
+      if (count.measured < count.pixels) most.high.reset();
+      out.lines.push_back({measure + name, "1", found, most, conditions});
+    };
+    line("bad_pixels", count.bad);
+    line("substituted_pixels", count.substituted);
+    line("defect_clusters", count.clusters);
+    line("largest_cluster", count.largest_cluster);
+    if (count.measured > 0)
+      out.lines.push_back({"operability" + name, "%", 100.0 * (1 - 1.0 * count.bad / count.measured), {}, conditions});
+  }
+  for (const PixelDefect kind : pixel_defect_kinds) {
+    if (kind == PixelDefect::substituted) continue;
+    out.lines.push_back(
+        {"pixels_" + std::string(to_string(kind)),
+         "1",
+         static_cast<double>(cv::countNonZero(pixels.defects.of(kind))),
+         {},
+         kind == PixelDefect::unresponsive
+             ? fmt::format("of the {} pixels whose response was seen in the middle of triangles",
+                           pixels.defects.response_tested)
+             : fmt::format("of the {} x {} pixels that were seen", pixels.field.width, pixels.field.height)});
+  }
+  for (const std::string& sentence : pixels.defects.not_tested) out.reasons.push_back("pixels: " + sentence);
+}
+
 void add_transfer(MeasureLines& out, const TransferMeasure& transfer) {
   const SignalTransfer& line = transfer.line;
   const double t = quantile(boost::math::students_t(line.degrees_of_freedom), 0.975);
@@ -100,16 +134,6 @@ void add_mtf(MeasureLines& out, const MtfMeasure& mtf) {
   out.mtf = MtfCurves{mtf.pitch_mrad, mtf.edges};
 }
 
-/// A grey PNG as base64; values below `black` are black, above `white` white.
-std::string panel_png(const cv::Mat1d& values, double black, double white) {
-  cv::Mat1b grey;
-  const double span = std::max(white - black, 1e-9);
-  values.convertTo(grey, CV_8U, 255 / span, -255 * black / span);
-  std::vector<unsigned char> png;
-  if (!cv::imencode(".png", grey, png)) return "";
-  return base64({reinterpret_cast<const char*>(png.data()), png.size()});
-}
-
 PlatePanels panels_of(const PlatePicture& picture) {
   const cv::Mat1d& seen = picture.seen.kelvin;
   PlatePanels panels;
@@ -117,9 +141,9 @@ PlatePanels panels_of(const PlatePicture& picture) {
   cv::minMaxLoc(picture.expected_k, &panels.black_k, &panels.white_k);
   constexpr double shown = 4;  // standard deviations of the residual to either side
   panels.difference_k = std::max(shown * picture.residual_k, 1e-9);
-  panels.seen = panel_png(seen, panels.black_k, panels.white_k);
-  panels.expected = panel_png(picture.expected_k, panels.black_k, panels.white_k);
-  panels.difference = panel_png(seen - picture.expected_k, -panels.difference_k, panels.difference_k);
+  panels.seen = grey_png(seen, panels.black_k, panels.white_k);
+  panels.expected = grey_png(picture.expected_k, panels.black_k, panels.white_k);
+  panels.difference = grey_png(seen - picture.expected_k, -panels.difference_k, panels.difference_k);
   for (Polygon outline : picture.outlines) {
     for (cv::Point2d& p : outline) p -= cv::Point2d(picture.seen.field.tl());
     panels.outlines.push_back(std::move(outline));
@@ -302,7 +326,9 @@ Json side_json(const std::optional<CameraMeasures>& measures) {
   return {{"quantities", lines},
           {"noise", measures->noise ? noise_json(*measures->noise) : Json()},
           {"transfer", measures->transfer ? transfer_json(*measures->transfer) : Json()},
+          {"pixels", measures->pixels ? pixels_json(*measures->pixels) : Json()},
           {"mtf", measures->mtf ? mtf_json(*measures->mtf) : Json()},
+          {"maps", pixel_maps_json(found.maps)},
           {"picture", found.picture ? panels_json(*found.picture) : Json()},
           {"reasons", found.reasons}};
 }
@@ -320,6 +346,7 @@ bool complete(const std::optional<MeasureLines>& side) {
 
 /// What a page shows as it is has to be what it says.
 bool drawable(const std::optional<MeasureLines>& side) {
+  if (side && !drawable(side->maps)) return false;
   if (!side || !side->picture) return true;
   const PlatePanels& panels = *side->picture;
   return panels.width > 0 && panels.height > 0 && is_base64(panels.seen) && is_base64(panels.expected) &&
@@ -337,6 +364,7 @@ std::optional<MeasureLines> side_from(const JsonReader& side) {
   if (!mtf.is_null()) found.mtf = mtf_from(mtf);
   const JsonReader picture = side.at_if_there("picture");
   if (!picture.is_null()) found.picture = panels_from(picture);
+  found.maps = pixel_maps_from(side.at_if_there("maps"));
   found.reasons = side.at("reasons").texts();
   return found;
 }
@@ -347,8 +375,10 @@ MeasureLines measure_lines(const CameraMeasures& measures) {
   MeasureLines found;
   if (measures.transfer) add_transfer(found, *measures.transfer);
   if (measures.noise) add_noise(found, measures);
+  if (measures.pixels) add_pixels(found, *measures.pixels);
   if (measures.mtf) add_mtf(found, *measures.mtf);
   if (measures.picture) add_picture(found, *measures.picture);
+  found.maps = pixel_maps(measures);
   found.reasons.insert(found.reasons.end(), measures.reasons.begin(), measures.reasons.end());
   return found;
 }

@@ -7,6 +7,7 @@
 
 #include "acquisition/core/result.h"
 #include "bench/judgement/verdict.h"
+#include "bench/session/pixel_record.h"
 #include "bench/text/json.h"
 #include "tod/camera_measures/camera_measures.h"
 
@@ -42,6 +43,7 @@ struct MeasureLines {
   std::vector<MeasureLine> lines;
   std::optional<MtfCurves> mtf{};
   std::optional<PlatePanels> picture{};
+  std::vector<PixelMap> maps{};
   std::vector<std::string> reasons;
 };
 [[nodiscard]] MeasureLines measure_lines(const CameraMeasures& measures);
@@ -55,8 +57,8 @@ struct SessionMeasures {
   std::optional<MeasureLines> twin;
 };
 
-/// {"main": {"quantities": [...], "noise": {...}, "transfer": {...}, "mtf": {...}, "picture": {...},
-/// "reasons": [...]}, "twin": the same
+/// {"main": {"quantities": [...], "noise": {...}, "transfer": {...}, "pixels": {...}, "mtf": {...}, "maps": [...],
+/// "picture": {...}, "reasons": [...]}, "twin": the same
 /// or null}
 [[nodiscard]] Json measures_json(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin);
 /// `invalid_input`, naming the key, for a record that is not complete or of other types.

@@ -20,6 +20,11 @@ const std::vector<SensorKey>& camera_keys() {
       {"frame_rate_hz", &SensorSpec::frame_rate_hz, NumberRange::positive(), optional, "frames per second"},
       {"scene_temperature_k", &SensorSpec::scene_temperature_k, NumberRange::between(50, 5000), optional,
        "of the surround; weights the wavelengths"},
+      {"defective_pixel_share", &SensorSpec::defective_pixel_share, NumberRange::between(0, 0.1), optional,
+       "of the detectors: stuck, hot, noisy or blinking ones, which frames show and estimates without frames leave "
+       "out"},
+      {"defect_seed", &SensorSpec::defect_seed, NumberRange::between(0, 1000000000), optional,
+       "says which detectors are defective, and how: of the array, not of the run"},
   };
   return keys;
 }

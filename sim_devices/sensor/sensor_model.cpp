@@ -12,6 +12,7 @@
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/effect_row.h"
 #include "sim_devices/sensor/image_chain.h"
+#include "sim_devices/sensor/pixel_faults.h"
 #include "sim_devices/sensor/scene_image.h"
 
 namespace todbench {
@@ -49,6 +50,7 @@ struct SensorModel::State {
   std::uint64_t seed;
   std::vector<const stage::Noise*> noises;  ///< new in every exposure
   cv::Mat1f fixed_noise;                    ///< of all that is the same in every frame, kelvin; empty: none
+  std::vector<PixelFault> faults;
   std::vector<PictureStage> picture_stages;
   mutable std::mutex mutex;
   mutable std::deque<std::pair<PlateScene, std::shared_ptr<const cv::Mat1f>>> scenes;
@@ -58,6 +60,7 @@ struct SensorModel::State {
 
   State(SensorSpec s, SensorPlan p, Accuracy a, std::uint64_t seed_of_all)
       : spec(as_planned(std::move(s), p)), plan(std::move(p)), accuracy(a), seed(seed_of_all) {
+    faults = pixel_faults(spec);
     const NoiseStreams streams = [this](std::string_view name, std::uint64_t) { return stream(name); };
     for (const Effect effect : all_effects) {
       if (!plan.simulates(effect) || is_neutral(spec, effect)) continue;
@@ -187,6 +190,7 @@ cv::Mat1f SensorModel::State::analog(const cv::Mat1f& unit, double delta_t_k, st
     const auto* fixed = fixed_noise.ptr<float>();
     for (std::size_t i = 0; i < count; ++i) pixels[i] += fixed[i];
   }
+  if (!faults.empty()) show_faults(out, faults, spec, stream("faults").sub(index), index);
   for (const PictureStage& stage : picture_stages) stage(out);
   return out;
 }

@@ -39,6 +39,8 @@ struct SensorSpec {
   double row_noise_k = 0;             ///< sd of an offset per detector row, new in every exposure
   double column_noise_k = 0;          ///< the same per column
   double dead_pixel_share = 0;        ///< of the detectors; the camera shows the mean of the live neighbours instead
+  double defective_pixel_share = 0;   ///< of the detectors: stuck, hot, noisy or blinking (pixel_faults.h), not hidden
+  int defect_seed = 1;                ///< says which: of the array, not of the run
   int frames_averaged = 1;            ///< exposures averaged into one frame
   int super_resolution_frames = 0;    ///< exposures, displaced by half a pitch, on a grid twice as fine; multiple of 4
   DisplayReconstruction display = DisplayReconstruction::sample_and_hold;

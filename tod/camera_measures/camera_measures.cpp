@@ -16,6 +16,30 @@ namespace {
 constexpr int least_side_px = 8;
 constexpr int attempts = 3;  // to take a cube with no correction in it
 
+/// Standard deviation in time of each pixel, changes of whole frames left out.
+class PixelSquares {
+ public:
+  void add(const cv::Mat1d& frame) {
+    cv::Mat1d change = frame.clone();
+    if (first_.empty()) first_ = frame.clone(), sum_ = cv::Mat1d::zeros(frame.size()), squares_ = sum_.clone();
+    change -= first_;
+    change -= cv::mean(change)[0];
+    sum_ += change;
+    squares_ += change.mul(change);
+    ++frames_;
+  }
+  /// Precondition: two frames or more.
+  [[nodiscard]] cv::Mat1d sd() const {
+    cv::Mat1d variance = (squares_ - sum_.mul(sum_) / frames_) / (frames_ - 1.0), root;
+    cv::sqrt(cv::max(variance, 0.0), root);
+    return root;
+  }
+
+ private:
+  int frames_ = 0;
+  cv::Mat1d first_, sum_, squares_;
+};
+
 class Run {
  public:
   Run(FrameSource& source, Target& target, const CameraMeasuresOptions& options, MeasurementHost& host,
@@ -53,6 +77,8 @@ class Run {
         measures.noise = *std::move(noise);
       else if (auto kept = keep("noise", noise.error()); !kept)
         return tl::unexpected(kept.error());
+      measures.pixels = std::move(pixels_);
+      if (!pixel_reason_.empty()) measures.reasons.push_back(pixel_reason_);
     }
     // Last: the plate changes.
     if (options_.mtf_plate) {
@@ -135,6 +161,7 @@ class Run {
       if (!picture) return tl::unexpected(picture.error());
       const auto seen = effective_contrast(picture->kelvin, plate(), where_, options_.measurement.min_reference_px);
       if (!seen) return tl::unexpected(seen.error());
+      if (options_.pixels) step_pictures_.push_back({shown->state.delta_t_k, picture->kelvin.clone()});
       transfer.steps.push_back({set_k, shown->state.delta_t_k, seen->value / divisor, seen->standard_error / divisor});
     }
     std::vector<TemperatureStep> steps;
@@ -204,7 +231,24 @@ class Run {
   struct Cube {
     NoiseCube frames;
     NoiseMeasure measure;
+    PixelSquares squares;
+    std::vector<cv::Mat1f> pixel_frames{};  ///< of the window in which pixels are looked at
   };
+
+  /// Where pixels are told apart.
+  [[nodiscard]] cv::Rect pixel_window(const cv::Rect& field) const {
+    return options_.pixels->whole_frame ? cv::Rect(0, 0, source_.info().width, source_.info().height) : field;
+  }
+
+  Result<void> keep_pixels(Cube& cube, const Frame& frame, const cv::Rect& field) const {
+    if (!options_.pixels || cube.pixel_frames.size() >= most_pixel_frames) return {};
+    const auto kelvin = window_kelvin(frame, pixel_window(field));
+    if (!kelvin) return tl::unexpected(kelvin.error());
+    cv::Mat1f single;
+    kelvin->convertTo(single, CV_32F);
+    cube.pixel_frames.push_back(std::move(single));
+    return {};
+  }
 
   /// Frames with no correction between them; nothing where one came.
   Result<std::optional<Cube>> take_cube(const cv::Rect& field) {
@@ -219,6 +263,8 @@ class Run {
       const auto kelvin = window_kelvin(*frame, field);
       if (!kelvin) return tl::unexpected(kelvin.error());
       if (auto added = cube.frames.add(*kelvin); !added) return tl::unexpected(added.error());
+      cube.squares.add(*kelvin);
+      if (auto kept = keep_pixels(cube, *frame, field); !kept) return tl::unexpected(kept.error());
       if (k == 0) cube.measure.first_frame = frame->sequence;
       cube.measure.last_frame = frame->sequence;
       if (since_s >= 0) cube.measure.since_correction_s = since_s;
@@ -240,7 +286,32 @@ class Run {
     if (!cube) return fail(ErrorCode::integrity, "the camera corrects itself too often for a cube of frames");
     if (const auto change = cube->frames.abrupt_change())
       return fail(ErrorCode::integrity, fmt::format("the picture changed before frame {} of the cube", *change + 1));
-    return summed_up(*cube);
+    auto noise = summed_up(*cube);
+    if (!noise) return tl::unexpected(noise.error());
+    noise->field = *where;
+    if (options_.pixels) tell_pixels(*cube, *where, *noise);
+    return noise;
+  }
+
+  /// Temperature of a count where the frames are; nothing: the scale is not known.
+  [[nodiscard]] std::optional<double> kelvin_per_count(double at_k) const {
+    const auto& scale = source_.info().scale;
+    const auto counts = scale.counts(at_k);
+    const auto kelvin = counts ? scale.kelvin_per_count(*counts) : std::nullopt;
+    return kelvin && *kelvin > 0 ? kelvin : std::nullopt;
+  }
+
+  void tell_pixels(const Cube& cube, const cv::Rect& field, const NoiseMeasure& noise) {
+    const cv::Rect window = pixel_window(field);
+    PixelScene scene{.shading = {}, .responsivity = {}, .unit_per_count = kelvin_per_count(noise.mean_k)};
+    if (step_pictures_.size() > 2)
+      scene.responsivity = responsivity_in_triangles(step_pictures_, plate(), where_, window, field);
+    auto found = measure_pixels(cube.pixel_frames, {source_.info().width, source_.info().height}, window,
+                                std::move(scene), *options_.pixels);
+    if (found)
+      pixels_ = *std::move(found);
+    else
+      pixel_reason_ = "pixels: " + found.error().message;
   }
 
   Result<NoiseMeasure> summed_up(const Cube& cube) const {
@@ -254,11 +325,10 @@ class Run {
     noise.mean_k = cv::mean(mean)[0];
     noise.shading_range_k = shading.range, noise.shading_sd_k = shading.sd;
     noise.lag1_correlation = cube.frames.lag1_correlation();
-    const auto& scale = source_.info().scale;
-    const auto counts = scale.counts(noise.mean_k);
-    const auto per_count = counts ? scale.kelvin_per_count(*counts) : std::nullopt;
-    if (per_count && *per_count > 0)
-      noise.noise_counts = std::sqrt(std::max(0.0, temporal_variance(*table).variance)) / *per_count;
+    noise.pixel_sd_k = cube.squares.sd();
+    noise.pattern_k = mean - noise.mean_k - shading.surface;
+    const auto per_count = kelvin_per_count(noise.mean_k);
+    if (per_count) noise.noise_counts = std::sqrt(std::max(0.0, temporal_variance(*table).variance)) / *per_count;
     return noise;
   }
 
@@ -270,6 +340,9 @@ class Run {
   FrameTaker taker_;
   Registration where_;
   std::optional<PlateView> view_;
+  std::vector<ContrastPicture> step_pictures_;  ///< of the signal transfer
+  std::optional<PixelMeasure> pixels_;
+  std::string pixel_reason_;
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "acquisition/core/frame_source.h"
 #include "tod/camera_measures/edge_measure.h"
+#include "tod/camera_measures/pixel_measure.h"
 #include "tod/measurement/measurement.h"
 #include "tod/measures/signal_transfer.h"
 #include "tod/measures/three_d_noise.h"
@@ -18,6 +19,7 @@ namespace todbench {
 struct CameraMeasuresOptions {
   bool noise = false;                      ///< temporal noise, NETD and 3-D noise, at a contrast of 0
   int noise_frames = 64;                   ///< of the cube, at least 5
+  std::optional<PixelOptions> pixels{};    ///< bad and substituted pixels in the cube of the noise; nothing: none
   bool transfer = false;                   ///< signal transfer from the steps below
   std::vector<double> transfer_steps_k;    ///< contrasts that are shown, three or more
   std::optional<TargetPlate> mtf_plate{};  ///< in identity mounting; nothing: no MTF
@@ -39,6 +41,9 @@ struct NoiseMeasure {
   double shading_range_k = 0, shading_sd_k = 0;
   std::optional<double> lag1_correlation{};
   std::optional<double> noise_counts{};  ///< temporal, in steps of the camera's counts; nothing: not known
+  cv::Rect field{};                      ///< of the frame
+  cv::Mat1d pixel_sd_k{};                ///< temporal noise of each pixel, changes of whole frames left out
+  cv::Mat1d pattern_k{};                 ///< mean frame without its mean and shading
 };
 
 /// One step of the signal transfer.
@@ -88,6 +93,7 @@ struct PlatePicture {
 /// What was measured. A measure that was asked for and is not there has its reason in `reasons`.
 struct CameraMeasures {
   std::optional<NoiseMeasure> noise{};
+  std::optional<PixelMeasure> pixels{};
   std::optional<TransferMeasure> transfer{};
   std::optional<MtfMeasure> mtf{};
   std::optional<PlateView> view{};        ///< where the plate was found

@@ -122,6 +122,32 @@ TEST(MeasureLimits, OnAnMtfAreLowerOnes) {
   EXPECT_EQ(verdict.decision, VerdictKind::fail);
 }
 
+TEST(ZoneLimits, AreDemandsOnWhatWasSeenOfTheZone) {
+  LimitsPlan limits;
+  limits.zones = {{.name = "centre", .bad_pixels = 0, .clusters = 0},
+                  {.name = "whole", .bad_pixels = 10, .substituted_pixels = 3}};
+
+  const Verdict verdict = judged(limits, {{"bad_pixels (centre)", 0, {0, 0}},
+                                          {"defect_clusters (centre)", 1, {1, 1}},
+                                          {"bad_pixels", 8, {8, std::nullopt}},
+                                          {"substituted_pixels", 4, {4, std::nullopt}}});
+
+  const auto decision_in = [&](DemandKind kind, const std::string& zone) {
+    for (const Demand& demand : verdict.demands)
+      if (demand.kind == kind && demand.zone == zone) return demand.decision;
+    ADD_FAILURE() << to_string(kind) << " of " << zone;
+    return VerdictKind::inconclusive;
+  };
+  EXPECT_EQ(decision_in(DemandKind::zone_bad_pixels, "centre"), VerdictKind::pass);
+  EXPECT_EQ(decision_in(DemandKind::zone_clusters, "centre"), VerdictKind::fail);
+  // There may be more where nobody looked; too many are too many.
+  EXPECT_EQ(decision_in(DemandKind::zone_bad_pixels, "whole"), VerdictKind::inconclusive);
+  EXPECT_EQ(decision_in(DemandKind::zone_substituted_pixels, "whole"), VerdictKind::fail);
+  const auto back = verdict_from(verdict_json(verdict));
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(verdict_json(*back).dump(), verdict_json(verdict).dump());
+}
+
 TEST(MeasureLimits, CountTheScaleOfTheBudget) {
   LimitsPlan limits;
   limits.measures = {{LimitedMeasure::netd, std::nullopt, 0.060}, {LimitedMeasure::noise_vh, std::nullopt, 0.060}};

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/bench/run/edge_coverage.h"
+#include "tests/bench/run/pixel_coverage.h"
 
 namespace todbench {
 namespace {
@@ -17,6 +18,24 @@ TEST(PlateEdgesStudy, HoldTheMtfOfTheSensorModel) {
       EXPECT_GT(coverage->within[k], 0.95 - 4 * 0.005);
     }
     EXPECT_EQ(coverage->single_sided, 0);
+  }
+}
+
+TEST(PixelDefectsStudy, FindsWhatIsThereAndLittleElse) {
+  const testing::PixelCamera cameras[] = {{}, {.frames = 48}, {.noise_correlation = 0.6}, {.kelvin_per_count = 0.06}};
+  for (const testing::PixelCamera& camera : cameras) {
+    testing::PixelCoverage sum;
+    const std::uint64_t seeds = &camera == &cameras[0] ? 200 : 50;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) testing::add_pixel_coverage(sum, camera, seed);
+    fmt::print("{} seeds, {} frames, correlation {}, {} K a count:", seeds, camera.frames, camera.noise_correlation,
+               camera.kelvin_per_count);
+    for (std::size_t k = 0; k < sum.there.size(); ++k)
+      fmt::print(" {} {} of {},", to_string(pixel_fault_kinds[k]), sum.found[k], sum.there[k]);
+    fmt::print(" substituted {} of {}; of {} live ones {} bad, {} substituted\n", sum.substituted_found,
+               sum.substituted, sum.live, sum.bad_by_chance, sum.substituted_by_chance);
+    for (std::size_t k = 0; k < sum.there.size(); ++k) EXPECT_GE(sum.found[k], 0.99 * sum.there[k]);
+    EXPECT_GE(sum.substituted_found, 0.99 * sum.substituted);
+    EXPECT_LE(sum.bad_by_chance + sum.substituted_by_chance, 4e-6 * sum.live);
   }
 }
 

@@ -16,6 +16,8 @@
 #include "bench/session/measures_record.h"
 #include "bench/session/open_session.h"
 #include "bench/text/base64.h"
+#include "bench/text/files.h"
+#include "sim_devices/sensor/pixel_faults.h"
 #include "tests/bench/run/edge_coverage.h"
 #include "tests/support/temporary_folder.h"
 
@@ -333,6 +335,83 @@ TEST(PlatePictures, OfARecordAreBase64AndNothingElse) {
   ASSERT_TRUE(measures_from(record));
   record["main"]["picture"]["seen_png"] = "\"/><script>";
   EXPECT_FALSE(measures_from(record));
+}
+
+TEST(PhysicalMeasures, FindTheDefectsOfTheArrayAndJudgeThemByZones) {
+  const TemporaryFolder folder;
+  Plan plan = measures_plan();
+  plan.measures.noise_frames = 48;
+  plan.measures.pixels = true;
+  plan.measures.pixels_area = PixelArea::frame;
+  plan.limits.zones = {{.name = "whole", .bad_pixels = 1000, .substituted_pixels = 0},
+                       {.name = "corner", .area = {0, 0, 0.1, 0.1}, .clusters = 20}};
+  plan.simulation.sensor = (folder.path() / "faulty.toml").string();
+  ASSERT_TRUE(
+      write_file_atomically(plan.simulation.sensor, find_resource(ResourceKind::sensor, "sc2000")->text +
+                                                        "dead_pixel_share = 0.0005\ndefective_pixel_share = 0.001\n"));
+  const SensorSpec sensor = *load_sensor(plan.simulation.sensor);
+
+  const auto outcome = simulate_plan(plan, {.folder = folder.path() / "session"}, {}, {});
+
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  ASSERT_TRUE(outcome->measures && outcome->measures->pixels);
+  const auto faults = pixel_faults(sensor);
+  ASSERT_GT(faults.size(), 40u);
+  const PixelDefects& found = outcome->measures->pixels->defects;
+  int missed = 0;
+  for (const PixelFault& fault : faults) missed += found.bad(fault.detector) == 0 ? 1 : 0;
+  // A fault beside a pixel that the camera replaces is not missed; five more of a level are there by chance in 1e-9.
+  EXPECT_EQ(missed, 0);
+  EXPECT_GT(found.response_tested, 0);  // the largest triangles are 5 pixels large
+  const auto session = open_session(folder.path() / "session", {});
+  ASSERT_TRUE(session) << session.error().message;
+  const auto* bad = line_of(session->measures->main, "bad_pixels");
+  ASSERT_NE(bad, nullptr);
+  EXPECT_GE(bad->value.value(), static_cast<double>(faults.size()));
+  // What a replaced pixel takes over from a faulty neighbour makes it bad too: at most four for each.
+  EXPECT_LE(bad->value.value(), static_cast<double>(faults.size()) + 6);
+  ASSERT_TRUE(session->verdict);
+  for (const Demand& demand : session->verdict->demands) {
+    if (demand.kind == DemandKind::zone_bad_pixels) {
+      EXPECT_EQ(demand.decision, VerdictKind::pass) << demand.reason;
+    }
+    if (demand.kind == DemandKind::zone_substituted_pixels) {
+      EXPECT_EQ(demand.decision, VerdictKind::fail) << demand.reason;
+    }
+  }
+  ASSERT_EQ(session->measures->main->maps.size(), 3u);
+  const auto data = report_data(*session, "session");
+  ASSERT_TRUE(data) << data.error().message;
+  const std::string page = render_report(*data);
+  for (const char* id : {"pixels-main-temporal-noise", "pixels-main-fixed-pattern", "pixels-main-defects"})
+    EXPECT_THAT(page, HasSubstr(id));
+}
+
+TEST(PhysicalMeasures, ZonesThatOverlapAreRefused) {
+  Plan plan = measures_plan();
+  plan.measures.noise_frames = 64;
+  plan.measures.pixels = true;
+  plan.limits.zones = {{.name = "whole", .bad_pixels = 10},
+                       {.name = "centre", .bad_pixels = 0},
+                       {.name = "left", .area = {0, 0, 0.25, 1}, .bad_pixels = 3}};
+  EXPECT_TRUE(validate(plan));
+
+  plan.limits.zones[2].area[2] = 0.26;
+  const auto overlapping = validate(plan);
+  ASSERT_FALSE(overlapping);
+  EXPECT_THAT(overlapping.error().message, HasSubstr("overlaps zone 'centre'"));
+  plan.limits.zones[2].area = {0.3, 0, 0.1, 1};
+  EXPECT_FALSE(validate(plan));
+  plan.limits.zones.pop_back();
+  plan.limits.zones[1].bad_pixels.reset();
+  EXPECT_FALSE(validate(plan));
+  plan.limits.zones.pop_back();
+  plan.measures.noise_frames = 47;
+  EXPECT_FALSE(validate(plan));
+  plan.measures.noise_frames = 48;
+  EXPECT_TRUE(validate(plan));
+  plan.measures.noise = false;
+  EXPECT_FALSE(validate(plan));
 }
 
 TEST(PhysicalMeasures, ArePlannedWithThreeStepsOrMore) {

@@ -1,0 +1,78 @@
+#include "bench/report/pixel_figures.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "bench/report/number_format.h"
+
+namespace todbench {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, 10> pixel_measures{{
+    {"bad_pixels", "Bad pixels"},
+    {"substituted_pixels", "Substituted pixels"},
+    {"defect_clusters", "Clusters of defective pixels"},
+    {"largest_cluster", "Largest cluster, pixels"},
+    {"operability", "Operability"},
+    {"pixels_stuck", "Stuck pixels"},
+    {"pixels_offset", "Dead or hot pixels, by level"},
+    {"pixels_unresponsive", "Dead pixels, by response"},
+    {"pixels_noisy", "Noisy pixels"},
+    {"pixels_blinking", "Blinking pixels"},
+}};
+
+/// What a map shows and what its greys or colours mean.
+std::pair<std::string, std::string> words_of(const PixelMap& map) {
+  const auto kelvin = [](double value) { return significant(value, 3) + " K"; };
+  const std::string greys = ": " + kelvin(map.black_k) + " black to " + kelvin(map.white_k) + " white";
+  if (map.name == "temporal_noise") return {"Temporal noise of each pixel", greys};
+  if (map.name == "fixed_pattern") return {"Fixed pattern, without shading", greys};
+  if (map.name != "defects") return {map.name, greys};
+  std::string colours = ", each drawn larger than it is; ";
+  for (const DefectColour& colour : defect_colours()) colours += std::string(colour.words) + ", ";
+  return {"Bad and substituted pixels", colours + "not looked at: grey"};
+}
+
+Figure map_figure(const PixelMap& map, const std::string& who, const std::string& id) {
+  constexpr double width = 430;
+  const auto [title, meaning] = words_of(map);
+  Drawing drawing;
+  drawing.id = "pixels-" + id;
+  for (char c : map.name) drawing.id += c == '_' ? '-' : c;
+  drawing.title = title + ", " + who;
+  drawing.description = title + meaning;
+  drawing.width = width, drawing.height = width * map.height / map.width;
+  drawing.frame = {0, 0, drawing.width, drawing.height};
+  drawing.inside.push_back({.shape = Raster{drawing.frame, map.png}});
+  return {std::move(drawing), title + ", " + who + meaning};
+}
+
+}  // namespace
+
+std::optional<FigurePairs> pixel_figures(const SessionMeasures& measures, bool camera) {
+  FigurePairs figures;
+  const std::vector<PixelMap> none;
+  const std::vector<PixelMap>& main = measures.main ? measures.main->maps : none;
+  const std::vector<PixelMap>& twin = measures.twin ? measures.twin->maps : none;
+  for (const PixelMap& map : main) {
+    figures.figures.push_back(map_figure(map, camera ? "camera" : "simulated sensor", "main-"));
+    const auto same = std::find_if(twin.begin(), twin.end(), [&](const PixelMap& one) { return one.name == map.name; });
+    if (same != twin.end()) figures.figures.push_back(map_figure(*same, "simulated twin", "twin-"));
+  }
+  if (figures.figures.empty()) return std::nullopt;
+  return figures;
+}
+
+std::string pixel_measure_name(std::string_view measure) {
+  const std::size_t zone = measure.find(" (");
+  const std::string_view base = measure.substr(0, zone);
+  for (const auto& [name, words] : pixel_measures) {
+    if (name != base) continue;
+    if (zone == std::string_view::npos) return std::string(words);
+    return std::string(words) + " in zone '" + std::string(measure.substr(zone + 2, measure.size() - zone - 3)) + "'";
+  }
+  return "";
+}
+
+}  // namespace todbench

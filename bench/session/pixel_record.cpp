@@ -1,0 +1,156 @@
+#include "bench/session/pixel_record.h"
+
+#include <algorithm>
+#include <opencv2/imgcodecs.hpp>
+#include <utility>
+
+#include "bench/text/base64.h"
+#include "tod/measures/medians.h"
+
+namespace todbench {
+namespace {
+
+constexpr std::size_t most_listed = 5000;
+
+std::string png_text(const cv::Mat& picture) {
+  std::vector<unsigned char> png;
+  if (!cv::imencode(".png", picture, png)) return "";
+  return base64({reinterpret_cast<const char*>(png.data()), png.size()});
+}
+
+/// Four standard deviations to both sides of the median, as normal values would have them.
+std::pair<double, double> grey_range(const cv::Mat1d& values) {
+  constexpr double shown = 4;
+  const double middle = median_of(values), reach = std::max(shown * 1.4826 * median_deviation_of(values), 1e-6);
+  return {middle - reach, middle + reach};
+}
+
+PixelMap grey_map(std::string name, const cv::Mat1d& values, std::pair<double, double> range) {
+  return {std::move(name), values.cols,  values.rows,
+          range.first,     range.second, grey_png(values, range.first, range.second)};
+}
+
+/// A pixel is drawn with those round it, so that it is seen on paper.
+PixelMap defect_map(const PixelMeasure& pixels) {
+  cv::Mat3b picture(pixels.frame, cv::Vec3b(160, 160, 160));
+  picture(pixels.field).setTo(cv::Scalar(255, 255, 255));
+  for (const DefectColour& colour : defect_colours()) {
+    const cv::Mat1b& found = pixels.defects.of(colour.kind);
+    for (int y = 0; y < found.rows; ++y) {
+      for (int x = 0; x < found.cols; ++x) {
+        if (found(y, x) == 0) continue;
+        const cv::Rect mark(x + pixels.field.x - 1, y + pixels.field.y - 1, 3, 3);
+        picture(mark & cv::Rect({0, 0}, pixels.frame)).setTo(cv::Scalar(colour.blue, colour.green, colour.red));
+      }
+    }
+  }
+  return {"defects", picture.cols, picture.rows, 0, 0, png_text(picture)};
+}
+
+Json rectangle_json(const cv::Rect& rectangle) {
+  return {rectangle.x, rectangle.y, rectangle.width, rectangle.height};
+}
+
+}  // namespace
+
+const std::array<DefectColour, pixel_defect_kinds.size()>& defect_colours() {
+  // Okabe and Ito 2008.
+  static constexpr std::array<DefectColour, pixel_defect_kinds.size()> colours{
+      DefectColour{PixelDefect::offset, "dead or hot by level: vermilion", 213, 94, 0},
+      DefectColour{PixelDefect::unresponsive, "dead by response: yellow", 240, 200, 0},
+      DefectColour{PixelDefect::noisy, "noisy: blue", 0, 114, 178},
+      DefectColour{PixelDefect::blinking, "blinking: purple", 204, 121, 167},
+      DefectColour{PixelDefect::stuck, "stuck: black", 0, 0, 0},
+      DefectColour{PixelDefect::substituted, "substituted: green", 0, 158, 115}};
+  return colours;
+}
+
+std::string grey_png(const cv::Mat1d& values, double black, double white) {
+  cv::Mat1b grey;
+  const double span = std::max(white - black, 1e-9);
+  values.convertTo(grey, CV_8U, 255 / span, -255 * black / span);
+  return png_text(grey);
+}
+
+std::vector<PixelMap> pixel_maps(const CameraMeasures& measures) {
+  std::vector<PixelMap> maps;
+  if (measures.noise && !measures.noise->pixel_sd_k.empty()) {
+    const cv::Mat1d& sd = measures.noise->pixel_sd_k;
+    maps.push_back(grey_map("temporal_noise", sd, {0, 2 * median_of(sd)}));
+    maps.push_back(grey_map("fixed_pattern", measures.noise->pattern_k, grey_range(measures.noise->pattern_k)));
+  }
+  if (measures.pixels) maps.push_back(defect_map(*measures.pixels));
+  return maps;
+}
+
+Json pixel_maps_json(const std::vector<PixelMap>& maps) {
+  Json list = Json::array();
+  for (const PixelMap& map : maps) {
+    list.push_back({{"name", map.name},
+                    {"width", map.width},
+                    {"height", map.height},
+                    {"black_k", json_number(map.black_k)},
+                    {"white_k", json_number(map.white_k)},
+                    {"png", map.png}});
+  }
+  return list;
+}
+
+std::vector<PixelMap> pixel_maps_from(const JsonReader& maps) {
+  std::vector<PixelMap> out;
+  if (maps.is_null()) return out;
+  const std::vector<JsonReader> elements = maps.elements();
+  for (const JsonReader& map : elements) {
+    out.push_back({map.at("name").text(), static_cast<int>(map.at("width").whole()),
+                   static_cast<int>(map.at("height").whole()), map.at("black_k").number(), map.at("white_k").number(),
+                   map.at("png").text()});
+  }
+  return out;
+}
+
+bool drawable(const std::vector<PixelMap>& maps) {
+  return std::all_of(maps.begin(), maps.end(), [](const PixelMap& map) {
+    return map.width > 0 && map.height > 0 && !map.png.empty() && is_base64(map.png);
+  });
+}
+
+Json pixels_json(const PixelMeasure& pixels) {
+  Json counts, zones = Json::array(), defects = Json::array();
+  for (const PixelDefect kind : pixel_defect_kinds)
+    counts[std::string(to_string(kind))] = cv::countNonZero(pixels.defects.of(kind));
+  for (const PixelMeasure::Zone& zone : pixels.zones) {
+    zones.push_back({{"name", zone.area.name},
+                     {"area", {zone.area.left, zone.area.top, zone.area.right, zone.area.bottom}},
+                     {"pixels", zone.count.pixels},
+                     {"measured", zone.count.measured},
+                     {"bad_pixels", zone.count.bad},
+                     {"substituted_pixels", zone.count.substituted},
+                     {"clusters", zone.count.clusters},
+                     {"largest_cluster", zone.count.largest_cluster}});
+  }
+  const cv::Mat1i& cluster = pixels.defects.cluster;
+  std::size_t all = 0;
+  for (int y = 0; y < cluster.rows; ++y) {
+    for (int x = 0; x < cluster.cols; ++x) {
+      if (cluster(y, x) == 0 || all++ >= most_listed) continue;
+      Json kinds = Json::array();
+      for (const PixelDefect kind : pixel_defect_kinds)
+        if (pixels.defects.of(kind)(y, x) != 0) kinds.push_back(to_string(kind));
+      defects.push_back({{"x_px", x + pixels.field.x},
+                         {"y_px", y + pixels.field.y},
+                         {"kinds", std::move(kinds)},
+                         {"cluster", cluster(y, x)}});
+    }
+  }
+  return {{"frames", pixels.defects.frames},
+          {"frame_px", {pixels.frame.width, pixels.frame.height}},
+          {"field_px", rectangle_json(pixels.field)},
+          {"response_tested", pixels.defects.response_tested},
+          {"counts", counts},
+          {"zones", zones},
+          {"defects", defects},
+          {"defects_found", all},
+          {"not_tested", pixels.defects.not_tested}};
+}
+
+}  // namespace todbench
