@@ -231,6 +231,7 @@ struct MeasuresPlan {
   double pixels_blinking = 3;     ///< change of level above so many medians of it
   bool transfer = false;          ///< contrast seen over contrast shown
   std::vector<double> transfer_steps_k{-4, -2, -1, 1, 2, 4};
+  bool triangles = false;                 ///< pictures of the smallest ones at every contrast
   bool mtf = false;                       ///< along both axes, from the edges of a plate of its own
   std::string mtf_plate = "edge";         ///< name or file
   double mtf_delta_t_k = 10;              ///< at which it is shown

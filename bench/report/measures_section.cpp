@@ -14,12 +14,13 @@
 namespace todbench {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 23> names{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 24> names{{
     {"transfer_slope", "Temperature scale: contrast seen over contrast shown"},
     {"transfer_offset", "Temperature scale: offset"},
     {"transfer_nonlinearity", "Temperature scale: nonlinearity"},
     {"temporal_noise", "Temporal noise of a pixel"},
     {"netd", "NETD (temporal noise over the temperature scale)"},
+    {"netd_model", "NETD, closed form of the sensor model"},
     {"lag1_correlation", "Correlation of a pixel in successive frames"},
     {"noise_counts", "Temporal noise in steps of the counts"},
     {"shading_range", "Shading over the plate, taken out"},

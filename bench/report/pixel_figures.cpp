@@ -28,18 +28,20 @@ std::pair<std::string, std::string> words_of(const PixelMap& map) {
   const std::string greys = ": " + kelvin(map.black_k) + " black to " + kelvin(map.white_k) + " white";
   if (map.name == "temporal_noise") return {"Temporal noise of each pixel", greys};
   if (map.name == "fixed_pattern") return {"Fixed pattern, without shading", greys};
+  if (map.name == "triangles") return {"The smallest triangles " + map.note, greys};
   if (map.name != "defects") return {map.name, greys};
   std::string colours = ", each drawn larger than it is; ";
   for (const DefectColour& colour : defect_colours()) colours += std::string(colour.words) + ", ";
   return {"Bad and substituted pixels", colours + "not looked at: grey"};
 }
 
-Figure map_figure(const PixelMap& map, const std::string& who, const std::string& id) {
+Figure map_figure(const PixelMap& map, const std::string& who, std::size_t number, const std::string& id) {
   constexpr double width = 430;
   const auto [title, meaning] = words_of(map);
   Drawing drawing;
   drawing.id = "pixels-" + id;
   for (char c : map.name) drawing.id += c == '_' ? '-' : c;
+  if (map.name == "triangles") drawing.id += "-" + std::to_string(number);
   drawing.title = title + ", " + who;
   drawing.description = title + meaning;
   drawing.width = width, drawing.height = width * map.height / map.width;
@@ -55,10 +57,12 @@ std::optional<FigurePairs> pixel_figures(const SessionMeasures& measures, bool c
   const std::vector<PixelMap> none;
   const std::vector<PixelMap>& main = measures.main ? measures.main->maps : none;
   const std::vector<PixelMap>& twin = measures.twin ? measures.twin->maps : none;
-  for (const PixelMap& map : main) {
-    figures.figures.push_back(map_figure(map, camera ? "camera" : "simulated sensor", "main-"));
-    const auto same = std::find_if(twin.begin(), twin.end(), [&](const PixelMap& one) { return one.name == map.name; });
-    if (same != twin.end()) figures.figures.push_back(map_figure(*same, "simulated twin", "twin-"));
+  for (std::size_t i = 0; i < main.size(); ++i) {
+    const PixelMap& map = main[i];
+    figures.figures.push_back(map_figure(map, camera ? "camera" : "simulated sensor", i, "main-"));
+    const auto same = std::find_if(twin.begin(), twin.end(),
+                                   [&](const PixelMap& one) { return one.name == map.name && one.note == map.note; });
+    if (same != twin.end()) figures.figures.push_back(map_figure(*same, "simulated twin", i, "twin-"));
   }
   if (figures.figures.empty()) return std::nullopt;
   return figures;

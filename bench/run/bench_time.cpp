@@ -45,7 +45,7 @@ class Walk {
   /// What [measures] asks for behind the trials, as measure_camera() goes through it.
   void measure(const TargetState& last, const std::string& first_plate) {
     const MeasuresPlan& measures = plan_.measures;
-    if (!measures.noise && !measures.transfer && !measures.mtf) return;
+    if (!measures.noise && !measures.transfer && !measures.triangles && !measures.mtf) return;
     const TargetPlan& target = plan_.target;
     const auto change = [&](double seconds, int frames) {
       time_.changes_s += seconds;
@@ -60,6 +60,10 @@ class Walk {
         change(target.contrast_change_s, plan_.measurement.contrast_frames);
     }
     if (measures.noise) change(target.contrast_change_s, measures.noise_frames);
+    if (measures.triangles) {
+      for (std::size_t i = 0; i < target.delta_t_k.size(); ++i)
+        change(target.contrast_change_s, plan_.measurement.contrast_frames);
+    }
     if (measures.mtf) change(std::max(target.plate_change_s, target.contrast_change_s), measures.mtf_frames);
   }
 

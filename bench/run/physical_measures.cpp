@@ -7,6 +7,7 @@
 
 #include "bench/run/plate_picture.h"
 #include "bench/run/simulated_responses.h"
+#include "sim_devices/sensor/effect_row.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "sim_devices/sensor/transfer_functions.h"
 
@@ -47,10 +48,22 @@ std::optional<PixelOptions> pixel_options(const Plan& plan) {
   return options;
 }
 
+std::vector<double> triangle_contrasts(const Plan& plan) {
+  return plan.measures.triangles ? plan.target.delta_t_k : std::vector<double>{};
+}
+
+/// Temporal noise of a sample in one frame over the response of a scale that is right: white noise with its memory in
+/// averaged exposures, rows, columns, rounding. Nothing where a stage behind the noise changes it.
+std::optional<double> closed_form_netd_k(const SensorSpec& spec, const SensorPlan& plan) {
+  if (!is_neutral(spec, Effect::display) || spec.defective_pixel_share > 0) return std::nullopt;
+  const double lines_k2 = std::pow(spec.row_noise_k, 2) + std::pow(spec.column_noise_k, 2);
+  return std::sqrt(white_variance_k2(spec, plan, 1) + lines_k2 / spec.exposures_per_sample());
+}
+
 }  // namespace
 
 bool measures_asked(const Plan& plan) {
-  return plan.measures.noise || plan.measures.transfer || plan.measures.mtf;
+  return plan.measures.noise || plan.measures.transfer || plan.measures.triangles || plan.measures.mtf;
 }
 
 Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan, const MeasurementOptions& options,
@@ -64,6 +77,7 @@ Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan, const 
                                   .pixels = pixel_options(plan),
                                   .transfer = plan.measures.transfer,
                                   .transfer_steps_k = plan.measures.transfer_steps_k,
+                                  .triangles_k = triangle_contrasts(plan),
                                   .mtf_plate = plan.measures.mtf ? mtf_plate : std::nullopt,
                                   .mtf_delta_t_k = plan.measures.mtf_delta_t_k,
                                   .mtf_frames = plan.measures.mtf_frames,
@@ -110,6 +124,8 @@ Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loade
   OpenedBench bench = simulated_bench(model, loaded.shown_plates(), plan.target.distance_m, {}, inputs.motion);
   auto measures = physical_measures(plan, options, inputs.mtf_plate, bench, frame, std::move(stop));
   if (measures && *measures) compare_with(**measures, *model, inputs);
+  if (measures && *measures && (*measures)->noise)
+    (*measures)->netd_model_k = closed_form_netd_k(model->spec(), model->plan());
   if (measures && *measures && (*measures)->mtf) add_closed_form(*(*measures)->mtf, *model, inputs);
   return measures;
 }

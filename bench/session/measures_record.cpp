@@ -50,6 +50,12 @@ void add_noise(MeasureLines& out, const CameraMeasures& measures) {
     const double half = 1.96 * *netd * measures.netd_relative_u().value_or(0);
     out.lines.push_back({"netd", "K", netd, {*netd - half, *netd + half}, "temporal noise over the signal transfer"});
   }
+  if (measures.netd_model_k)
+    out.lines.push_back({"netd_model",
+                         "K",
+                         measures.netd_model_k,
+                         {},
+                         "closed form of the sensor model, of a scale that is right and any number of frames"});
   for (const NoiseComponent component : noise_components)
     out.lines.push_back(
         deviation("noise_" + std::string(to_string(component)), estimate_of(noise.table, component), conditions));

@@ -1,5 +1,7 @@
 #include "bench/session/pixel_record.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
@@ -47,6 +49,15 @@ PixelMap defect_map(const PixelMeasure& pixels) {
   return {"defects", picture.cols, picture.rows, 0, 0, png_text(picture)};
 }
 
+PixelMap triangle_map(const TriangleStrip& strip) {
+  double low = 0, high = 0;
+  cv::minMaxLoc(strip.kelvin, &low, &high);
+  PixelMap map = grey_map("triangles", strip.kelvin, {low, high});
+  map.note = fmt::format("at {:g} K, mean of {} frames, {:.1f} to {:.1f} pixels large", strip.set_delta_t_k,
+                         strip.frames, strip.size_px.front(), strip.size_px.back());
+  return map;
+}
+
 Json rectangle_json(const cv::Rect& rectangle) {
   return {rectangle.x, rectangle.y, rectangle.width, rectangle.height};
 }
@@ -79,6 +90,7 @@ std::vector<PixelMap> pixel_maps(const CameraMeasures& measures) {
     maps.push_back(grey_map("temporal_noise", sd, {0, 2 * median_of(sd)}));
     maps.push_back(grey_map("fixed_pattern", measures.noise->pattern_k, grey_range(measures.noise->pattern_k)));
   }
+  for (const TriangleStrip& strip : measures.triangles) maps.push_back(triangle_map(strip));
   if (measures.pixels) maps.push_back(defect_map(*measures.pixels));
   return maps;
 }
@@ -91,6 +103,7 @@ Json pixel_maps_json(const std::vector<PixelMap>& maps) {
                     {"height", map.height},
                     {"black_k", json_number(map.black_k)},
                     {"white_k", json_number(map.white_k)},
+                    {"note", map.note},
                     {"png", map.png}});
   }
   return list;
@@ -103,7 +116,7 @@ std::vector<PixelMap> pixel_maps_from(const JsonReader& maps) {
   for (const JsonReader& map : elements) {
     out.push_back({map.at("name").text(), static_cast<int>(map.at("width").whole()),
                    static_cast<int>(map.at("height").whole()), map.at("black_k").number(), map.at("white_k").number(),
-                   map.at("png").text()});
+                   map.at("png").text(), map.at("note").text()});
   }
   return out;
 }

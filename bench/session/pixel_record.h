@@ -12,10 +12,11 @@ namespace todbench {
 
 /// A picture of a property of each pixel, as a PNG file in base64.
 struct PixelMap {
-  std::string name;  ///< "temporal_noise", "fixed_pattern", "defects"
+  std::string name;  ///< "temporal_noise", "fixed_pattern", "triangles", "defects"
   int width = 0, height = 0;
   double black_k = 0, white_k = 0;  ///< what the grey scale means; both 0: the picture has colours
   std::string png;
+  std::string note{};  ///< what else has to be said, a clause
 };
 
 /// What the colours of the map of defects mean, in the order in which they are drawn: name of the kind and colour in
@@ -27,7 +28,8 @@ struct DefectColour {
 };
 [[nodiscard]] const std::array<DefectColour, pixel_defect_kinds.size()>& defect_colours();
 
-/// Those that the measures give: noise and pattern with the noise, defects with the pixels.
+/// Those that the measures give: noise and pattern with the noise, triangles of every contrast, defects with the
+/// pixels.
 [[nodiscard]] std::vector<PixelMap> pixel_maps(const CameraMeasures& measures);
 [[nodiscard]] Json pixel_maps_json(const std::vector<PixelMap>& maps);
 /// Empty where the reader has a mistake.

@@ -80,6 +80,13 @@ class Run {
       measures.pixels = std::move(pixels_);
       if (!pixel_reason_.empty()) measures.reasons.push_back(pixel_reason_);
     }
+    for (const double contrast_k : options_.triangles_k) {
+      auto strip = show_triangles(contrast_k);
+      if (strip)
+        measures.triangles.push_back(*std::move(strip));
+      else if (auto kept = keep("smallest triangles", strip.error()); !kept)
+        return tl::unexpected(kept.error());
+    }
     // Last: the plate changes.
     if (options_.mtf_plate) {
       auto mtf = measure_mtf(measures.reasons);
@@ -173,6 +180,17 @@ class Run {
     if (!line) return tl::unexpected(line.error());
     transfer.line = *std::move(line);
     return transfer;
+  }
+
+  /// The mean picture round the smallest triangles at a contrast.
+  Result<TriangleStrip> show_triangles(double contrast_k) {
+    constexpr int shown_triangles = 6;
+    if (auto shown = show(contrast_k); !shown) return tl::unexpected(shown.error());
+    const auto picture = taker_.average(options_.measurement.contrast_frames, stop_);
+    if (!picture) return tl::unexpected(picture.error());
+    TriangleStrip strip = smallest_triangles(picture->kelvin, plate(), where_, shown_triangles);
+    strip.set_delta_t_k = contrast_k, strip.frames = options_.measurement.contrast_frames;
+    return strip;
   }
 
   /// Sides that could not be measured are reasons.

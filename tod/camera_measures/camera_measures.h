@@ -10,6 +10,7 @@
 #include "acquisition/core/frame_source.h"
 #include "tod/camera_measures/edge_measure.h"
 #include "tod/camera_measures/pixel_measure.h"
+#include "tod/camera_measures/triangle_strip.h"
 #include "tod/measurement/measurement.h"
 #include "tod/measures/signal_transfer.h"
 #include "tod/measures/three_d_noise.h"
@@ -22,6 +23,7 @@ struct CameraMeasuresOptions {
   std::optional<PixelOptions> pixels{};    ///< bad and substituted pixels in the cube of the noise; nothing: none
   bool transfer = false;                   ///< signal transfer from the steps below
   std::vector<double> transfer_steps_k;    ///< contrasts that are shown, three or more
+  std::vector<double> triangles_k{};       ///< contrasts at which the smallest triangles are shown; empty: none
   std::optional<TargetPlate> mtf_plate{};  ///< in identity mounting; nothing: no MTF
   double mtf_delta_t_k = 10;               ///< at which it is shown
   int mtf_frames = 64;                     ///< averaged, at least 1
@@ -96,9 +98,11 @@ struct CameraMeasures {
   std::optional<PixelMeasure> pixels{};
   std::optional<TransferMeasure> transfer{};
   std::optional<MtfMeasure> mtf{};
-  std::optional<PlateView> view{};        ///< where the plate was found
-  std::optional<PlatePicture> picture{};  ///< where a sensor model was compared with it
-  std::vector<std::string> reasons{};     ///< sentences
+  std::vector<TriangleStrip> triangles{};  ///< by contrast
+  std::optional<double> netd_model_k{};    ///< of a simulated sensor in closed form
+  std::optional<PlateView> view{};         ///< where the plate was found
+  std::optional<PlatePicture> picture{};   ///< where a sensor model was compared with it
+  std::vector<std::string> reasons{};      ///< sentences
 
   /// Temporal noise of a pixel in kelvin of the camera's scale, with its 95 % interval.
   [[nodiscard]] std::optional<ComponentEstimate> temporal_variance_k2() const;

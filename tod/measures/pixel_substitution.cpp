@@ -118,6 +118,10 @@ SubstitutedPixels substituted_pixels(std::span<const cv::Mat1f> frames, const cv
     for (int y = 0; y < constant.rows; ++y) {
       for (int x = 0; x < constant.cols; ++x) {
         if (constant(y, x) != 0 || found.variance(y, x) < 0 || found.variance(y, x) >= limit * live) continue;
+        // Against pixels that never change only its own noise is left, half of what is expected of two.
+        const bool dead_sources = std::all_of(
+            sources.begin(), sources.end(), [&](cv::Point source) { return constant(cv::Point(x, y) + source) != 0; });
+        if (dead_sources) continue;
         equal.push_back({found.variance(y, x) / live, {x, y}, &sources});
       }
     }

@@ -155,6 +155,10 @@ TEST(BenchTimeOfMeasures, AddsTheirStepsAndFrames) {
   EXPECT_NEAR(both.changes_s - noise.changes_s, 6 * plan.target.contrast_change_s, 1e-9);
   EXPECT_GE(noise.changes_s - trials.changes_s, 2 * plan.target.contrast_change_s);
   EXPECT_EQ(both.presentations, trials.presentations);
+  plan.measures.triangles = true;
+  const BenchTime triangles = bench_time(plan, plates, 50, std::nullopt);
+  EXPECT_EQ(triangles.frames - both.frames, plan.target.delta_t_k.size() * (2 + 1u));
+  plan.measures.triangles = false;
   plan.measures.mtf = true;
   const BenchTime mtf = bench_time(plan, plates, 50, std::nullopt);
   EXPECT_EQ(mtf.frames - both.frames, 64 + 1u);

@@ -86,6 +86,9 @@ TEST(PhysicalMeasures, FindTheNoiseAndTheScaleOfTheSimulatedSensor) {
   // a slope over 8 K to 3 mK/K.
   EXPECT_NEAR(slope->value.value(), 1, 0.012);
   EXPECT_NEAR(netd->value.value(), noise->value.value() / slope->value.value(), 1e-9);
+  const auto* model = line_of(session->measures->main, "netd_model");
+  ASSERT_NE(model, nullptr);
+  EXPECT_NEAR(model->value.value(), expected_k, 1e-3 * expected_k);
   // No rows, columns or whole frames flicker in it: their variances are below a hundredth of the pixels'.
   for (const char* name : {"noise_t", "noise_tv", "noise_th"}) {
     const auto* line = line_of(session->measures->main, name);
@@ -98,6 +101,7 @@ TEST(PhysicalMeasures, StandBesideTheTwinInTheReportAndAreNotRepeatedByAReplay) 
   const TemporaryFolder folder;
   Plan plan = measures_plan();
   plan.measurement.record_frames = true;
+  plan.measures.triangles = true;
 
   const auto outcome = measure_plan(plan, {.folder = folder.path() / "session"}, {}, {});
 
@@ -116,6 +120,12 @@ TEST(PhysicalMeasures, StandBesideTheTwinInTheReportAndAreNotRepeatedByAReplay) 
     ASSERT_TRUE((*side)->picture);
     EXPECT_TRUE(is_base64((*side)->picture->seen));
     EXPECT_EQ((*side)->picture->outlines.size(), 20u);
+    ASSERT_EQ((*side)->maps.size(), 3u);
+    // Six windows of 16 pixels, two columns between them.
+    EXPECT_EQ((*side)->maps[2].name, "triangles");
+    EXPECT_EQ((*side)->maps[2].width, 6 * 16 + 5 * 2);
+    EXPECT_EQ((*side)->maps[2].height, 16);
+    EXPECT_GT((*side)->maps[2].white_k, (*side)->maps[2].black_k + 1);
   }
   const auto data = report_data(*session, "session");
   ASSERT_TRUE(data) << data.error().message;
