@@ -106,6 +106,10 @@ void add_emulate_command(CLI::App& app, Program& program) {
   command->add_option("--stage-port", a->stage_port, "0: the system chooses")
       ->check(whole_number(0, 65535))
       ->capture_default_str();
+  command->add_option("--stage-jitter-mm", a->stage_jitter_mm, "standard deviation of the place while the stage runs")
+      ->check(number_in(0, 10))
+      ->capture_default_str();
+  command->add_flag("!--no-trigger", a->trigger, "the stage does not tell when a run began in the camera's clock");
   finish_command(*command, program, [a, &program](Console& console) {
     a->seed = program.common.seed;
     return run_emulate(console, *a, *program.stop);

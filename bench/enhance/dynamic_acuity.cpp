@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "sim_devices/prediction/direct_estimate.h"
+#include "sim_devices/sensor/effect_exposure.h"
+#include "sim_devices/sensor/effect_motion.h"
 
 namespace todbench {
 namespace {
@@ -58,7 +60,10 @@ Result<std::vector<DynamicAcuity>> dynamic_acuity(const SensorSpec& sensor, Temp
   std::vector<DynamicAcuity> found;
   for (const DynamicTrials& moving : *trials) {
     DynamicAcuity at{.speed_mrad_s = moving.speed_mrad_s, .speed_px = moving.speed_px, .points = {}};
-    at.smear_px = moving.speed_px * sensor.frame_rate_hz * sensor.time_constant_ms * 1e-3;
+    const SceneMotion motion{.x_mrad_s = moving.speed_mrad_s, .y_mrad_s = 0};
+    at.smear_px = smear_pitch(sensor, motion).x;
+    at.exposure_px = exposure_way_pitch(sensor, motion).x;
+    at.lag_px = mean_lag_pitch(sensor, motion).x;
     for (const SequenceObserver kind : all_sequence_observers) {
       const auto k = static_cast<std::size_t>(kind);
       auto fitted = fit_psychometric(moving.levels[k], fit);

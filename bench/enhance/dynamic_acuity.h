@@ -22,6 +22,8 @@ struct DynamicPoint {
 struct DynamicAcuity {
   double speed_mrad_s = 0, speed_px = 0;  ///< pixels per frame
   double smear_px = 0;                    ///< speed times time constant
+  double exposure_px = 0;                 ///< speed times exposure
+  double lag_px = 0;                      ///< mean lag that was taken out
   std::vector<DynamicPoint> points;       ///< by SequenceObserver
 };
 

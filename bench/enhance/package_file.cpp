@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "bench/plan/descriptions.h"
@@ -13,7 +14,8 @@
 namespace todbench {
 namespace {
 
-const std::vector<std::string> stage_kinds{"recursive", "sharpen", "median", "clahe", "plateau", "module"};
+const std::vector<std::string> stage_kinds{"recursive", "sharpen", "median", "clahe",
+                                           "plateau",   "module",  "kernel", "agc"};
 
 StagePlan read_stage(TomlReader& table, std::vector<ModulePlan>& modules) {
   StagePlan stage;
@@ -42,6 +44,17 @@ StagePlan read_stage(TomlReader& table, std::vector<ModulePlan>& modules) {
     case StagePlan::Kind::module:
       modules.push_back(read_module(table));
       stage.module = stage_options(modules.back());
+      break;
+    case StagePlan::Kind::kernel: {
+      const auto values = table.numbers("values", NumberRange::between(-1000, 1000), std::nullopt);
+      if (values.size() == stage.kernel.size())
+        std::copy(values.begin(), values.end(), stage.kernel.begin());
+      else
+        table.reject("values", "expected nine numbers, rows first");
+      break;
+    }
+    case StagePlan::Kind::agc:
+      stage.plateau_counts = static_cast<int>(table.whole("plateau_counts", 0, 100'000'000, 0));
       break;
   }
   return stage;
@@ -94,6 +107,12 @@ std::vector<std::unique_ptr<ChainStage>> made_stages(const EnhancementPackage& p
         stages.push_back(module_stage(std::move(options)));
         break;
       }
+      case StagePlan::Kind::kernel:
+        stages.push_back(kernel_filter(plan.kernel));
+        break;
+      case StagePlan::Kind::agc:
+        stages.push_back(gain_control(plan.plateau_counts));
+        break;
     }
   }
   return stages;

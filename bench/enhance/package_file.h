@@ -1,6 +1,7 @@
 // An enhancement package: stages behind the camera, one after the other, as a file states them.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -15,14 +16,16 @@ namespace todbench {
 
 /// What a stage does. The numbers are those of its kind alone.
 struct StagePlan {
-  enum class Kind { recursive, sharpen, median, clahe, plateau, module } kind = Kind::recursive;
-  double share = 0.5;           ///< recursive
-  double amount = 1;            ///< sharpen
-  int size = 3;                 ///< median
-  double clip_limit = 2;        ///< clahe
-  int tiles = 8;                ///< clahe
-  double plateau_percent = 1;   ///< plateau
-  ModuleStageOptions module{};  ///< module
+  enum class Kind { recursive, sharpen, median, clahe, plateau, module, kernel, agc } kind = Kind::recursive;
+  double share = 0.5;                                       ///< recursive
+  double amount = 1;                                        ///< sharpen
+  int size = 3;                                             ///< median
+  double clip_limit = 2;                                    ///< clahe
+  int tiles = 8;                                            ///< clahe
+  double plateau_percent = 1;                               ///< plateau
+  ModuleStageOptions module{};                              ///< module
+  std::array<double, 9> kernel{0, 0, 0, 0, 1, 0, 0, 0, 0};  ///< kernel
+  int plateau_counts = 0;                                   ///< agc
 };
 struct EnhancementPackage {
   std::string name, description;

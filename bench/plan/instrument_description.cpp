@@ -212,6 +212,7 @@ class InstrumentReader {
     check_distinct(plate, "words", stage.plate_words);
     read_mounting();
     read_position();
+    read_run();
   }
 
   static void check_distinct(TomlReader& at, std::string_view key, Texts texts) {
@@ -258,6 +259,27 @@ class InstrumentReader {
       for (std::size_t i = 0; i < 4; ++i) position.limits_mm[i] = ends[i] * position.unit.scale;
     }
     table_.stage.position = std::move(position);
+  }
+
+  void read_run() {
+    TomlReader at = file_.section("run");
+    if (!at.present()) return;
+    StageRun run;
+    run.set = words(at, "set", std::nullopt);
+    if (!run.set.empty() && places_in(run.set) != 2) at.reject("set", "expected {} for x and {} for the speed");
+    run.measured = question(at, "measured", "answer", 4, std::nullopt);
+    run.limits = question(at, "limits", "limits_answer", 2, Texts{});
+    const auto speeds = at.numbers("range", NumberRange::positive(), std::vector<double>{});
+    if (!table_.stage.position) {
+      at.reject("set", "expected no [run] without a [position]");
+    } else if (run.limits.asks() != speeds.empty()) {
+      at.reject(speeds.empty() ? "limits" : "range", "expected either limits or range");
+    } else if (!speeds.empty() && (speeds.size() != 2 || !(speeds[0] <= speeds[1]))) {
+      at.reject("range", "expected lowest and highest speed");
+    } else if (!speeds.empty()) {
+      for (std::size_t i = 0; i < 2; ++i) run.limits_mm_s[i] = speeds[i] * table_.stage.position->unit.scale;
+    }
+    table_.stage.run = std::move(run);
   }
 
   void read_settled() {

@@ -53,6 +53,9 @@ constexpr const auto& values_of(const BudgetInput&) {
 constexpr const auto& values_of(const ModulePlace&) {
   return all_module_places;
 }
+constexpr const auto& values_of(const PlaceSource&) {
+  return all_place_sources;
+}
 constexpr const auto& values_of(const Effect&) {
   return all_effects;
 }

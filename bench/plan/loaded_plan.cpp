@@ -1,11 +1,13 @@
 #include "bench/plan/loaded_plan.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "bench/plan/descriptions.h"
 #include "bench/plan/instrument_description.h"
 #include "bench/plan/plan_keys.h"
+#include "sim_devices/sensor/effect_readout.h"
 
 namespace todbench {
 namespace {
@@ -107,6 +109,16 @@ Result<void> read_changed(const Plan& plan, const Plan* known, const ResourceFin
   return {};
 }
 
+/// What the parts say against the plan.
+Result<void> fits_together(const Plan& plan, const PlanParts& parts) {
+  constexpr double steepest = 0.5;  // pitches that the target moves from one row to the next
+  const cv::Point2d slope = readout_slope(parts.sensor, plan.simulation.motion);
+  if (std::hypot(slope.x, slope.y) <= steepest) return {};
+  return fail(ErrorCode::invalid_input,
+              "motion_mrad_s in [simulation]: the target moves more than half a detector from one row of " +
+                  parts.sensor.name + " to the next");
+}
+
 }  // namespace
 
 std::vector<ValueMistake> read_parts(const KeyType& type, const Plan& plan, const ResourceFinder& find,
@@ -151,6 +163,7 @@ Result<LoadedPlan> LoadedPlan::load(Plan plan, const ResourceFinder& find) {
   if (auto valid = validate(plan); !valid) return tl::unexpected(valid.error());
   PlanParts parts;
   if (auto read = read_changed(plan, nullptr, find, parts); !read) return tl::unexpected(read.error());
+  if (auto fits = fits_together(plan, parts); !fits) return tl::unexpected(fits.error());
   return LoadedPlan(std::move(plan), std::move(parts));
 }
 
@@ -163,6 +176,7 @@ Result<LoadedPlan> LoadedPlan::with(Plan plan, const ResourceFinder& find) const
   if (auto valid = validate(plan); !valid) return tl::unexpected(valid.error());
   PlanParts parts = parts_;
   if (auto read = read_changed(plan, &plan_, find, parts); !read) return tl::unexpected(read.error());
+  if (auto fits = fits_together(plan, parts); !fits) return tl::unexpected(fits.error());
   return LoadedPlan(std::move(plan), std::move(parts));
 }
 

@@ -18,6 +18,7 @@
 #include "sim_devices/module/module_plan.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "tod/measurement/measurement.h"
+#include "tod/measurement/place_source.h"
 #include "tod/plate/target_plate.h"
 #include "tod/psychometric/psychometric_fit.h"
 #include "tod/schedule/schedule.h"
@@ -240,6 +241,16 @@ struct MeasuresPlan {
   bool operator==(const MeasuresPlan&) const = default;
 };
 
+/// [motion]: passes of a plate that a stage moves, for `todbench dynamic PLAN`.
+struct MotionPlan {
+  std::vector<double> speeds_mrad_s{10, 30};  ///< 0 is added
+  int passes = 8;  ///< of every plate, mounting, contrast and speed, to the right and to the left in turn
+  int frames = 8;
+  int lead_frames = 5;  ///< of motion before the first
+  PlaceSource places = PlaceSource::triangles;
+  bool operator==(const MotionPlan&) const = default;
+};
+
 /// [[instrument]]: what the calibration of the result hangs on. For the report; a date that has passed refuses the
 /// measurement.
 struct InstrumentPlan {
@@ -265,6 +276,7 @@ struct Plan {
   LimitsPlan limits;
   MeasurementPlan measurement;
   MeasuresPlan measures;
+  MotionPlan motion;
   UncertaintyPlan uncertainty;
   std::vector<InstrumentPlan> instruments;
   /// [[module]]: those of place picture in the order of their rows behind camera and twin; at most one of place

@@ -558,6 +558,39 @@ PlanSection acuity_limits_section() {
           .form = {"Least acuity", "planLimits", "target.delta_t_k"}};
 }
 
+PlanSection motion_section() {
+  const auto of = [](auto member) { return in(&Plan::motion, member); };
+  return {.name = "motion",
+          .sentence = "Passes of a plate that the stage moves along x, for `todbench dynamic PLAN`.",
+          .keys = {{.name = "speeds_mrad_s",
+                    .type = NumbersKey{NumberRange::between(0, 1e4), "speed"},
+                    .unit = "mrad/s",
+                    .sentence = "speeds; a plate at rest is added",
+                    .place = of(&MotionPlan::speeds_mrad_s),
+                    .written_at_default = false},
+                   {.name = "passes",
+                    .type = WholeKey{2, 10000},
+                    .sentence = "of every plate, mounting, contrast and speed, to the right and to the left in turn",
+                    .place = of(&MotionPlan::passes),
+                    .written_at_default = false},
+                   {.name = "frames",
+                    .type = WholeKey{1, 64},
+                    .sentence = "successive frames of a pass",
+                    .place = of(&MotionPlan::frames),
+                    .written_at_default = false},
+                   {.name = "lead_frames",
+                    .type = WholeKey{0, 200},
+                    .sentence = "frames of motion before the first, until the detector has forgotten the plate at rest",
+                    .place = of(&MotionPlan::lead_frames),
+                    .written_at_default = false},
+                   {.name = "places",
+                    .type = ChoiceKey{names_of(all_place_sources)},
+                    .sentence = "the plate is where the large triangles of each frame are, or on a line at the stage's "
+                                "speed over device time",
+                    .place = of(&MotionPlan::places),
+                    .written_at_default = false}}};
+}
+
 PlanSection uncertainty_section() {
   return {.name = "uncertainty",
           .sentence =
@@ -741,7 +774,7 @@ const std::vector<PlanSection>& plan_sections() {
       simulation_section(),  schedule_section(),    fit_section(),           measurement_section(),
       measures_section(),    limits_section(),      acuity_limits_section(), measure_limits_section(),
       zone_limits_section(), uncertainty_section(), budget_row_section(),    instrument_section(),
-      module_section()};
+      module_section(),      motion_section()};
   return sections;
 }
 

@@ -152,8 +152,10 @@ Result<OpenedBench> open_bench(const LoadedPlan& loaded, std::stop_token stop, c
     if (!spec) return tl::unexpected(spec.error());
     auto accuracy = accuracy_of(plan);
     if (!accuracy) return tl::unexpected(accuracy.error());
-    // A camera of its own: the twin has the plan's seed, and noise of both that is the same would cancel.
-    auto model = std::make_shared<const SensorModel>(*spec, full_plan(*spec, {}, {}), *accuracy, plan.seed + 1);
+    // A camera of its own: the twin has the plan's seed, and noise of both that is the same would cancel. The scene may
+    // run; at rest the effects of motion are neutral.
+    auto model =
+        std::make_shared<const SensorModel>(*spec, full_plan(*spec, {}, {}, any_motion), *accuracy, plan.seed + 1);
     auto bench = simulated_bench(std::move(model), loaded.shown_plates(), plan.target.distance_m, {});
     bench.host = bench_host(hosting);
     return bench;

@@ -112,7 +112,7 @@ Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& a
     options.connect = connect_seek(MockSystem::create(), camera);
   }
 #endif
-  options.plan = full_plan(options.sensor, {}, {});
+  options.plan = full_plan(options.sensor, {}, {}, any_motion);  // the stage may run
   for (const auto& name : arguments.plates) {
     auto plate = load_plate(name);
     if (!plate) return tl::unexpected(plate.error());
@@ -131,6 +131,10 @@ Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& a
   options.stage.server.port = arguments.stage_port;
   options.stage.speed_mm_per_s = 200;
   options.stage.settle_s = 0.02;
+  options.stage.travel_mm = 50;
+  options.stage.run_jitter_mm = arguments.stage_jitter_mm;
+  options.stage.has_trigger = arguments.trigger;
+  options.stage.seed = arguments.seed;
   options.stage.plate_change_s = 0.1;
   options.stage.mounting_change_s = 0.1;
   return Laboratory::start(std::move(options));

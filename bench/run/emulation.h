@@ -30,6 +30,8 @@ struct EmulationArguments {
   std::vector<std::string> plates{"tcat-a", "tcat-b"};
   double distance_m = 2;
   std::uint16_t black_body_port = 5025, stage_port = 5026;  ///< 0: the system chooses
+  double stage_jitter_mm = 0;                               ///< standard deviation of the place while the stage runs
+  bool trigger = true;  ///< the stage tells when a run began in the clock of the camera
   std::uint64_t seed = 1;
   bool operator==(const EmulationArguments&) const = default;
 };

@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "acquisition/core/camera_id.h"
+#include "sim_devices/sensor/moving_scene.h"
 
 namespace todbench {
 
@@ -38,22 +39,28 @@ struct Laboratory::State {
   std::unique_ptr<PlateStage> stage;
   std::string camera_id, camera_address;
   std::map<std::string, std::string> camera_settings, client_environment;
-  std::atomic<std::uint64_t> next_exposure = 0;
+  std::atomic<std::uint64_t> next_exposure = 0, since_power_up = 0;
   std::unique_ptr<LaboratoryCamera> camera;  // last: its thread looks at the others
 
   /// Frame k shows what is before the camera at that moment, with the noise of exposure k.
   [[nodiscard]] Result<void> connect_camera() {
     auto connected = options.connect(options.sensor, [this, first = next_exposure.load()](std::uint64_t index) {
       next_exposure = first + index + 1;
-      return model->expose(scene(), first + index);
+      since_power_up = index + 1;
+      return model->expose(scene_at(frame_time_s(index)), first + index);
     });
     if (!connected) return tl::unexpected(connected.error());
     camera = std::move(*connected);
     return {};
   }
 
-  [[nodiscard]] PlateScene scene() const {
-    const PlateStageState on_stage = stage->state();
+  /// Device time of an exposure since power-up: the camera's clock advances by a frame with each.
+  [[nodiscard]] double frame_time_s(std::uint64_t index) const {
+    return static_cast<double>(index + 1) / options.sensor.frame_rate_hz;
+  }
+
+  [[nodiscard]] PlateScene scene_at(double camera_time_s) const {
+    const PlateStageState on_stage = stage->state_at(camera_time_s);
     const BlackBodyState heat = black_body->state();
     const auto plate = std::find_if(options.plates.begin(), options.plates.end(),
                                     [&](const TargetPlate& p) { return p.name == on_stage.plate; });
@@ -65,7 +72,7 @@ struct Laboratory::State {
     scene.shift_mm = on_stage.shift_mm;
     scene.centre_px = options.centre_px;
     scene.rotation_deg = options.rotation_deg;
-    return scene;
+    return in_motion(std::move(scene), on_stage.speed_mm_per_s, model->spec());
   }
 };
 
@@ -85,6 +92,7 @@ Result<std::unique_ptr<Laboratory>> Laboratory::start(LaboratoryOptions options)
 
   o.stage.plates.clear();
   for (const auto& plate : o.plates) o.stage.plates.push_back(plate.name);
+  o.stage.camera_clock_s = [s = state.get()] { return s->frame_time_s(s->since_power_up); };
   auto stage = PlateStage::start(o.stage);
   if (!stage) return tl::unexpected(stage.error());
   state->stage = std::move(*stage);
@@ -117,7 +125,7 @@ std::string Laboratory::stage_endpoint() const {
   return state_->stage->endpoint();
 }
 PlateScene Laboratory::scene() const {
-  return state_->scene();
+  return state_->scene_at(state_->frame_time_s(state_->since_power_up));
 }
 const SensorModel& Laboratory::model() const {
   return *state_->model;

@@ -1,5 +1,7 @@
 // The emulated laboratory: a camera, a black body and a plate stage, each on its real protocol, around one
-// simulated sensor. What the instruments show is what the camera sees, also while they settle.
+// simulated sensor. What the instruments show is what the camera sees, also while they settle. Runs of the stage are
+// in the time of the camera, whose clock advances by a frame with every exposure: a busy host makes them slower, not
+// wrong.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +21,7 @@ namespace todbench {
 
 struct LaboratoryOptions {
   SensorSpec sensor;
-  SensorPlan plan;  ///< of the camera's effects
+  SensorPlan plan;  ///< of the camera's effects; those of motion act while the stage runs
   Accuracy accuracy;
   std::vector<TargetPlate> plates;  ///< in the slots of the stage, identity mounting
   double distance_m = 2;

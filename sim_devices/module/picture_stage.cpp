@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 #include <utility>
@@ -91,6 +92,23 @@ cv::Mat1f equalised_to_plateau(const cv::Mat1f& picture, double plateau_percent)
   return answer;
 }
 
+cv::Mat1f in_grey_levels(const cv::Mat1f& picture, int plateau_counts) {
+  const auto count_of = [](float value) { return std::lround(value); };
+  std::map<long, double> histogram;
+  for (const float value : picture) histogram[count_of(value)] += 1;
+  double total = 0;
+  for (auto& [count, pixels] : histogram) {
+    if (plateau_counts > 0) pixels = std::min(pixels, static_cast<double>(plateau_counts));
+    total += pixels;
+    pixels = total;  // from here on: up to the count itself
+  }
+  cv::Mat1f answer(picture.size());
+  std::transform(picture.begin(), picture.end(), answer.begin(), [&](float value) {
+    return static_cast<float>(std::floor(255 * histogram[count_of(value)] / total + 0.5));
+  });
+  return answer;
+}
+
 class ModuleStage final : public ChainStage {
  public:
   explicit ModuleStage(ModuleStageOptions options) : options_(std::move(options)) {
@@ -128,6 +146,20 @@ std::unique_ptr<ChainStage> sharpening(double amount) {
     cv::blur(picture, mean, {3, 3}, {-1, -1}, cv::BORDER_REPLICATE);
     return amount == 0 ? picture.clone() : cv::Mat1f(picture + amount * (picture - mean));
   });
+}
+
+std::unique_ptr<ChainStage> kernel_filter(const std::array<double, 9>& kernel) {
+  return stage_of([kernel](const cv::Mat1f& picture) {
+    cv::Mat1f answer;
+    cv::Mat1d weights(3, 3);
+    std::copy(kernel.begin(), kernel.end(), weights.begin());
+    cv::filter2D(picture, answer, CV_32F, weights, {-1, -1}, 0, cv::BORDER_REPLICATE);
+    return answer;
+  });
+}
+
+std::unique_ptr<ChainStage> gain_control(int plateau_counts) {
+  return stage_of([plateau_counts](const cv::Mat1f& picture) { return in_grey_levels(picture, plateau_counts); });
 }
 
 std::unique_ptr<ChainStage> median_filter(int size) {

@@ -1,6 +1,7 @@
 // Stages of the chain behind the sensor, picture to picture: the usual enhancements, and programs of the user's.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <opencv2/core.hpp>
@@ -30,6 +31,12 @@ class ChainStage {
 [[nodiscard]] std::unique_ptr<ChainStage> recursive_filter(double share);
 /// x + amount (x - mean of the 3 x 3 neighbourhood), the edge repeated. 0: the picture as it is.
 [[nodiscard]] std::unique_ptr<ChainStage> sharpening(double amount);
+/// The sum over the 3 x 3 neighbourhood, each neighbour times its number of the kernel (rows first), the edge repeated.
+[[nodiscard]] std::unique_ptr<ChainStage> kernel_filter(const std::array<double, 9>& kernel);
+/// Gain control to 8 bits: equalisation by the whole histogram with a class for every count, none of which counts for
+/// more than `plateau_counts` pixels (0: no limit). The answer is floor(255 c + 1/2), c the share of the clipped
+/// histogram up to the count itself: grey levels 0 to 255 in place of counts.
+[[nodiscard]] std::unique_ptr<ChainStage> gain_control(int plateau_counts);
 /// Median over 3 x 3 or 5 x 5. Precondition: size is 3 or 5.
 [[nodiscard]] std::unique_ptr<ChainStage> median_filter(int size);
 /// Contrast limited adaptive equalisation (Zuiderveld 1994, as OpenCV has it) in tiles x tiles fields; the answer spans

@@ -5,26 +5,16 @@
 #include <functional>
 #include <memory>
 #include <stop_token>
-#include <string_view>
 #include <vector>
 
 #include "acquisition/core/accuracy.h"
 #include "hvs/observer/template_observer.h"
 #include "sim_devices/module/picture_stage.h"
 #include "sim_devices/sensor/sensor_spec.h"
+#include "tod/measurement/sequence_judge.h"
 #include "tod/psychometric/psychometric_fit.h"
 
 namespace todbench {
-
-/// What an observer does with the frames of a pass.
-enum class SequenceObserver {
-  single_frame,  ///< judges the first frame, and no other
-  tracking_sum,  ///< adds the scores of all frames, each at the true place of the target: pursuit, an upper bound
-  static_sum,    ///< averages all frames where the target is in the middle of the pass: persistence without pursuit
-};
-inline constexpr std::array all_sequence_observers{SequenceObserver::single_frame, SequenceObserver::tracking_sum,
-                                                   SequenceObserver::static_sum};
-[[nodiscard]] std::string_view to_string(SequenceObserver observer);
 
 struct DynamicTrialOptions {
   double delta_t_k = 0;               ///< of every triangle, not 0
@@ -48,7 +38,8 @@ struct DynamicTrials {
 
 /// Frames are those of the simulated camera, counts and all. Frame k of a pass has the same random numbers at every
 /// speed, and every pass the same sampling phase in its first frame: ratios between speeds are paired. The picture lags
-/// by nothing: the transfer of the time constant has its mean lag taken out. Internal noise is drawn once for each
+/// by nothing: the transfers of time constant and exposure have their mean lag taken out, and a triangle
+/// is judged where the rows that see it are when they are read. Internal noise is drawn once for each
 /// decision, whatever the number of frames. `invalid_input` for options that cannot be met, a sensor with modules,
 /// microscan or super-resolution; `interrupted`; errors of the stages.
 [[nodiscard]] Result<std::vector<DynamicTrials>> dynamic_trials(const SensorSpec& sensor, TemplateObserver& observer,

@@ -11,4 +11,7 @@ struct SceneMotion {
   [[nodiscard]] bool moving() const { return x_mrad_s != 0 || y_mrad_s != 0; }
 };
 
+/// For the effects of a sensor whose scene may begin to move.
+inline constexpr SceneMotion any_motion{.x_mrad_s = 1, .y_mrad_s = 0};
+
 }  // namespace todbench

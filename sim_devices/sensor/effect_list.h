@@ -13,6 +13,8 @@
   EFFECT(aberration)             \
   EFFECT(detector)               \
   EFFECT(motion)                 \
+  EFFECT(exposure)               \
+  EFFECT(readout)                \
   EFFECT(microscan)              \
   EFFECT(temporal_noise)         \
   EFFECT(correlated_noise)       \

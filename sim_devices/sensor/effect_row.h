@@ -51,6 +51,10 @@ struct Footprint {
 struct Transfer {
   TransferFunction (*factor)(const ChainScope& scope);
 };
+/// Moves the places of samples: a row of detectors samples so many pitches of motion later than the row above it.
+struct Readout {
+  cv::Point2d (*pitches_per_row)(const SensorSpec& spec, SceneMotion motion);
+};
 /// Says how often or at which wavelengths others act, through the parameters that they read.
 struct Parameter {};
 
@@ -77,8 +81,8 @@ struct Counts {};
 
 }  // namespace stage
 
-using EffectStage = std::variant<stage::Optics, stage::Footprint, stage::Transfer, stage::Parameter, stage::Noise,
-                                 stage::Picture, stage::Counts>;
+using EffectStage = std::variant<stage::Optics, stage::Footprint, stage::Transfer, stage::Readout, stage::Parameter,
+                                 stage::Noise, stage::Picture, stage::Counts>;
 
 /// How far a stage of image formation spreads the picture of a point, in pitches.
 struct Spread {

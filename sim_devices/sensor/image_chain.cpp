@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "sim_devices/sensor/effect_readout.h"
 #include "sim_devices/sensor/far_field.h"
 #include "sim_devices/sensor/transfer_functions.h"
 
@@ -41,7 +42,9 @@ ImageChain::ImageChain(SensorSpec spec, SensorPlan plan, Accuracy accuracy, Scen
       accuracy_(accuracy),
       motion_(motion),
       spread_(spread_of(scope())),
+      readout_slope_(readout_slope_of(scope())),
       band_per_pitch_(needed_band(spec_, plan_, accuracy_)) {
+  CV_Assert(std::abs(readout_slope_.y) < 0.9);
   points_per_pitch_ = 16 * static_cast<int>(std::ceil((2 * band_per_pitch_ + 0.1) / 16));
 }
 
@@ -64,17 +67,33 @@ FrequencyLattice ImageChain::lattice(double size_pitch) const {
 std::shared_ptr<const FilterTable> ImageChain::filter(const FrequencyLattice& lattice) const {
   const std::scoped_lock lock(mutex_);
   auto& slot = filters_[lattice.period];
-  if (slot == nullptr) slot = std::make_shared<const FilterTable>(lattice, tabulated_transfer(lattice, scope()));
+  if (slot == nullptr) slot = std::make_shared<const FilterTable>(lattice, transfer_on(lattice));
   return slot;
 }
 
-PolygonImage ImageChain::image(const Polygon& shape_pitch) const {
-  const double size = std::max(std::sqrt(area(shape_pitch)), reach(shape_pitch));
-  return {shape_pitch, *filter(lattice(size))};
+/// Rows that are read one after the other see the image at M p, M = [[1, -a], [0, 1 - b]] with (a, b) the slope. Its
+/// spectrum is that of the shape at M^-1 p, times the transfer at M^-T f: both exact.
+TransferFunction ImageChain::transfer_on(const FrequencyLattice& lattice) const {
+  if (readout_slope_ == cv::Point2d(0, 0)) return tabulated_transfer(lattice, scope());
+  return [transfer = sensor_transfer(spec_, plan_, accuracy_.wavelengths, motion_), slope = readout_slope_](
+             double u, double w) { return transfer(u, (w + slope.x * u) / (1 - slope.y)); };
 }
 
-ImageChain::InfinitePlane ImageChain::infinite_plane(const Polygon& shape_pitch, cv::Point2d first, double step,
+Polygon ImageChain::read_out(const Polygon& shape_pitch) const {
+  Polygon moved = shape_pitch;
+  for (auto& corner : moved) corner = as_read_out(corner, readout_slope_, 0);
+  return moved;
+}
+
+PolygonImage ImageChain::image(const Polygon& shape_pitch) const {
+  const Polygon shape = read_out(shape_pitch);
+  const double size = std::max(std::sqrt(area(shape)), reach(shape));
+  return {shape, *filter(lattice(size))};
+}
+
+ImageChain::InfinitePlane ImageChain::infinite_plane(const Polygon& whole_shape_pitch, cv::Point2d first, double step,
                                                      cv::Size size) const {
+  const Polygon shape_pitch = read_out(whole_shape_pitch);
   const cv::Point2d half_window(0.5 * step * (size.width - 1), 0.5 * step * (size.height - 1));
   const cv::Point2d centre = first + half_window;
   const Polygon shape = placed(shape_pitch, 1, -centre);

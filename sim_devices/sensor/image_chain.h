@@ -26,13 +26,14 @@ class ImageChain {
   /// Points per pitch at which the fine image holds the whole band: a multiple of 16, so that all 16 x 16 phases lie on
   /// it.
   [[nodiscard]] int points_per_pitch() const { return points_per_pitch_; }
-  /// The degraded image of a shape of contrast 1 near the origin.
+  /// The degraded image of a shape of contrast 1 near the origin, which is in the row that samples when the picture is
+  /// said to be taken.
   [[nodiscard]] PolygonImage image(const Polygon& shape_pitch) const;
 
   /// Samples for an infinite plane, by Richardson extrapolation from periods P and 2P (the wrapped signal falls as
   /// P^-3), with a bound on the remaining error estimated from their difference. Of a shape that reaches far beyond the
   /// window only the part near it is computed so; the rest adds the tail of the diffraction spot, c r^-3, integrated:
-  /// memory and time do not grow with the shape.
+  /// memory and time do not grow with the shape. Readout row by row is about the origin.
   struct InfinitePlane {
     cv::Mat1d values;
     double max_error_estimate = 0;
@@ -47,12 +48,15 @@ class ImageChain {
                      double half_width) const;
   [[nodiscard]] std::shared_ptr<const FilterTable> filter(const FrequencyLattice& lattice) const;
   [[nodiscard]] ChainScope scope() const;
+  [[nodiscard]] TransferFunction transfer_on(const FrequencyLattice& lattice) const;
+  [[nodiscard]] Polygon read_out(const Polygon& shape_pitch) const;
 
   SensorSpec spec_;
   SensorPlan plan_;
   Accuracy accuracy_;
   SceneMotion motion_;
   Spread spread_;
+  cv::Point2d readout_slope_;
   double band_per_pitch_ = 0;
   int points_per_pitch_ = 16;
   mutable std::mutex mutex_;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim_devices/sensor/effect_quantisation.h"
+#include "sim_devices/sensor/effect_readout.h"
 #include "sim_devices/sensor/effect_row.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "sim_devices/sensor/pixel_faults.h"
@@ -104,14 +105,19 @@ struct SensorModel::State {
   /// Picture `index` before quantisation.
   [[nodiscard]] cv::Mat1f analog(const cv::Mat1f& unit, double delta_t_k, std::uint64_t index) const;
 
+  /// Where the samples that see a place of the plate are.
+  [[nodiscard]] cv::Point2d place_of(const PlateScene& scene, cv::Point2d plate_mm, cv::Size size) const {
+    const cv::Point2d place = scene_pixel(scene, plate_mm, spec.ifov_mrad() / spec.samples_per_pitch(), size);
+    return as_read_out(place, readout_slope(spec, scene.motion), 0.5 * (size.height - 1));
+  }
+
   /// Rectangles may be large against the picture: not each by itself, but the whole frame at once.
   void draw_rectangles(const PlateScene& scene, cv::Mat1f& picture) const {
     if (scene.plate.rectangles.empty()) return;
     std::vector<PaintedPolygon> painted;
     for (const PlateRectangle& rectangle : scene.plate.rectangles) {
       Polygon outline = outline_mm(rectangle);
-      for (auto& corner : outline)
-        corner = scene_pixel(scene, corner, spec.ifov_mrad() / spec.samples_per_pitch(), picture.size());
+      for (auto& corner : outline) corner = place_of(scene, corner, picture.size());
       painted.push_back({std::move(outline), 1});
     }
     auto& imager = imagers[{scene.motion.x_mrad_s, scene.motion.y_mrad_s}];
@@ -125,7 +131,7 @@ struct SensorModel::State {
     cv::Mat1f picture(size, 0.0F);
     const double sample_pitch = 1.0 / spec.samples_per_pitch();
     for (const auto& t : scene.plate.triangles) {
-      const cv::Point2d centre = scene_pixel(scene, t.position_mm, spec.ifov_mrad() * sample_pitch, size);
+      const cv::Point2d centre = place_of(scene, t.position_mm, size);
       const double size_pitch = t.size_mm / scene.distance_m / spec.ifov_mrad();
       const auto image = shape(
           {size_pitch, static_cast<int>(t.apex), scene.rotation_deg, scene.motion.x_mrad_s, scene.motion.y_mrad_s});

@@ -36,6 +36,8 @@ struct SensorSpec {
   double noise_correlation = 0;       ///< of a sample's temporal noise in successive exposures
   double fixed_pattern_k = 0;         ///< sd of the fixed offset per detector
   double time_constant_ms = 0;        ///< of the bolometer; 0: a detector without memory
+  double exposure_ms = 0;             ///< of a detector that integrates and holds; 0: short against all motion
+  double row_time_us = 0;             ///< from the sampling of one row of detectors to that of the next; 0: all at once
   double row_noise_k = 0;             ///< sd of an offset per detector row, new in every exposure
   double column_noise_k = 0;          ///< the same per column
   double dead_pixel_share = 0;        ///< of the detectors; the camera shows the mean of the live neighbours instead

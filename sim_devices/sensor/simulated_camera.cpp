@@ -1,18 +1,20 @@
 #include "sim_devices/sensor/simulated_camera.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <cmath>
 
 #include "acquisition/core/camera_id.h"
 #include "acquisition/core/host_clock.h"
+#include "sim_devices/sensor/moving_scene.h"
 
 namespace todbench {
 namespace {
 
 class SimulatedSource final : public FrameSource {
  public:
-  SimulatedSource(std::shared_ptr<const SensorModel> model, std::shared_ptr<const SceneHolder> scene,
-                  std::string serial)
+  SimulatedSource(std::shared_ptr<const SensorModel> model, std::shared_ptr<SceneHolder> scene, std::string serial)
       : model_(std::move(model)), scene_(std::move(scene)) {
     const SensorSpec& spec = model_->spec();
     const auto scale = RadiometricScale::linear({.kelvin_per_count = spec.kelvin_per_count, .offset_k = spec.offset_k});
@@ -42,7 +44,8 @@ class SimulatedSource final : public FrameSource {
   [[nodiscard]] Result<Frame> next(std::chrono::milliseconds /*timeout*/) override {
     if (stopped_) return fail(ErrorCode::interrupted, "simulated camera " + info_.id + " is stopped");
     Frame frame;
-    frame.counts = model_->expose(*scene_->scene(), index_);
+    const double time_s = static_cast<double>(index_) / info_.frame_rate_hz;
+    frame.counts = model_->expose(scene_->scene_at(time_s, model_->spec()), index_);
     frame.sequence = index_;
     // The simulated clock ticks once per exposure, so that a run repeats bit for bit.
     frame.device_time_ns = static_cast<std::int64_t>(static_cast<double>(index_) * 1e9 / info_.frame_rate_hz);
@@ -72,14 +75,14 @@ class SimulatedSource final : public FrameSource {
 
  private:
   std::shared_ptr<const SensorModel> model_;
-  std::shared_ptr<const SceneHolder> scene_;
+  std::shared_ptr<SceneHolder> scene_;
   std::shared_ptr<const RadiometricScale> scale_;
   SourceInfo info_;
   std::uint64_t index_ = 0;
   std::atomic<bool> stopped_{true};
 };
 
-class SceneTarget final : public Target {
+class SceneTarget final : public Target, private MovingTarget {
  public:
   SceneTarget(std::shared_ptr<SceneHolder> scene, std::vector<TargetPlate> plates)
       : scene_(std::move(scene)), plates_(std::move(plates)) {
@@ -106,7 +109,20 @@ class SceneTarget final : public Target {
                            .settling_s = 0};
   }
 
+  [[nodiscard]] MovingTarget* moving() override { return this; }
+
  private:
+  [[nodiscard]] Result<std::array<double, 2>> run_speeds_mm_s(std::stop_token) override {
+    return std::array{1e-6, 1e6};
+  }
+  [[nodiscard]] Result<PlateRun> run_along_x(double to_mm, double speed_mm_s, std::stop_token stop) override {
+    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped before the plate ran");
+    // Written so that NaN fails.
+    if (!(speed_mm_s > 0) || !std::isfinite(to_mm) || to_mm == scene_->scene()->shift_mm.x)
+      return fail(ErrorCode::invalid_input, "the simulated plate cannot run so");
+    return scene_->run_along_x(to_mm, speed_mm_s);
+  }
+
   std::shared_ptr<SceneHolder> scene_;
   std::vector<TargetPlate> plates_;
   TargetCapabilities capabilities_;
@@ -125,10 +141,28 @@ void SceneHolder::set(PlateScene scene) {
   auto next = std::make_shared<const PlateScene>(std::move(scene));
   const std::scoped_lock lock(mutex_);
   scene_ = std::move(next);
+  run_.reset();
+}
+
+PlateScene SceneHolder::scene_at(double time_s, const SensorSpec& spec) {
+  const std::scoped_lock lock(mutex_);
+  time_s_ = time_s;
+  if (!run_) return *scene_;
+  PlateScene scene = *scene_;
+  const double gone_s = time_s - *run_->start_s;
+  scene.shift_mm.x =
+      gone_s < run_->duration_s() ? run_->from_mm + run_->direction() * run_->speed_mm_s * gone_s : run_->to_mm;
+  return in_motion(std::move(scene), gone_s < run_->duration_s() ? run_->direction() * run_->speed_mm_s : 0, spec);
+}
+
+PlateRun SceneHolder::run_along_x(double to_mm, double speed_mm_s) {
+  const std::scoped_lock lock(mutex_);
+  run_ = PlateRun{.from_mm = scene_->shift_mm.x, .to_mm = to_mm, .speed_mm_s = speed_mm_s, .start_s = time_s_};
+  return *run_;
 }
 
 std::unique_ptr<FrameSource> simulated_source(std::shared_ptr<const SensorModel> model,
-                                              std::shared_ptr<const SceneHolder> scene, std::string serial) {
+                                              std::shared_ptr<SceneHolder> scene, std::string serial) {
   return std::make_unique<SimulatedSource>(std::move(model), std::move(scene), std::move(serial));
 }
 

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 
 #include "acquisition/core/frame_source.h"
 #include "sim_devices/sensor/sensor_model.h"
@@ -17,16 +18,21 @@ class SceneHolder {
   explicit SceneHolder(PlateScene scene);
   [[nodiscard]] std::shared_ptr<const PlateScene> scene() const;
   void set(PlateScene scene);
+  /// The scene in a run, if there is one, at a time of the camera's clock, which is remembered as the time that it is.
+  [[nodiscard]] PlateScene scene_at(double time_s, const SensorSpec& spec);
+  /// Runs along x from where the plate is, from now on; the next set() ends it.
+  PlateRun run_along_x(double to_mm, double speed_mm_s);
 
  private:
   mutable std::mutex mutex_;
   std::shared_ptr<const PlateScene> scene_;
+  std::optional<PlateRun> run_;
+  double time_s_ = 0;
 };
 
 /// Exposes as fast as it is asked: frame k is expose(scene at that moment, k). `serial` distinguishes twins.
 [[nodiscard]] std::unique_ptr<FrameSource> simulated_source(std::shared_ptr<const SensorModel> model,
-                                                            std::shared_ptr<const SceneHolder> scene,
-                                                            std::string serial);
+                                                            std::shared_ptr<SceneHolder> scene, std::string serial);
 
 /// Puts states into the scene at once. Plates in identity mounting.
 [[nodiscard]] std::unique_ptr<Target> scene_target(std::shared_ptr<SceneHolder> scene, std::vector<TargetPlate> plates);

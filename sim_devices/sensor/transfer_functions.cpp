@@ -77,6 +77,15 @@ TransferFunction tabulated_transfer(FrequencyLattice lattice, const ChainScope& 
   };
 }
 
+cv::Point2d readout_slope_of(const ChainScope& scope) {
+  cv::Point2d slope(0, 0);
+  for (const Effect effect : all_effects) {
+    const auto* own = std::get_if<stage::Readout>(&row_of(effect).stage);
+    if (own != nullptr && scope.plan.simulates(effect)) slope += own->pitches_per_row(scope.spec, scope.motion);
+  }
+  return slope;
+}
+
 Spread spread_of(const ChainScope& scope) {
   Spread sum;
   for (const Effect effect : all_effects) {

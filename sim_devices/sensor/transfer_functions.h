@@ -37,12 +37,15 @@ class FootprintMtf {
 /// The rows of stage::Transfer that have something to do in this scene.
 [[nodiscard]] std::vector<TransferFunction> other_transfers(const ChainScope& scope);
 
-/// All of image formation.
+/// All of image formation; readout row by row has no transfer, it moves samples.
 [[nodiscard]] TransferFunction sensor_transfer(const SensorSpec& spec, const SensorPlan& plan, int wavelengths,
                                                SceneMotion motion = {});
 /// The same at the frequencies m / period, |m| <= band, to the last bit. Optics know only the radius and the footprint
 /// is a product over the axes, so an eighth of the plane and one axis are computed.
 [[nodiscard]] TransferFunction tabulated_transfer(FrequencyLattice lattice, const ChainScope& scope);
+
+/// What the target moves from one row of samples to the next, in pitches: the rows of stage::Readout, added up.
+[[nodiscard]] cv::Point2d readout_slope_of(const ChainScope& scope);
 
 /// What the simulated stages of image formation spread, added up.
 [[nodiscard]] Spread spread_of(const ChainScope& scope);

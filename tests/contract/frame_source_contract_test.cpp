@@ -65,7 +65,7 @@ Bench simulated() {
   spec.width = 32;
   spec.height = 24;
   auto model = std::make_shared<const SensorModel>(spec, full_plan(spec, {}, {}), Accuracy::draft(), 1);
-  auto scene = std::make_shared<const SceneHolder>(PlateScene{});
+  auto scene = std::make_shared<SceneHolder>(PlateScene{});
   return {nullptr, simulated_source(std::move(model), std::move(scene), "1")};
 }
 

@@ -38,7 +38,7 @@ BEGIN {
   may["sim_devices/sensor"] = hvs " tod/plate tod/presentation sim_devices/atmosphere sim_devices/scene sim_devices/module"
   may["sim_devices/prediction"] = tod " sim_devices/scene sim_devices/module sim_devices/sensor"
   may["sim_devices/lab/device_nodes"] = core
-  may["sim_devices/lab/instruments"] = core " tod/plate tod/instruments"
+  may["sim_devices/lab/instruments"] = core " tod/plate tod/presentation tod/instruments"
   may["sim_devices/lab/genicam"] = core " acquisition/pixel_formats"
   may["sim_devices/lab/gige"] = core " acquisition/aravis acquisition/pixel_formats sim_devices/lab/genicam"
   may["sim_devices/lab/video"] = core " acquisition/v4l2 acquisition/pixel_formats sim_devices/lab/device_nodes"

@@ -137,5 +137,33 @@ TEST_F(Modules, AreRefusedInASentenceWhereTheyCannotBe) {
   expect_refused(run({"plan", "./bad.toml"}), 2, "[[module]]");
 }
 
+TEST(DynamicCommand, MeasuresAPlanThatMovesAndRefusesInASentence) {
+  const TemporaryFolder folder;
+  folder.write("moving.toml",
+               small_plan(1, "[motion]\nspeeds_mrad_s = [30]\npasses = 4\nframes = 2\nlead_frames = 1\n"));
+  const auto run = [&](const std::vector<std::string>& arguments) {
+    return todbench(arguments, {.folder = folder.path()});
+  };
+
+  const Ended ended = run({"dynamic", "./moving.toml", "--json"});
+
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Json json = one_object(ended);
+  ASSERT_EQ(json["passes"].size(), 8u * json["contrasts"].size());
+  EXPECT_EQ(json["contrasts"][0]["speeds"].size(), 2u);
+  EXPECT_EQ(json["contrasts"][0]["speeds"][0]["points"][0]["ratio_to_static"].is_null() ||
+                json["contrasts"][0]["speeds"][0]["points"][0]["ratio_to_static"] == 1,
+            true);
+  // A detector without memory: no lag, within a twentieth of a frame.
+  EXPECT_NEAR(json["time_constant"]["time_constant_ms"].get<double>(), 0, 1);
+  EXPECT_LT(json["residual_px"].get<double>(), 0.1);
+  expect_refused(run({"dynamic"}), 2, "--speeds-mrad-s");
+  expect_refused(run({"dynamic", "./moving.toml", "--speeds-mrad-s", "3"}), 2, "");
+  folder.write("fast.toml", small_plan(1, "[motion]\nspeeds_mrad_s = [9000]\n"));
+  expect_refused(run({"dynamic", "./fast.toml"}), 2, "pixels a frame");
+  folder.write("long.toml", content_of(source_file("sim_devices/sensors/sc2000.toml")) + "exposure_ms = 21\n");
+  expect_refused(run({"dynamic", "--speeds-mrad-s", "3", "--sensor", "./long.toml"}), 2, "exposure_ms");
+}
+
 }  // namespace
 }  // namespace todbench::testing

@@ -177,6 +177,35 @@ Result<std::vector<double>> StageDevice::travel(const std::stop_token& stop) {
   return ends;
 }
 
+Result<std::array<double, 2>> StageDevice::run_speeds(const std::stop_token& stop) {
+  const StageRun& run = *words().run;
+  if (!run.limits.asks()) return run.limits_mm_s;
+  const auto ends = numbers(run.limits, 2, stop);
+  if (!ends) return tl::unexpected(ends.error());
+  const InstrumentUnit& unit = words().position->unit;
+  return std::array{(*ends)[0] * unit.scale, (*ends)[1] * unit.scale};
+}
+
+Result<PlateRun> StageDevice::run_along_x(double to_mm, double speed_mm_s, const std::stop_token& stop) {
+  const InstrumentUnit& unit = words().position->unit;
+  const int decimals = words().position->decimals;
+  const InstrumentUnit per_second{.name = unit.name, .scale = unit.scale, .offset = 0};
+  const std::string text =
+      command_of(words().run->set, {sent_number(to_mm, unit, decimals), sent_number(speed_mm_s, per_second, decimals)});
+  if (auto done = send(text, stop); !done) return tl::unexpected(done.error());
+  const auto said = numbers(words().run->measured, 4, stop);
+  if (!said) return tl::unexpected(said.error());
+  constexpr double not_a_number = 9e37;  // SCPI-99 volume 1, 7.2.1.5: 9.91E37
+  PlateRun run{.from_mm = in_ours((*said)[0], unit),
+               .to_mm = in_ours((*said)[1], unit),
+               .speed_mm_s = in_ours((*said)[2], per_second)};
+  if ((*said)[3] < not_a_number) run.start_s = (*said)[3];
+  // Written so that NaN fails.
+  if (!(run.speed_mm_s > 0) || run.from_mm == run.to_mm)
+    return fail(ErrorCode::disconnected, name() + ": says that it does not run after " + text);
+  return run;
+}
+
 Result<std::vector<std::string>> StageDevice::plate_names(const std::stop_token& stop) {
   if (words().catalogue.empty()) return words().plates;
   auto answer = ask(words().catalogue, stop);

@@ -85,6 +85,10 @@ class StageDevice : public InstrumentDevice {
 
   [[nodiscard]] Result<std::string> plate(const std::string& query, const std::stop_token& stop);
   [[nodiscard]] Result<Mounting> mounting(const std::string& query, const std::stop_token& stop);
+  /// Lowest and highest speed of a run, in mm/s. Precondition: the stage has runs; as for the next.
+  [[nodiscard]] Result<std::array<double, 2>> run_speeds(const std::stop_token& stop);
+  /// Commands a run along x and reads what the stage says of it.
+  [[nodiscard]] Result<PlateRun> run_along_x(double to_mm, double speed_mm_s, const std::stop_token& stop);
   /// Precondition: the stage has positions.
   [[nodiscard]] Result<cv::Point2d> position(const NumberQuestion& question, const std::stop_token& stop);
   [[nodiscard]] Result<std::vector<double>> travel(const std::stop_token& stop);

@@ -110,6 +110,15 @@ struct StagePosition {
   double tolerance_mm = 0.005;
 };
 
+/// Runs along x at constant speed, in the unit of the position and that per second. A stage without it cannot run.
+struct StageRun {
+  std::string set;        ///< "SOUR:SCAN {},{}": to where, how fast
+  NumberQuestion limits;  ///< lowest and highest speed; none: limits_mm_s
+  std::array<double, 2> limits_mm_s{};
+  NumberQuestion
+      measured;  ///< from, to, speed, and when it began in seconds of the camera's clock; above 9e37: unknown
+};
+
 /// Something that is chosen by a word: a plate, a mounting.
 struct StageChoice {
   std::string set;        ///< "ROUT:PLAT {}"; empty: there is but one
@@ -126,6 +135,7 @@ struct StageWords {
   StageChoice mounting;
   std::array<std::string, all_mountings.size()> mounting_words;  ///< empty: not in this mounting
   std::optional<StagePosition> position;
+  std::optional<StageRun> run;  ///< only with a position
 };
 
 enum class InstrumentKind { black_body, stage };

@@ -34,7 +34,7 @@ bool has_stayed(bool so, double dwell_s, const std::function<std::chrono::steady
   return std::chrono::duration<double>(time - *since).count() >= dwell_s;
 }
 
-class ScpiTarget final : public Target {
+class ScpiTarget final : public Target, private MovingTarget {
  public:
   explicit ScpiTarget(ScpiTargetOptions options)
       : options_(std::move(options)),
@@ -45,8 +45,11 @@ class ScpiTarget final : public Target {
 
   [[nodiscard]] const TargetCapabilities& capabilities() const override { return capabilities_; }
   Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) override;
+  MovingTarget* moving() override { return plates().position && plates().run ? this : nullptr; }
 
  private:
+  Result<std::array<double, 2>> run_speeds_mm_s(std::stop_token stop) override { return stage_.run_speeds(stop); }
+  Result<PlateRun> run_along_x(double to_mm, double speed_mm_s, std::stop_token stop) override;
   using TimePoint = std::chrono::steady_clock::time_point;
   struct Reading {
     PresentedTarget target;
@@ -212,6 +215,20 @@ Result<PresentedTarget> ScpiTarget::present(const TargetState& state, std::stop_
   if (auto done = black_body_.command(state.delta_t_k, stop); !done) return tl::unexpected(done.error());
   if (auto done = stage_.command(state, stop); !done) return tl::unexpected(done.error());
   return wait_until_reached(state, stop);
+}
+
+Result<PlateRun> ScpiTarget::run_along_x(double to_mm, double speed_mm_s, std::stop_token stop) {
+  // Written so that NaN fails.
+  if (!(to_mm >= travel_.min_mm.x && to_mm <= travel_.max_mm.x))
+    return fail(ErrorCode::invalid_input, stage_.name() + ": a run to " + decimal(to_mm, 3) + " mm is outside " +
+                                              decimal(travel_.min_mm.x, 3) + " to " + decimal(travel_.max_mm.x, 3) +
+                                              " mm");
+  const auto speeds = stage_.run_speeds(stop);
+  if (!speeds) return tl::unexpected(speeds.error());
+  if (!(speed_mm_s >= (*speeds)[0] && speed_mm_s <= (*speeds)[1]))
+    return fail(ErrorCode::invalid_input, stage_.name() + ": " + decimal(speed_mm_s, 3) + " mm/s is outside " +
+                                              decimal((*speeds)[0], 3) + " to " + decimal((*speeds)[1], 3) + " mm/s");
+  return stage_.run_along_x(to_mm, speed_mm_s, stop);
 }
 
 }  // namespace

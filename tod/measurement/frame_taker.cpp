@@ -187,18 +187,34 @@ Result<void> FrameTaker::take_while_presenting(const std::function<bool(std::int
   return {};
 }
 
+Result<Frame> FrameTaker::from_source(const std::stop_token& stop) {
+  if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+  auto frame = source_.next(options_.frame_timeout);
+  if (frame) return frame;
+  if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+  if (frame.error().code == ErrorCode::timeout) {
+    return fail(ErrorCode::disconnected, "camera " + source_.info().id + " sent no frame for " +
+                                             std::to_string(options_.frame_timeout.count()) + " ms");
+  }
+  return frame;
+}
+
+Result<Frame> FrameTaker::next_of_moving_scene(std::stop_token stop) {
+  while (true) {
+    auto frame = from_source(stop);
+    if (!frame) return frame;
+    const auto accepted = accept(*frame, Scene::moving);
+    if (!accepted) return tl::unexpected(accepted.error());
+    if (!*accepted) continue;
+    ++used_;
+    return frame;
+  }
+}
+
 Result<Frame> FrameTaker::next(std::stop_token stop) {
   while (true) {
-    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-    auto frame = source_.next(options_.frame_timeout);
-    if (!frame) {
-      if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-      if (frame.error().code == ErrorCode::timeout) {
-        return fail(ErrorCode::disconnected, "camera " + source_.info().id + " sent no frame for " +
-                                                 std::to_string(options_.frame_timeout.count()) + " ms");
-      }
-      return frame;
-    }
+    auto frame = from_source(stop);
+    if (!frame) return frame;
     const auto accepted = accept(*frame, Scene::still);
     if (!accepted) return tl::unexpected(accepted.error());
     if (!*accepted || frame->host_time_ns < valid_from_ns_) continue;

@@ -65,6 +65,9 @@ class FrameTaker {
   /// calls so far. For the time in which the target changes: the scene may move, and a source that is silent is no
   /// error. Errors: those of next() but for the silence.
   [[nodiscard]] Result<void> take_while_presenting(const std::function<bool(std::int64_t calls)>& enough);
+  /// The next good frame while the scene moves, on its way included: nothing is discarded, and a picture that changes
+  /// is no correction. Errors: those of next().
+  [[nodiscard]] Result<Frame> next_of_moving_scene(std::stop_token stop);
   /// Takes one good frame off the source without counting it as used.
   [[nodiscard]] Result<void> discard(std::stop_token stop);
   /// Average of `count` good frames.
@@ -82,6 +85,7 @@ class FrameTaker {
 
  private:
   enum class Scene { still, moving };
+  [[nodiscard]] Result<Frame> from_source(const std::stop_token& stop);
   [[nodiscard]] Result<void> check_share() const;
   /// The gate, then what is known of corrections.
   [[nodiscard]] std::optional<RejectedFrame> judge(const Frame& frame, Scene scene);

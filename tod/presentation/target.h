@@ -9,6 +9,7 @@
 
 #include "acquisition/core/result.h"
 #include "tod/plate/target_plate.h"
+#include "tod/presentation/moving_target.h"
 
 namespace todbench {
 
@@ -45,6 +46,8 @@ class Target {
   /// Returns when the state is reached and stable, or when `stop` is requested (`interrupted`, within a second).
   /// Errors: `timeout` (does not settle), `disconnected`, `not_found`, `invalid_input` (a state it cannot show).
   [[nodiscard]] virtual Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) = 0;
+  /// The same target where it can run; null: it cannot. Lives as long as the target.
+  [[nodiscard]] virtual MovingTarget* moving() { return nullptr; }
 };
 
 }  // namespace todbench

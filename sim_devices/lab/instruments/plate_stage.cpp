@@ -7,6 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include "acquisition/core/rng.h"
+
 namespace todbench {
 namespace {
 
@@ -71,7 +73,8 @@ bool is_valid(const PlateStageOptions& o) {
   return !o.plates.empty() && std::all_of(o.plates.begin(), o.plates.end(), printable) &&
          std::set(o.plates.begin(), o.plates.end()).size() == o.plates.size() && o.travel_mm >= 0 &&
          o.speed_mm_per_s > 0 && o.settle_s >= 0 && o.resolution_mm > 0 && o.plate_change_s >= 0 &&
-         o.mounting_change_s >= 0 && o.now;
+         o.mounting_change_s >= 0 && o.slowest_run_mm_per_s > 0 && o.slowest_run_mm_per_s <= o.speed_mm_per_s &&
+         o.run_jitter_mm >= 0 && o.now;
 }
 
 // A query without parameters.
@@ -93,7 +96,8 @@ Result<std::unique_ptr<PlateStage>> PlateStage::start(PlateStageOptions options)
   const auto time = options.now() - std::chrono::hours(24);
   const Motion at_rest{{options.plates.front(), options.plates.front(), time, 0},
                        {Mounting::identity, Mounting::identity, time, 0},
-                       {{0, 0}, {0, 0}, time, 0}};
+                       {{0, 0}, {0, 0}, time, 0},
+                       std::nullopt};
   auto server_options = options.server;
   auto stage = std::make_unique<PlateStage>(std::move(options), at_rest);
   auto server = ScpiServer::start(std::move(server_options), stage->language());
@@ -110,7 +114,24 @@ PlateStage::Motion PlateStage::motion() const {
   return motion_;
 }
 
-PlateStageState PlateStage::state() const {
+double PlateStage::camera_time_s() const {
+  if (options_.camera_clock_s) return options_.camera_clock_s();
+  return std::chrono::duration<double>(options_.now().time_since_epoch()).count();
+}
+
+cv::Point2d PlateStage::place_in(const Motion& motion, double camera_time_s) const {
+  const cv::Point2d there = position_at(motion.position, options_.now());
+  if (!motion.run) return there;
+  const double gone_s = camera_time_s - motion.run->start_s.value_or(0);
+  if (gone_s >= motion.run->duration_s()) return there;
+  const auto millisecond = static_cast<std::uint64_t>(std::max(0.0, camera_time_s) * 1000);
+  const double jitter_mm =
+      options_.run_jitter_mm * static_cast<double>(RandomStream(options_.seed, "stage.jitter").normal(millisecond));
+  return {motion.run->from_mm + motion.run->direction() * motion.run->speed_mm_s * std::max(0.0, gone_s) + jitter_mm,
+          there.y};
+}
+
+PlateStageState PlateStage::state_at(double camera_time_s) const {
   const auto time = options_.now();
   const Motion current = motion();
   const bool table_at_rest =
@@ -118,8 +139,10 @@ PlateStageState PlateStage::state() const {
   PlateStageState state;
   state.plate = value_at(current.plate, time);
   state.mounting = value_at(current.mounting, time);
-  state.shift_mm = position_at(current.position, time);
-  state.is_moving = !table_at_rest || !is_complete(current.plate, time) || !is_complete(current.mounting, time);
+  state.shift_mm = place_in(current, camera_time_s);
+  const bool runs = current.run && camera_time_s - current.run->start_s.value_or(0) < current.run->duration_s();
+  if (runs) state.speed_mm_per_s = current.run->direction() * current.run->speed_mm_s;
+  state.is_moving = runs || !table_at_rest || !is_complete(current.plate, time) || !is_complete(current.mounting, time);
   return state;
 }
 
@@ -127,10 +150,14 @@ void PlateStage::move_to(cv::Point2d position_mm) {
   const auto time = options_.now();
   const auto rounded = [&](double mm) { return std::round(mm / options_.resolution_mm) * options_.resolution_mm; };
   const cv::Point2d goal{rounded(position_mm.x), rounded(position_mm.y)};
+  const double camera_time = camera_time_s();
   const std::scoped_lock lock(mutex_);
   auto& run = motion_.position;
-  if (goal == run.to) return;
-  run.from = position_at(run, time);
+  const cv::Point2d here = place_in(motion_, camera_time);
+  if (goal == run.to && here == goal) return;
+  if (!motion_.run && goal == run.to) return;  // on its way
+  motion_.run.reset();
+  run.from = here;
   run.to = goal;
   run.since = std::max(time, run.since);
   run.duration_s = std::hypot(run.to.x - run.from.x, run.to.y - run.from.y) / options_.speed_mm_per_s;
@@ -194,6 +221,34 @@ std::vector<ScpiCommand> PlateStage::position_commands() {
           query("MEASure:POSition?", [this] { return position_text(state().shift_mm); })};
 }
 
+std::vector<ScpiCommand> PlateStage::run_commands() {
+  const auto start = [this](Parameters parameters) -> ScpiAnswer {
+    if (auto count = scpi_count(parameters, 2); !count) return tl::unexpected(count.error());
+    const auto x = scpi_number(parameters[0], -options_.travel_mm, options_.travel_mm, "MM");
+    if (!x) return tl::unexpected(x.error());
+    const auto speed = scpi_number(parameters[1], options_.slowest_run_mm_per_s, options_.speed_mm_per_s, "MM/S");
+    if (!speed) return tl::unexpected(speed.error());
+    const double camera_time = camera_time_s();
+    const auto time = options_.now();
+    const std::scoped_lock lock(mutex_);
+    const cv::Point2d here = place_in(motion_, camera_time);
+    if (here.x == *x) return tl::unexpected(ScpiError{-221, "Settings conflict; the plate is there"});
+    motion_.position = {{*x, here.y}, {*x, here.y}, time, 0};
+    motion_.run = PlateRun{.from_mm = here.x, .to_mm = *x, .speed_mm_s = *speed, .start_s = camera_time};
+    return "";
+  };
+  const auto limits = [this] {
+    return scpi_decimal(options_.slowest_run_mm_per_s, 4) + "," + scpi_decimal(options_.speed_mm_per_s, 4);
+  };
+  const auto last = [this] {
+    const auto run = motion().run;
+    if (!run) return std::string("0,0,0,9.91E37");
+    return scpi_decimal(run->from_mm, 4) + "," + scpi_decimal(run->to_mm, 4) + "," + scpi_decimal(run->speed_mm_s, 4) +
+           "," + (options_.has_trigger ? scpi_decimal(*run->start_s, 9) : "9.91E37");
+  };
+  return {{"[SOURce:]SCAN", start}, query("[SOURce:]SCAN:LIMits?", limits), query("MEASure:SCAN?", last)};
+}
+
 ScpiLanguage PlateStage::language() {
   const auto reset = [this](Parameters parameters) -> ScpiAnswer {
     if (auto count = scpi_count(parameters, 0); !count) return tl::unexpected(count.error());
@@ -203,7 +258,7 @@ ScpiLanguage PlateStage::language() {
   std::vector<ScpiCommand> commands{{"*RST", reset}, query("STATus:OPERation:CONDition?", [this] {
                                       return std::string(state().is_moving ? "2" : "0");
                                     })};
-  for (auto part : {plate_commands(), mounting_commands(), position_commands()})
+  for (auto part : {plate_commands(), mounting_commands(), position_commands(), run_commands()})
     commands.insert(commands.end(), part.begin(), part.end());
   return {"todbench,Emulated plate stage," + options_.serial + ",1.0", std::move(commands)};
 }

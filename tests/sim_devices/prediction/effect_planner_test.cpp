@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "sim_devices/prediction/cued_estimate.h"
+#include "sim_devices/prediction/direct_estimate.h"
 #include "tests/sim_devices/prediction/effect_grid.h"
 
 namespace todbench {
@@ -236,6 +237,58 @@ TEST(EffectPlanner, SimulatesTurbulenceOnlyWhereItMatters) {
   EXPECT_EQ(decision_of(*skipped, Effect::turbulence).decision, Decision::skip);
   EXPECT_GT(decision_of(*skipped, Effect::turbulence).predicted_change_percent.value(), 0);
   EXPECT_EQ(decision_of(*simulated, Effect::turbulence).decision, Decision::simulate);
+}
+
+/// What skipping the effect truly changes, in percent of the acuity, beside the bound.
+void expect_bounded(Effect effect, const SensorSpec& sensor, SceneMotion motion, double delta_t_k) {
+  TemplateObserver observer({}, triangle_alternatives());
+  const SensorPlan everything = full_plan(sensor, {}, {}, motion);
+  DirectEstimateOptions options{.motion = motion, .accuracy = Accuracy::draft(), .stop = {}};
+  options.accuracy.standard_error_percent = 0;
+  options.orientations = ShownOrientations::all;
+  const auto with = direct_estimate(sensor, everything, observer, {delta_t_k}, options);
+  const auto without = direct_estimate(sensor, full_plan(sensor, {effect}, {}, motion), observer, {delta_t_k}, options);
+  const SceneSurvey survey = survey_scene(sensor, observer, {.delta_t_k = {delta_t_k}, .motion = motion});
+  ASSERT_TRUE(with && without);
+  for (std::size_t i = 0; i < everything.decisions.size(); ++i) {
+    if (everything.decisions[i].effect != effect) continue;
+    ASSERT_TRUE(survey.change_percent[i].has_value());
+    // The same noise draw by draw: 0.1 % is left.
+    EXPECT_LE(std::abs(100 * ((*with)[0].s75_pitch / (*without)[0].s75_pitch - 1)), *survey.change_percent[i] + 0.1)
+        << to_string(effect) << " at " << delta_t_k << " K";
+  }
+}
+
+TEST(EffectPlannerProof, ExposureAndReadoutChangeNoMoreThanTheirBounds) {
+  for (const double delta_t_k : {0.23, 16.9}) {
+    for (const double part : {0.4, 0.95}) {
+      SensorSpec sensor = test::sc2000();
+      const double rate_mrad_s = sensor.ifov_mrad() * sensor.frame_rate_hz;
+      sensor.exposure_ms = 20 * part;  // so many pitches at one a frame
+      const SceneMotion a_pitch{.x_mrad_s = 0.8 * rate_mrad_s, .y_mrad_s = 0.6 * rate_mrad_s};
+      expect_bounded(Effect::exposure, sensor, a_pitch, delta_t_k);
+      sensor.exposure_ms = 0;
+      sensor.row_time_us = 80;
+      const double speed = part * 0.1 / 80e-6 * sensor.ifov_mrad();  // a tenth of a pitch from row to row
+      expect_bounded(Effect::readout, sensor, {.x_mrad_s = 0.6 * speed, .y_mrad_s = -0.8 * speed}, delta_t_k);
+    }
+  }
+}
+
+TEST(EffectPlanner, HasNoCriterionForLongExposuresAndSteepReadout) {
+  SensorSpec sensor = test::sc2000();
+  sensor.exposure_ms = 1;
+  sensor.row_time_us = 80;
+  const double rate_mrad_s = sensor.ifov_mrad() * sensor.frame_rate_hz;
+
+  // 1.3 pitches in an exposure, 0.104 from row to row.
+  const auto plan = plan_of(sensor, {16.9}, {}, {.x_mrad_s = 26 * rate_mrad_s, .y_mrad_s = 0});
+
+  ASSERT_TRUE(plan.has_value());
+  for (const Effect effect : {Effect::exposure, Effect::readout}) {
+    EXPECT_EQ(decision_of(*plan, effect).decision, Decision::simulate);
+    EXPECT_FALSE(decision_of(*plan, effect).predicted_change_percent.has_value());
+  }
 }
 
 }  // namespace

@@ -99,8 +99,7 @@ inline double threshold_px(double (*proportion)(double size_px, double noise), d
 /// A camera whose noise begins at an exposure of its own, so that runs share one sensor model and its pictures.
 class LaterExposures final : public FrameSource {
  public:
-  LaterExposures(std::shared_ptr<const SensorModel> model, std::shared_ptr<const SceneHolder> scene,
-                 std::uint64_t first)
+  LaterExposures(std::shared_ptr<const SensorModel> model, std::shared_ptr<SceneHolder> scene, std::uint64_t first)
       : plain_(simulated_source(model, scene, "1")),
         model_(std::move(model)),
         scene_(std::move(scene)),
@@ -126,7 +125,7 @@ class LaterExposures final : public FrameSource {
  private:
   std::unique_ptr<FrameSource> plain_;
   std::shared_ptr<const SensorModel> model_;
-  std::shared_ptr<const SceneHolder> scene_;
+  std::shared_ptr<SceneHolder> scene_;
   std::uint64_t first_;
   std::uint64_t index_ = 0;
 };

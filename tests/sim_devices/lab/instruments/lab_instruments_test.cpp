@@ -266,5 +266,81 @@ TEST(ScpiServerTest, DestructionEndsItsConnections) {
   EXPECT_EQ(socket.line(), "(closed)");
 }
 
+/// A stage whose runs are in a time of their own.
+struct RunningStage {
+  double camera_s = 2;
+  FakeClock clock;
+  std::unique_ptr<PlateStage> stage;
+  explicit RunningStage(bool trigger = true, double jitter_mm = 0) {
+    PlateStageOptions options;
+    options.plates = {"coarse"};
+    options.travel_mm = 20;
+    options.speed_mm_per_s = 100;
+    options.now = clock.now();
+    options.camera_clock_s = [this] { return camera_s; };
+    options.has_trigger = trigger;
+    options.run_jitter_mm = jitter_mm;
+    stage = PlateStage::start(options).value();
+  }
+};
+
+TEST(PlateStageTest, RunsAtConstantSpeedInTheTimeOfTheCamera) {
+  RunningStage bench;
+  PlainSocket socket(bench.stage->endpoint());
+  EXPECT_EQ(socket.ask("SCAN:LIM?"), "0.0100,100.0000");
+  EXPECT_EQ(socket.ask("MEAS:SCAN?"), "0,0,0,9.91E37");
+  socket.ask("POS -10,1;POS?");
+  bench.clock.advance(1);
+
+  EXPECT_EQ(socket.ask("SCAN 10,40;:MEAS:SCAN?"), "-10.0000,10.0000,40.0000,2.000000000");
+
+  EXPECT_EQ(socket.ask("STAT:OPER:COND?"), "2");
+  bench.clock.advance(3600);  // the run does not know of it
+  bench.camera_s = 2.1;
+  EXPECT_NEAR(bench.stage->state().shift_mm.x, -6, 1e-9);
+  EXPECT_EQ(bench.stage->state().shift_mm.y, 1);
+  EXPECT_EQ(bench.stage->state().speed_mm_per_s, 40);
+  EXPECT_NEAR(bench.stage->state_at(2.25).shift_mm.x, 0, 1e-9);
+  bench.camera_s = 2.6;
+  EXPECT_EQ(bench.stage->state().shift_mm.x, 10);
+  EXPECT_EQ(bench.stage->state().speed_mm_per_s, 0);
+  EXPECT_EQ(socket.ask("STAT:OPER:COND?"), "0");
+  // Back, and sent elsewhere on the way.
+  EXPECT_EQ(socket.ask("SCAN -10,10;:MEAS:SCAN?"), "10.0000,-10.0000,10.0000,2.600000000");
+  bench.camera_s = 2.7;
+  EXPECT_EQ(bench.stage->state().speed_mm_per_s, -10);
+  EXPECT_NEAR(bench.stage->state().shift_mm.x, 9, 1e-9);
+  socket.ask("POS 9,1;POS?");
+  bench.clock.advance(1);
+  EXPECT_EQ(bench.stage->state().shift_mm, cv::Point2d(9, 1));
+  EXPECT_EQ(bench.stage->state().speed_mm_per_s, 0);
+}
+
+TEST(PlateStageTest, RefusesRunsThatItCannotMake) {
+  RunningStage bench;
+  PlainSocket socket(bench.stage->endpoint());
+  for (const char* wrong : {"SCAN 21,10", "SCAN 5,0", "SCAN 5,101", "SCAN 5", "SCAN nan,10", "SCAN 0,10"}) {
+    socket.send(std::string(wrong) + "\n");
+    EXPECT_NE(socket.ask("SYST:ERR?").substr(0, 2), "0,") << wrong;
+  }
+  EXPECT_EQ(bench.stage->state().speed_mm_per_s, 0);
+}
+
+TEST(PlateStageTest, WithoutATriggerDoesNotSayWhenARunBeganAndJitters) {
+  RunningStage bench(false, 0.05);
+  PlainSocket socket(bench.stage->endpoint());
+
+  EXPECT_EQ(socket.ask("SCAN 10,10;:MEAS:SCAN?"), "0.0000,10.0000,10.0000,9.91E37");
+
+  double squares = 0;
+  constexpr int count = 500;
+  for (int i = 0; i < count; ++i) {
+    const double time_s = 2 + 0.0015 * i;
+    squares += std::pow(bench.stage->state_at(time_s).shift_mm.x - 10 * (time_s - 2), 2) / count;
+  }
+  // The variance of 500 normal numbers has a relative standard error of 6.3 %.
+  EXPECT_NEAR(squares / (0.05 * 0.05), 1, 0.26);
+}
+
 }  // namespace
 }  // namespace todbench

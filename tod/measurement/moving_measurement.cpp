@@ -1,0 +1,434 @@
+#include "tod/measurement/moving_measurement.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tod/measurement/frame_taker.h"
+#include "tod/measurement/target_change.h"
+#include "tod/registration/patch_windows.h"
+
+namespace todbench {
+namespace {
+
+constexpr double fastest_px = 5;    ///< a frame
+constexpr int spare_frames = 10;    ///< of a run, for frames that were on their way when it began
+constexpr double found_within = 2;  ///< pixels round the place where the plate is expected
+
+/// A frame of a pass, and where the large triangles are in it, from where they were at rest.
+struct LocatedFrame {
+  std::uint64_t sequence = 0;
+  double time_s = 0;  ///< of the camera's clock
+  cv::Mat1d kelvin;
+  cv::Point2d moved_px;
+};
+
+/// A plate in a mounting.
+struct MovingSetUp {
+  TargetPlate plate;  ///< mounted
+  std::string name;
+  Mounting mounting = Mounting::identity;
+  Registration base;  ///< of the plate at shift 0
+};
+
+/// How far the centre of mass of the large triangles is from where registration has them: a picture with a tail has its
+/// mean behind its edges, and the mean is what a lag moves. Windows are those of the observer, a pixel wider.
+cv::Point2d mass_from_place(const cv::Mat1d& kelvin, const TargetPlate& plate, const Registration& registration,
+                            double smallest_px) {
+  double mass = 0;
+  cv::Point2d moment(0, 0);
+  for (const PlateTriangle& triangle : plate.triangles) {
+    const double size_px = triangle.size_mm * registration.scale_at(triangle.position_mm);
+    if (size_px < smallest_px) continue;
+    const cv::Point2d place = registration.pixel(triangle.position_mm);
+    const int side = 2 * static_cast<int>(std::ceil(1.05 * size_px + 3));
+    const cv::Rect window = patch_window(place, side).pixels;
+    if ((window & cv::Rect({0, 0}, kelvin.size())) != window) continue;
+    std::vector<double> border;
+    const auto values = kelvin(window);
+    for (int i = 0; i < side; ++i) {
+      for (const double value : {values(0, i), values(side - 1, i), values(i, 0), values(i, side - 1)})
+        border.push_back(value);
+    }
+    std::nth_element(border.begin(), border.begin() + std::ssize(border) / 2, border.end());
+    const double surround = border[border.size() / 2];
+    for (int j = 0; j < side; ++j) {
+      for (int i = 0; i < side; ++i) {
+        const double above = values(j, i) - surround;
+        mass += above;
+        moment += above * (cv::Point2d(window.x + i, window.y + j) - place);
+      }
+    }
+  }
+  return mass == 0 ? cv::Point2d(0, 0) : moment / mass;
+}
+
+class MovingRun {
+ public:
+  MovingRun(FrameSource& source, Target& target, TemplateObserver& observer, const MovingMeasurementOptions& options,
+            MeasurementHost& host, const std::function<void(const MovingPassRecord&)>& on_pass, std::stop_token stop)
+      : source_(source),
+        target_(target),
+        observer_(observer),
+        options_(options),
+        host_(host),
+        on_pass_(on_pass),
+        stop_(std::move(stop)),
+        taker_(source, taker_options()),
+        phases_(options.measurement.seed, "moving.phase"),
+        answers_(options.measurement.seed, "moving.answers") {
+    options_.measurement.registration.expected_scale_px_per_mm =
+        1 / (options.measurement.distance_m * options.measurement.ifov_mrad);
+    result_.frame_rate_hz = source.info().frame_rate_hz;
+  }
+
+  Result<MovingMeasurement> operator()() {
+    if (auto checked = check(); !checked) return tl::unexpected(checked.error());
+    const std::stop_callback wake(stop_, [this] { source_.stop(); });
+    if (auto started = source_.start(); !started) return tl::unexpected(started.error());
+    auto done = all_set_ups();
+    source_.stop();
+    if (!done)
+      return tl::unexpected(stop_.stop_requested() ? Error{ErrorCode::interrupted, "stopped on request"}
+                                                   : done.error());
+    result_.frames_rejected = taker_.rejected();
+    result_.frames_lost = taker_.lost();
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] const MeasurementOptions& at_rest() const { return options_.measurement; }
+
+  [[nodiscard]] FrameTakerOptions taker_options() const {
+    FrameTakerOptions out{.integrity = at_rest().integrity,
+                          .frames_after_change = at_rest().frames_after_change,
+                          .nuc_wait_s = at_rest().nuc_wait_s,
+                          .max_rejected_share = at_rest().max_rejected_share,
+                          .frame_timeout = at_rest().frame_timeout};
+    out.integrity.width = source_.info().width;
+    out.integrity.height = source_.info().height;
+    return out;
+  }
+
+  [[nodiscard]] Result<void> check() const {
+    const auto refuse = [](const std::string& why) { return fail(ErrorCode::invalid_input, why); };
+    if (at_rest().samples_per_pitch != 1)
+      return refuse("a target that moves is measured with a camera without microscan and super-resolution");
+    if (!source_.info().scale.calibrated())
+      return fail(ErrorCode::calibration,
+                  "camera " + source_.info().id + " has no temperature scale: contrasts in kelvin cannot be measured");
+    if (!(result_.frame_rate_hz > 0)) return refuse("camera " + source_.info().id + " does not say its frame rate");
+    if (!target_.capabilities().sets_shift || target_.moving() == nullptr)
+      return refuse("the target cannot run at constant speed: its stage needs a [position] and a [run]");
+    for (const double speed : options_.speeds_mrad_s) {
+      if (!(speed >= 0 && step_px(speed) <= fastest_px))
+        return refuse(fmt::format("{:g} mrad/s is more than {:g} pixels a frame", speed, fastest_px));
+    }
+    return {};
+  }
+
+  [[nodiscard]] double step_px(double speed_mrad_s) const {
+    return speed_mrad_s / at_rest().ifov_mrad / result_.frame_rate_hz;
+  }
+
+  Result<void> all_set_ups() {
+    std::vector<double> contrasts = options_.delta_t_k;
+    std::stable_sort(contrasts.begin(), contrasts.end(), [](double a, double b) { return std::abs(a) > std::abs(b); });
+    largest_k_ = contrasts.front();
+    for (const TargetPlate& plate : at_rest().plates) {
+      for (const Mounting mounting : options_.mountings) {
+        MovingSetUp set_up{.plate = mounted(plate, mounting), .name = plate.name, .mounting = mounting, .base = {}};
+        if (auto found = locate(set_up, contrasts.front()); !found) return found;
+        if (auto prepared = prepare(set_up); !prepared) return prepared;
+        for (const double delta_t_k : contrasts) {
+          if (auto done = one_contrast(set_up, delta_t_k); !done) return done;
+        }
+      }
+    }
+    return {};
+  }
+
+  Result<void> present(const MovingSetUp& set_up, double delta_t_k, cv::Point2d shift_mm) {
+    if (stop_.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+    const TargetState state{
+        .plate = set_up.name, .mounting = set_up.mounting, .delta_t_k = delta_t_k, .shift_mm = shift_mm};
+    auto change = change_target(target_, taker_, host_, state, stop_);
+    if (!change) return tl::unexpected(change.error());
+    if (!change->presented && !change->given_up) return fail("presenting the target", change->presented.error());
+    if (!change->frames) return change->frames;
+    const auto there_ns = host_.now_ns(Moment::scene_changed);
+    if (!there_ns) return tl::unexpected(there_ns.error());
+    taker_.scene_changed(*there_ns);
+    return {};
+  }
+
+  Result<void> locate(MovingSetUp& set_up, double delta_t_k) {
+    if (auto shown = present(set_up, delta_t_k, {0, 0}); !shown) return shown;
+    const auto picture = taker_.average(at_rest().registration_frames, stop_);
+    if (!picture) return tl::unexpected(picture.error());
+    auto registration = register_plate(picture->kelvin, set_up.plate, at_rest().registration);
+    if (!registration)
+      return fail("registering plate " + set_up.name + " mounted " + std::string(to_string(set_up.mounting)),
+                  registration.error());
+    if ((registration->contrast_sign > 0) != (delta_t_k > 0))
+      return fail(ErrorCode::calibration,
+                  "the triangles of plate " + set_up.name + " have the opposite polarity of the contrast asked for");
+    set_up.base = *registration;
+    result_.set_ups.push_back({set_up.name, set_up.mounting, *registration});
+    if (result_.temporal_noise_k == 0) result_.temporal_noise_k = picture->temporal_noise_k;
+    return {};
+  }
+
+  Result<void> prepare(const MovingSetUp& set_up) {
+    if (judges_.contains(set_up.name)) return {};
+    if (scale_px_per_mm_ == 0) scale_px_per_mm_ = set_up.base.scale_px_per_mm;
+    std::vector<double> sizes;
+    std::vector<std::size_t> size_of;
+    for (const PlateTriangle& triangle : set_up.plate.triangles) {
+      const double size = triangle.size_mm * scale_px_per_mm_;
+      const auto known = std::find(sizes.begin(), sizes.end(), size);
+      size_of.push_back(static_cast<std::size_t>(known - sizes.begin()));
+      if (known == sizes.end()) sizes.push_back(size);
+    }
+    auto judge = SequenceJudge::prepare(observer_, sizes);
+    if (!judge) return fail("plate " + set_up.name, judge.error());
+    judges_.emplace(set_up.name, PreparedJudge{*std::move(judge), std::move(sizes), std::move(size_of)});
+    return {};
+  }
+
+  Result<void> one_contrast(const MovingSetUp& set_up, double delta_t_k) {
+    if (auto shown = present(set_up, delta_t_k, {0, 0}); !shown) return shown;
+    const auto picture = taker_.average(at_rest().contrast_frames, stop_);
+    if (!picture) return tl::unexpected(picture.error());
+    const auto contrast = effective_contrast(picture->kelvin, set_up.plate, set_up.base, at_rest().min_reference_px);
+    if (!contrast) return fail("measuring the effective contrast", contrast.error());
+    if (!(contrast->value * delta_t_k > 0))
+      return fail(ErrorCode::calibration, fmt::format("the target was set to {:+.3f} K but the camera sees {:+.3f} K",
+                                                      delta_t_k, contrast->value));
+    const auto response = at_rest().contrast_response.find(set_up.name);
+    const double seen_k = contrast->value / (response == at_rest().contrast_response.end() ? 1.0 : response->second);
+    for (int phase = 0; phase < options_.passes; ++phase, ++pairs_) {
+      for (const double speed : options_.speeds_mrad_s) {
+        MovingPassRecord pass{.pass = static_cast<int>(result_.passes.size()),
+                              .pair = pairs_,
+                              .plate = set_up.name,
+                              .mounting = set_up.mounting,
+                              .set_delta_t_k = delta_t_k,
+                              .delta_t_k = seen_k,
+                              .speed_mrad_s = speed,
+                              .along_x = phase % 2 == 0 ? 1.0 : -1.0,
+                              .lag_s = {},
+                              .dropped = {}};
+        if (auto done = one_pass(set_up, pass); !done) return done;
+        dropped_ += pass.dropped.empty() ? 0 : 1;
+        if (on_pass_) on_pass_(pass);
+        result_.passes.push_back(std::move(pass));
+        // A handful may have bad luck; a third of a dozen and more is the bench.
+        if (dropped_ >= 4 && 3 * dropped_ >= result_.passes.size())
+          return fail(ErrorCode::integrity, fmt::format("{} of {} passes could not be measured; the last: {}", dropped_,
+                                                        result_.passes.size(), result_.passes.back().dropped));
+      }
+    }
+    return {};
+  }
+
+  Result<void> one_pass(const MovingSetUp& set_up, MovingPassRecord& pass) {
+    const double pixel_mm = at_rest().ifov_mrad * at_rest().distance_m;
+    const RandomStream random = phases_.sub(static_cast<std::uint64_t>(pass.pair));
+    const cv::Point2d phase_mm(pixel_mm * (random.uniform(0) - 0.5), pixel_mm * (random.uniform(1) - 0.5));
+    const double step_mm = step_px(pass.speed_mrad_s) * pixel_mm;
+    const double half_mm = pass.along_x * step_mm * (options_.lead_frames + options_.frames + spare_frames) / 2;
+    const cv::Point2d from_mm = phase_mm - cv::Point2d(half_mm, 0);
+    if (auto shown = present(set_up, pass.set_delta_t_k, from_mm); !shown) return shown;
+    const Registration begin = set_up.base.shifted(from_mm);
+    Result<std::vector<LocatedFrame>> frames =
+        pass.speed_mrad_s == 0 ? frames_at_rest() : frames_of_run(set_up, begin, phase_mm.x + half_mm, pass);
+    if (!frames) return tl::unexpected(frames.error());
+    if (!pass.dropped.empty()) return {};
+    answer(set_up, begin, *frames, pass);
+    return {};
+  }
+
+  Result<std::vector<LocatedFrame>> frames_at_rest() {
+    std::vector<LocatedFrame> frames;
+    for (int k = 0; k < options_.frames; ++k) {
+      const auto frame = taker_.next(stop_);
+      if (!frame) return tl::unexpected(frame.error());
+      auto kelvin = to_kelvin(*frame);
+      if (!kelvin) return tl::unexpected(kelvin.error());
+      frames.push_back({frame->sequence, 0, *std::move(kelvin), {0, 0}});
+    }
+    return frames;
+  }
+
+  /// Frames in which the plate runs, with their places; those of the pass are the first after the lead.
+  Result<std::vector<LocatedFrame>> frames_of_run(const MovingSetUp& set_up, const Registration& begin, double to_mm,
+                                                  MovingPassRecord& pass) {
+    const double speed_mm_s = pass.speed_mrad_s * at_rest().distance_m;
+    const auto run = target_.moving()->run_along_x(to_mm, speed_mm_s, stop_);
+    if (!run) return fail("moving the target", run.error());
+    // All frames are taken before any is looked at: the camera does not wait.
+    auto taken = taken_of_run(*run);
+    if (!taken) return tl::unexpected(taken.error());
+    const cv::Point2d px_s =
+        run->direction() * run->speed_mm_s * (set_up.base.pixel({1, 0}) - set_up.base.pixel({0, 0}));
+    pass.said_px_s = std::hypot(px_s.x, px_s.y);
+    const double step = pass.said_px_s / result_.frame_rate_hz, whole = pass.said_px_s * run->duration_s();
+    const cv::Point2d along = px_s / pass.said_px_s;
+    std::vector<LocatedFrame> chosen;
+    cv::Point2d expected(0, 0);
+    for (std::size_t i = 0; i < taken->size() && std::ssize(chosen) < options_.frames; ++i) {
+      LocatedFrame& frame = (*taken)[i];
+      const auto found =
+          measure_shift(frame.kelvin, set_up.plate, begin.moved(expected), at_rest().registration, found_within + step);
+      if (!found) {
+        pass.dropped = "the large triangles were not found in a frame: " + found.error().message;
+        return std::vector<LocatedFrame>{};
+      }
+      frame.moved_px = expected + *found;
+      expected =
+          frame.moved_px + (i + 1 < taken->size() ? px_s * ((*taken)[i + 1].time_s - frame.time_s) : cv::Point2d());
+      const double gone = frame.moved_px.dot(along);
+      if (gone > whole) expected = px_s * run->duration_s();  // at its end
+      if (gone < step * options_.lead_frames || gone > whole - step) continue;
+      if (!chosen.empty() && frame.sequence != chosen.back().sequence + 1) chosen.clear();
+      chosen.push_back(std::move(frame));
+    }
+    if (std::ssize(chosen) < options_.frames) {
+      pass.dropped = fmt::format("{} successive frames of the run, {} wanted", chosen.size(), options_.frames);
+      return std::vector<LocatedFrame>{};
+    }
+    if (run->start_s && pass.set_delta_t_k == largest_k_) {
+      double behind_px = 0;
+      for (const LocatedFrame& frame : chosen) {
+        const cv::Point2d place =
+            frame.moved_px +
+            mass_from_place(frame.kelvin, set_up.plate, begin.moved(frame.moved_px), at_rest().min_reference_px);
+        behind_px += ((frame.time_s - *run->start_s) * pass.said_px_s - place.dot(along)) / options_.frames;
+      }
+      pass.lag_s = behind_px / pass.said_px_s;
+    }
+    follow_line(chosen, px_s, pass);
+    return chosen;
+  }
+
+  /// Until the run is over by the camera's clock or, where nobody knows when it began, by the number of frames.
+  Result<std::vector<LocatedFrame>> taken_of_run(const PlateRun& run) {
+    std::vector<LocatedFrame> taken;
+    const int enough = options_.lead_frames + options_.frames + spare_frames;
+    for (int k = 0; k < 10 * enough; ++k) {
+      const auto frame = taker_.next_of_moving_scene(stop_);
+      if (!frame) return tl::unexpected(frame.error());
+      auto kelvin = to_kelvin(*frame);
+      if (!kelvin) return tl::unexpected(kelvin.error());
+      const double time_s = frame->device_time_ns != 0 ? static_cast<double>(frame->device_time_ns) * 1e-9
+                                                       : static_cast<double>(frame->sequence) / result_.frame_rate_hz;
+      taken.push_back({frame->sequence, time_s, *std::move(kelvin), {}});
+      if (run.start_s ? time_s >= *run.start_s + run.duration_s() : k + 1 >= enough + spare_frames) break;
+    }
+    return taken;
+  }
+
+  /// The line at the stage's speed through the middle of the places, and how far they are from it.
+  void follow_line(std::vector<LocatedFrame>& frames, cv::Point2d px_s, MovingPassRecord& pass) {
+    const auto n = static_cast<double>(frames.size());
+    cv::Point2d offset(0, 0);
+    double mean_s = 0;
+    for (const LocatedFrame& frame : frames) {
+      offset += (frame.moved_px - px_s * (frame.time_s - frames.front().time_s)) / n;
+      mean_s += frame.time_s / n;
+    }
+    const cv::Point2d along = px_s / pass.said_px_s;
+    double squares = 0, covariance = 0, variance = 0;
+    for (LocatedFrame& frame : frames) {
+      const cv::Point2d line = offset + px_s * (frame.time_s - frames.front().time_s);
+      const cv::Point2d miss = frame.moved_px - line;
+      squares += miss.dot(miss) / (2 * n);
+      covariance += (frame.time_s - mean_s) * frame.moved_px.dot(along);
+      variance += (frame.time_s - mean_s) * (frame.time_s - mean_s);
+      if (options_.places == PlaceSource::stage) frame.moved_px = line;
+    }
+    pass.residual_px = std::sqrt(squares);
+    pass.measured_px_s = variance > 0 ? covariance / variance : pass.said_px_s;
+  }
+
+  void answer(const MovingSetUp& set_up, const Registration& begin, const std::vector<LocatedFrame>& frames,
+              MovingPassRecord& pass) {
+    const PreparedJudge& prepared = judges_.at(set_up.name);
+    std::vector<cv::Mat1f> pictures;
+    for (const LocatedFrame& frame : frames) pictures.emplace_back(frame.kelvin);
+    const cv::Rect whole({0, 0}, pictures.front().size());
+    // The same numbers at every speed: ratios between speeds are paired.
+    const RandomStream noise = answers_.sub(static_cast<std::uint64_t>(pass.pair));
+    for (std::size_t t = 0; t < set_up.plate.triangles.size(); ++t) {
+      const PlateTriangle& triangle = set_up.plate.triangles[t];
+      const std::size_t size = prepared.size_of[t];
+      SeenSequence seen{
+          .frames = pictures, .places = {}, .contrast_k = pass.delta_t_k, .noise_k = result_.temporal_noise_k};
+      bool inside = true;
+      for (const LocatedFrame& frame : frames) {
+        seen.places.push_back(begin.pixel(triangle.position_mm) + frame.moved_px);
+        const cv::Rect window = patch_window(seen.places.back(), prepared.judge.window_samples(size)).pixels;
+        inside = inside && (window & whole) == window;
+      }
+      if (!inside) {
+        ++pass.left_out;
+        continue;
+      }
+      for (const SequenceObserver kind : all_sequence_observers) {
+        const int chosen = prepared.judge.choose(kind, size, seen, noise.sub(static_cast<std::uint64_t>(kind)).sub(t));
+        Trial trial;
+        trial.presentation = pass.pair;
+        trial.plate = set_up.name;
+        trial.mounting = set_up.mounting;
+        trial.triangle = triangle.name;
+        trial.set_delta_t_k = pass.set_delta_t_k;
+        trial.delta_t_k = pass.delta_t_k;
+        trial.size_mm = triangle.size_mm;
+        trial.size_mrad = triangle.size_mm / at_rest().distance_m;
+        trial.size_px = prepared.sizes[size];
+        trial.truth = triangle.apex;
+        trial.answer = static_cast<Apex>(chosen);
+        const auto window = patch_window(seen.places.front(), prepared.judge.window_samples(size));
+        trial.phase_x_px = window.phase.x;
+        trial.phase_y_px = window.phase.y;
+        trial.frame = frames.front().sequence;
+        result_.answers.push_back({kind, pass.speed_mrad_s, std::move(trial)});
+      }
+    }
+  }
+
+  struct PreparedJudge {
+    SequenceJudge judge;
+    std::vector<double> sizes;         ///< in samples
+    std::vector<std::size_t> size_of;  ///< per triangle
+  };
+
+  FrameSource& source_;
+  Target& target_;
+  TemplateObserver& observer_;
+  MovingMeasurementOptions options_;
+  MeasurementHost& host_;
+  const std::function<void(const MovingPassRecord&)>& on_pass_;
+  std::stop_token stop_;
+  FrameTaker taker_;
+  RandomStream phases_, answers_;
+  MovingMeasurement result_;
+  std::map<std::string, PreparedJudge> judges_;  ///< by plate
+  double scale_px_per_mm_ = 0, largest_k_ = 0;
+  int pairs_ = 0;
+  std::size_t dropped_ = 0;
+};
+
+}  // namespace
+
+Result<MovingMeasurement> measure_moving(FrameSource& source, Target& target, TemplateObserver& observer,
+                                         const MovingMeasurementOptions& options, MeasurementHost& host,
+                                         const std::function<void(const MovingPassRecord&)>& on_pass,
+                                         std::stop_token stop) {
+  return MovingRun(source, target, observer, options, host, on_pass, std::move(stop))();
+}
+
+}  // namespace todbench

@@ -1,0 +1,114 @@
+#include "tod/measurement/sequence_judge.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tod/plate/test_pattern.h"
+#include "tod/registration/patch_windows.h"
+
+namespace todbench {
+namespace {
+
+cv::Mat1d seen_in(const cv::Mat1f& frame, const PatchWindow& window) {
+  cv::Mat1d kelvin;
+  frame(window.pixels).convertTo(kelvin, CV_64F);
+  return kelvin;
+}
+
+}  // namespace
+
+std::string_view to_string(SequenceObserver observer) {
+  constexpr std::array<std::string_view, all_sequence_observers.size()> names{"single-frame", "tracking-sum",
+                                                                              "static-sum"};
+  return names[static_cast<std::size_t>(observer)];
+}
+
+Result<SequenceJudge> SequenceJudge::prepare(TemplateObserver& observer, std::span<const double> sizes) {
+  SequenceJudge judge;
+  judge.spec_ = observer.spec();
+  judge.steps_ = static_cast<int>(std::lround(1 / judge.spec_.search_step_samples));
+  judge.reach_ = static_cast<int>(std::lround(judge.spec_.search_range_samples * judge.steps_));
+  TemplateObserverSpec wider = judge.spec_;
+  const int half_a_sample = (judge.steps_ + 1) / 2;
+  wider.search_range_samples += static_cast<double>(half_a_sample) / judge.steps_;
+  judge.wide_reach_ = judge.reach_ + half_a_sample;
+  if (auto valid = validate(wider); !valid) return tl::unexpected(valid.error());
+  for (const double size : sizes) {
+    auto prepared = observer.prepare(size, 1);
+    if (!prepared) return tl::unexpected(prepared.error());
+    auto bank = TemplateBank::build(wider, triangle_alternatives(), size, 1);
+    if (!bank) return tl::unexpected(bank.error());
+    judge.sizes_.push_back({*prepared, std::make_shared<const TemplateBank>(*std::move(bank))});
+  }
+  return judge;
+}
+
+int SequenceJudge::window_samples(std::size_t size) const {
+  return std::max(sizes_[size].observer->window_samples(), sizes_[size].bank->window_samples());
+}
+
+int SequenceJudge::choose(SequenceObserver kind, std::size_t size, const SeenSequence& seen,
+                          const RandomStream& noise) const {
+  if (kind == SequenceObserver::tracking_sum) return tracked(sizes_[size], seen, noise);
+  if (kind == SequenceObserver::static_sum) return averaged(sizes_[size], seen, noise);
+  const PatchWindow window = patch_window(seen.places.front(), sizes_[size].observer->window_samples());
+  const Patch patch{.kelvin = seen_in(seen.frames.front(), window), .phase = window.phase, .noise_k = seen.noise_k};
+  return sizes_[size].observer->choose(patch, seen.contrast_k, noise).alternative;
+}
+
+int SequenceJudge::averaged(const PreparedSize& size, const SeenSequence& seen, const RandomStream& noise) const {
+  const cv::Point2d middle = seen.places.front() + (seen.places.back() - seen.places.front()) / 2;
+  const PatchWindow window = patch_window(middle, size.observer->window_samples());
+  Patch patch{.kelvin = cv::Mat1d::zeros(window.pixels.size()), .phase = window.phase};
+  for (const cv::Mat1f& frame : seen.frames) patch.kelvin += seen_in(frame, window);
+  patch.kelvin /= static_cast<double>(seen.frames.size());
+  patch.noise_k = seen.noise_k / std::sqrt(static_cast<double>(seen.frames.size()));
+  return size.observer->choose(patch, seen.contrast_k, noise).alternative;
+}
+
+/// Mean of the scores over the frames, each at the template that stands where the target is, and the observer's own
+/// noise once.
+int SequenceJudge::tracked(const PreparedSize& size, const SeenSequence& seen, const RandomStream& noise) const {
+  const TemplateBank& bank = *size.bank;
+  const auto samples = static_cast<std::size_t>(bank.window_samples() * bank.window_samples());
+  const std::size_t side = static_cast<std::size_t>(2 * reach_ + 1), places = side * side;
+  std::vector<float> patch_values(samples), room(samples), scores(bank.padded_templates());
+  std::vector<double> sums(static_cast<std::size_t>(bank.alternatives()) * places);
+  TemplateObserverSpec without_noise = spec_;
+  without_noise.internal_noise = 0;
+  without_noise.sensor_noise_factor = 1;
+  const double weight = 1.0 / static_cast<double>(seen.frames.size());
+  const auto add = [&](cv::Point2d phase, double share) {
+    bank.project(patch_values, scores);
+    const int right = static_cast<int>(std::lround(phase.x * steps_)) + wide_reach_ - reach_;
+    const int down = static_cast<int>(std::lround(phase.y * steps_)) + wide_reach_ - reach_;
+    const int wide = 2 * wide_reach_ + 1;
+    for (int o = 0; o < bank.alternatives(); ++o) {
+      for (int i = 0; i < static_cast<int>(places); ++i) {
+        const int x = i % static_cast<int>(side) + right, y = i / static_cast<int>(side) + down;
+        sums[static_cast<std::size_t>(o) * places + static_cast<std::size_t>(i)] +=
+            share * static_cast<double>(scores[static_cast<std::size_t>(o * bank.places() + y * wide + x)]);
+      }
+    }
+  };
+  for (std::size_t k = 0; k < seen.frames.size(); ++k) {
+    const PatchWindow window = patch_window(seen.places[k], bank.window_samples());
+    const Patch patch{.kelvin = seen_in(seen.frames[k], window), .phase = window.phase};
+    seen_patch(without_noise, patch, seen.contrast_k, noise, patch_values, room);
+    add(window.phase, weight);
+  }
+  const Patch nothing{.kelvin = cv::Mat1d::zeros(bank.window_samples(), bank.window_samples()),
+                      .phase = {},
+                      .noise_k = seen.noise_k * std::sqrt(weight)};
+  seen_patch(spec_, nothing, seen.contrast_k, noise, patch_values, room);
+  add({0, 0}, 1);
+  Choice choice;
+  choice.alternatives = bank.alternatives();
+  for (int o = 0; o < choice.alternatives; ++o) {
+    const auto begin = sums.begin() + o * static_cast<std::ptrdiff_t>(places);
+    choice.scores[static_cast<std::size_t>(o)] = *std::max_element(begin, begin + static_cast<std::ptrdiff_t>(places));
+  }
+  return winning_alternative(choice, noise);
+}
+
+}  // namespace todbench

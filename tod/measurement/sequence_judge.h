@@ -1,0 +1,63 @@
+// Observers of a target that moves: what is made of several frames of one pass.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "acquisition/core/rng.h"
+#include "hvs/observer/template_observer.h"
+
+namespace todbench {
+
+/// What an observer does with the frames of a pass.
+enum class SequenceObserver {
+  single_frame,  ///< judges the first frame, and no other
+  tracking_sum,  ///< adds the scores of all frames, each at the true place of the target: pursuit, an upper bound
+  static_sum,    ///< averages all frames where the target is in the middle of the pass: persistence without pursuit
+};
+inline constexpr std::array all_sequence_observers{SequenceObserver::single_frame, SequenceObserver::tracking_sum,
+                                                   SequenceObserver::static_sum};
+[[nodiscard]] std::string_view to_string(SequenceObserver observer);
+
+/// One triangle in the frames of a pass.
+struct SeenSequence {
+  std::span<const cv::Mat1f> frames;  ///< kelvin; whole frames, at least one
+  std::vector<cv::Point2d> places;    ///< of its centroid in each, pixel centres at integers
+  double contrast_k = 0;
+  double noise_k = 0;  ///< of the sensor in one frame
+};
+
+/// Judges at several sizes. Internal noise is drawn once for each decision, whatever the number of frames. One thread
+/// at a time.
+class SequenceJudge {
+ public:
+  /// `sizes` in samples. Errors: those of the observer.
+  [[nodiscard]] static Result<SequenceJudge> prepare(TemplateObserver& observer, std::span<const double> sizes);
+
+  [[nodiscard]] std::size_t sizes() const { return sizes_.size(); }
+  /// Side of the window that size `size` is judged in, search of the sum included, in samples.
+  [[nodiscard]] int window_samples(std::size_t size) const;
+  /// The alternative. Precondition: the windows round all places are in the frames.
+  [[nodiscard]] int choose(SequenceObserver kind, std::size_t size, const SeenSequence& seen,
+                           const RandomStream& noise) const;
+
+ private:
+  /// Observer and bank of one size. The bank reaches half a sample further than the observer searches, so that the
+  /// whole search is round the true place wherever that is between two samples.
+  struct PreparedSize {
+    std::shared_ptr<const PreparedObserver> observer;
+    std::shared_ptr<const TemplateBank> bank;
+  };
+  [[nodiscard]] int tracked(const PreparedSize& size, const SeenSequence& seen, const RandomStream& noise) const;
+  [[nodiscard]] int averaged(const PreparedSize& size, const SeenSequence& seen, const RandomStream& noise) const;
+
+  TemplateObserverSpec spec_;
+  int steps_ = 8, reach_ = 8, wide_reach_ = 12;
+  std::vector<PreparedSize> sizes_;
+};
+
+}  // namespace todbench
