@@ -24,7 +24,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 10> pixel_me
 
 /// What a map shows and what its greys or colours mean.
 std::pair<std::string, std::string> words_of(const PixelMap& map) {
-  const auto kelvin = [](double value) { return significant(value, 3) + " K"; };
+  // A temperature and not a difference: hundredths of a kelvin count.
+  const int digits = map.black_k > 100 ? 5 : 3;
+  const auto kelvin = [digits](double value) { return significant(value, digits) + " K"; };
   const std::string greys = ": " + kelvin(map.black_k) + " black to " + kelvin(map.white_k) + " white";
   if (map.name == "temporal_noise") return {"Temporal noise of each pixel", greys};
   if (map.name == "fixed_pattern") return {"Fixed pattern, without shading", greys};
@@ -44,8 +46,11 @@ Figure map_figure(const PixelMap& map, const std::string& who, std::size_t numbe
   if (map.name == "triangles") drawing.id += "-" + std::to_string(number);
   drawing.title = title + ", " + who;
   drawing.description = title + meaning;
-  drawing.width = width, drawing.height = width * map.height / map.width;
-  drawing.frame = {0, 0, drawing.width, drawing.height};
+  // A tall one is narrower, so that two pairs fit on a page.
+  constexpr double most_height = 360;
+  const double scale = std::min(width / map.width, most_height / map.height);
+  drawing.width = width, drawing.height = scale * map.height;
+  drawing.frame = {(width - scale * map.width) / 2, 0, scale * map.width, drawing.height};
   drawing.inside.push_back({.shape = Raster{drawing.frame, map.png}});
   return {std::move(drawing), title + ", " + who + meaning};
 }

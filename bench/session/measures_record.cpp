@@ -83,15 +83,13 @@ void add_pixels(MeasureLines& out, const PixelMeasure& pixels) {
   }
   for (const PixelDefect kind : pixel_defect_kinds) {
     if (kind == PixelDefect::substituted) continue;
-    out.lines.push_back(
-        {"pixels_" + std::string(to_string(kind)),
-         "1",
-         static_cast<double>(cv::countNonZero(pixels.defects.of(kind))),
-         {},
-         kind == PixelDefect::unresponsive
-             ? fmt::format("of the {} pixels whose response was seen in the middle of triangles",
-                           pixels.defects.response_tested)
-             : fmt::format("of the {} x {} pixels that were seen", pixels.field.width, pixels.field.height)});
+    const auto found = static_cast<double>(cv::countNonZero(pixels.defects.of(kind)));
+    const std::string seen =
+        kind == PixelDefect::unresponsive
+            ? fmt::format("of the {} pixels whose response was seen in the middle of triangles",
+                          pixels.defects.response_tested)
+            : fmt::format("of the {} x {} pixels that were seen", pixels.field.width, pixels.field.height);
+    out.lines.push_back({"pixels_" + std::string(to_string(kind)), "1", found, {found, found}, seen});
   }
   for (const std::string& sentence : pixels.defects.not_tested) out.reasons.push_back("pixels: " + sentence);
 }

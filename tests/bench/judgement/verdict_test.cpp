@@ -282,10 +282,26 @@ TEST(DemandKinds, EveryKindHasOneRowWithANameAndAUnit) {
     EXPECT_FALSE(row.name.empty() || row.unit.empty());
     EXPECT_EQ(to_string(row.kind), row.name);
   }
-  EXPECT_EQ(names,
-            (std::set<std::string_view>{"acuity", "identified", "equivalence", "netd", "temporal_noise", "noise_t",
-                                        "noise_v", "noise_h", "noise_tv", "noise_th", "noise_vh", "noise_tvh",
-                                        "temperature_scale_at_least", "temperature_scale_at_most", "mtf_x", "mtf_y"}));
+  EXPECT_EQ(names, (std::set<std::string_view>{"acuity",
+                                               "identified",
+                                               "equivalence",
+                                               "netd",
+                                               "temporal_noise",
+                                               "noise_t",
+                                               "noise_v",
+                                               "noise_h",
+                                               "noise_tv",
+                                               "noise_th",
+                                               "noise_vh",
+                                               "noise_tvh",
+                                               "temperature_scale_at_least",
+                                               "temperature_scale_at_most",
+                                               "mtf_x",
+                                               "mtf_y",
+                                               "zone_bad_pixels",
+                                               "zone_substituted_pixels",
+                                               "zone_clusters",
+                                               "zone_largest_cluster"}));
 }
 
 /// A verdict with every kind of demand, sides that are open and numbers that do not exist.

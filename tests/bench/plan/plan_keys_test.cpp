@@ -110,6 +110,8 @@ TEST(ValidPlan, NoNumberLeavesItsRangeWhoeverMadeThePlan) {
   good.limits.acuity = {{16.9, 0.4}};
   good.measures.noise = good.measures.transfer = true;
   good.limits.measures = {{LimitedMeasure::netd, std::nullopt, 0.05}};
+  good.measures.pixels = true;
+  good.limits.zones = {{.name = "centre", .bad_pixels = 0}};
   for (ModulePlan& module : good.modules) module.command = "cat";
   ASSERT_TRUE(validate(good)) << validate(good).error().message;
   int tried = 0;
