@@ -21,7 +21,7 @@ struct DisplayLevels {
 };
 
 /// Whole levels round the middle of the screen.
-DisplayLevels levels_of(double steps) {
+DisplayLevels display_levels_of(double steps) {
   const double ground = std::round((screen_levels - steps) / 2);
   return {ground / screen_levels, (ground + steps) / screen_levels};
 }
@@ -49,7 +49,7 @@ class DisplayTarget final : public Target {
                       "levels on edges can be drawn",
                       state.delta_t_k, steps, screen_levels, options_.span_k, least_levels));
     }
-    const auto [ground, pattern] = levels_of(steps);
+    const auto [ground, pattern] = display_levels_of(steps);
     const auto drawn =
         plate_picture(mounted(*plate, state.mounting), state.shift_mm, options_.display, ground, pattern);
     if (!drawn) return tl::unexpected(drawn.error());
