@@ -8,9 +8,9 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "bench/cli/commands.h"
+#include "bench/report/pattern_truth.h"
 #include "bench/text/files.h"
 #include "bench/text/npy.h"
-#include "bench/text/text.h"
 #include "tod/pattern/test_picture.h"
 
 namespace todbench {
@@ -51,52 +51,10 @@ Result<std::string> encoded(const cv::Mat1d& levels, const std::string& format) 
   return std::string(bytes.begin(), bytes.end());
 }
 
-std::string list(const std::vector<std::string>& words) {
-  return fmt::format("[{}]", fmt::join(words, ", "));
-}
-
-/// A plate that load_plate() reads: one pixel is one millimetre.
-std::string plate_toml(const TestPicture& picture) {
-  const TargetPlate& plate = picture.plate;
-  std::string text = fmt::format(
-      "name = \"{}\"\ndescription = \"test picture, 1 pixel = 1 mm, origin in the middle\"\nwidth_mm = {}\nheight_mm = "
-      "{}\n",
-      plate.name, number_text(plate.width_mm), number_text(plate.height_mm));
-  // Every triangle has a phase of its own, so a row of the file holds one.
-  for (const auto& triangle : plate.triangles) {
-    text += fmt::format(
-        "\n[[row]]\nsize_mm = {}\ny_mm = {}\nx_mm = {}\napex = {}\nnames = {}\n", number_text(triangle.size_mm),
-        number_text(triangle.position_mm.y), list({number_text(triangle.position_mm.x)}),
-        list({"\"" + std::string(to_string(triangle.apex)) + "\""}), list({"\"" + triangle.name + "\""}));
-  }
-  return text;
-}
-
-std::string other_toml(const PatternArguments& a, const TestPicture& picture) {
-  std::string text = fmt::format("pattern = \"{}\"\nwidth_px = {}\nheight_px = {}\nlow = {}\nhigh = {}\n", a.kind,
-                                 picture.levels.cols, picture.levels.rows, number_text(a.low), number_text(a.high));
-  if (a.kind == "edge") text += fmt::format("angle_deg = {}\n", number_text(a.angle_deg));
-  if (a.kind == "siemens") text += fmt::format("spokes = {}\n", a.spokes);
-  if (a.kind == "flat") text += fmt::format("level = {}\n", number_text(a.level));
-  for (const auto& group : picture.bars) {
-    text += fmt::format("\n[[bars]]\nfrequency_per_px = {}\nx_px = {}\ny_px = {}\nbars = \"{}\"\n",
-                        number_text(group.frequency_per_px), number_text(group.x_px), number_text(group.y_px),
-                        group.upright ? "upright" : "lying");
-  }
-  return text;
-}
-
-std::string truth(const PatternArguments& a, const TestPicture& picture) {
-  std::string text =
-      fmt::format("# Truth of {}: {} x {} pixels, levels from {} to {}; a pixel has the mean over its area.\n",
-                  std::filesystem::path(a.out).filename().string(), picture.levels.cols, picture.levels.rows,
-                  number_text(a.low), number_text(a.high));
-  return text + (a.kind == "tod" ? plate_toml(picture) : other_toml(a, picture));
-}
-
 int run_pattern(Console& console, const PatternArguments& a, std::uint64_t seed) {
-  const auto picture =
-      drawn_picture({.size = {a.pixels[0], a.pixels[1]}, .low = a.low, .high = a.high, .kind = kind_of(a, seed)});
+  const PictureRequest request{
+      .size = {a.pixels[0], a.pixels[1]}, .low = a.low, .high = a.high, .kind = kind_of(a, seed)};
+  const auto picture = drawn_picture(request);
   if (!picture) return report_error(console, picture.error());
   const auto bytes = encoded(picture->levels, a.format);
   if (!bytes) return report_error(console, bytes.error());
@@ -108,7 +66,9 @@ int run_pattern(Console& console, const PatternArguments& a, std::uint64_t seed)
   if (truth_file == a.out)
     return report_error(console, {ErrorCode::invalid_input, "--out " + a.out + ": the truth is written to this name"});
   if (auto written = write_file_atomically(a.out, *bytes); !written) return report_error(console, written.error());
-  if (auto written = write_file_atomically(truth_file, truth(a, *picture)); !written)
+  if (auto written = write_file_atomically(
+          truth_file, pattern_truth(request, *picture, std::filesystem::path(a.out).filename().string()));
+      !written)
     return report_error(console, written.error());
   if (console.json()) {
     console.object({{"pattern", a.kind},

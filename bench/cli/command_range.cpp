@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "bench/cli/commands.h"
@@ -129,6 +130,17 @@ Result<Atmosphere> into_task(RangeTask& task, const RangeOptions& options, const
   return air;
 }
 
+/// Relative, of the rows of the budget that are about the angle of a pixel.
+double relative_u_of_ifov(const Plan& plan) {
+  double sum = 0;
+  for (const BudgetRow& row : plan.uncertainty.rows) {
+    const BudgetUnit unit = budget_unit(InputKind::geometry, row.unit).value_or(BudgetUnit{});
+    if (input_of(row) != BudgetInput::ifov || row.sensitivity || !unit.relative) continue;
+    sum = std::hypot(sum, standard_of(row) * unit.factor);
+  }
+  return sum;
+}
+
 /// The answers behind turbulence, and what was decided about it.
 struct TurbulentAnswers {
   std::vector<ModelRange> models;
@@ -213,7 +225,12 @@ int run_range(Console& console, const RangeArguments& arguments) {
     tod.prediction.reason = "there is no TOD curve";
   }
   for (const auto& sentence : tod.prediction.notes) console.note(sentence);
-  const RangeQuestion question = options.question(task, arguments.v50, *air);
+  RangeQuestion question = options.question(task, arguments.v50, *air);
+  if (*session && (*session)->uncertainty) {
+    const CurveUncertainty& budget = *(*session)->uncertainty;
+    question.scale_u_percent = 100 * std::hypot(budget.u_scale, budget.u_camera_scale);
+    question.ifov_u_percent = 100 * relative_u_of_ifov((*session)->plan);
+  }
   auto sources = options.sources(selection.thresholds, *sensor);
   if (!sources) return report_error(console, sources.error());
   std::optional<TurbulentAnswers> turbulent;
@@ -228,7 +245,7 @@ int run_range(Console& console, const RangeArguments& arguments) {
   if (!models) return report_error(console, models.error());
   const auto grid = options.grid_json(*sources, question, *sensor);
   if (!grid) return report_error(console, grid.error());
-  if (auto written = options.write(*models, question); !written) return report_error(console, written.error());
+  if (auto written = options.write(*models, question, *grid); !written) return report_error(console, written.error());
   if (console.json()) {
     Json json = range_json(tod, task);
     json["delta_t_k"] = options.asked_delta_t_k;

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "bench/cli/commands.h"
 #include "bench/plan/descriptions.h"
+#include "bench/report/grid_figure.h"
 #include "bench/report/html.h"
 #include "bench/report/range_figure.h"
 #include "bench/text/csv_table.h"
@@ -277,7 +279,27 @@ Result<RangeSources> RangeOptions::sources(std::vector<TodThreshold> thresholds,
   return found;
 }
 
-Result<void> RangeOptions::write(const std::vector<ModelRange>& answers, const RangeQuestion& question) const {
+namespace {
+
+/// The figures of a grid as grid_json() has it.
+std::vector<GridFigure> figures_of(const Json& grids) {
+  std::vector<GridFigure> figures;
+  for (const auto& [name, found] : grids["models"].items()) {
+    GridFigure figure{.model = name, .sizes_m = grids["sizes_m"], .contrasts_k = grids["contrasts_k"], .r75_m = {}};
+    for (double& contrast_k : figure.contrasts_k) contrast_k = std::abs(contrast_k);
+    for (const auto& row : found["r75_m"]) {
+      for (const auto& r75_m : row)
+        figure.r75_m.push_back(r75_m.is_null() ? std::nullopt : std::optional(r75_m.get<double>()));
+    }
+    figures.push_back(std::move(figure));
+  }
+  return figures;
+}
+
+}  // namespace
+
+Result<void> RangeOptions::write(const std::vector<ModelRange>& answers, const RangeQuestion& question,
+                                 const Json& grids) const {
   if (!svg.empty()) {
     const auto figure = range_svg(answers);
     if (!figure) return tl::unexpected(figure.error());
@@ -287,7 +309,9 @@ Result<void> RangeOptions::write(const std::vector<ModelRange>& answers, const R
   const RangePage words{.target = fmt::format("{:g} m, {:.4g} K", question.size_m, question.delta_t_k),
                         .air = question.air.source,
                         .notes = question.air.notes};
-  return write_file_atomically(page, render_html(range_page(answers, words)));
+  Document document = range_page(answers, words);
+  if (!grids.is_null()) document.sections.push_back(grid_section(figures_of(grids)));
+  return write_file_atomically(page, render_html(document));
 }
 
 namespace {

@@ -41,7 +41,8 @@ struct RangeOptions {
   [[nodiscard]] Result<RangeSources> sources(std::vector<TodThreshold> thresholds,
                                              const std::optional<SensorSpec>& sensor) const;
   /// The figure and the page that were asked for.
-  [[nodiscard]] Result<void> write(const std::vector<ModelRange>& models, const RangeQuestion& question) const;
+  [[nodiscard]] Result<void> write(const std::vector<ModelRange>& models, const RangeQuestion& question,
+                                   const Json& grids) const;
 
   /// The grid that was asked for, as JSON; null where none was.
   [[nodiscard]] Result<Json> grid_json(const RangeSources& sources, const RangeQuestion& question,

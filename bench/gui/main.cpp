@@ -4,12 +4,14 @@
 #include <QDir>
 #include <algorithm>
 #include <clocale>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 #include "acquisition/core/safe_text.h"
+#include "bench/gui/pattern_screen.h"
 #include "bench/gui/presenters/session_presenter.h"
 #include "bench/gui/screenshots.h"
 #include "bench/gui/views/main_window.h"
@@ -77,6 +79,16 @@ QList<QCommandLineOption> known_options() {
       {"size", "Size of the window in pixels.", "WIDTHxHEIGHT"},
       {"screenshots", "Writes a picture of every view and ends; with SESSION of those that need no camera.", "FOLDER"},
       {"report", "Writes report.html and report.pdf of a session and ends; needs no screen.", "SESSION"},
+      {"pattern",
+       "Test pictures on the whole screen, stepped by the arrow keys until escape: kinds of 'todbench pattern', "
+       "separated "
+       "by commas.",
+       "KINDS"},
+      {"truth", "Folder for the truth of every test picture.", "FOLDER"},
+      {"pictures",
+       "Shows the pictures that come on standard input and answers with what is on the screen: the display of a "
+       "bench."},
+      {"screen", "Number of the monitor for test pictures, from 0.", "NUMBER"},
       manual};
 }
 
@@ -89,6 +101,8 @@ int main(int argc, char** argv) {
   };
   if (std::any_of(argv + 1, argv + argc, needs_no_screen) && !qEnvironmentVariableIsSet("QT_QPA_PLATFORM"))
     qputenv("QT_QPA_PLATFORM", "offscreen");
+  // A program behind the camera or on a display that has ended is an error in words.
+  std::signal(SIGPIPE, SIG_IGN);
   const QApplication application(argc, argv);
   // An application takes the user's locale for the C library as well; libraries that read numbers of cameras and files
   // with strtod() would then expect a comma.
@@ -106,6 +120,10 @@ int main(int argc, char** argv) {
   options.process(application);
   if (options.isSet("manual")) return write_manual(known, options.value("manual"));
   if (options.isSet("report")) return write_reports(options.value("report"));
+
+  if (options.isSet("pattern"))
+    return todbench::show_patterns(options.value("pattern"), options.value("screen"), options.value("truth"));
+  if (options.isSet("pictures")) return todbench::show_pictures_of_input(options.value("screen"));
 
   const QStringList arguments = options.positionalArguments();
   const auto shown = arguments.isEmpty() ? std::filesystem::path() : session_folder(arguments.constFirst());

@@ -5,6 +5,8 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
+#include "bench/plan/bench_air.h"
+
 namespace todbench {
 namespace {
 
@@ -48,18 +50,37 @@ double slope_at(const std::vector<LogPoint>& points, std::size_t i) {
   return std::max(line, std::abs(parabola_slope(points[i], points[near], points[i == 0 ? 2 : last - 2])));
 }
 
-/// Mean of what the camera saw less what the target said, at a set contrast.
+/// Mean of what the camera saw less what the air leaves of what the target said, at a set contrast.
 std::optional<double> read_back_deviation_k(std::span<const Presentation> presentations, double set_delta_t_k) {
   double sum = 0;
   int count = 0;
   for (const Presentation& shown : presentations) {
     if (!same_contrast(shown.set.delta_t_k, set_delta_t_k) || !shown.delta_t_k) continue;
-    const double deviation = *shown.delta_t_k - shown.said.state.delta_t_k;
+    const double deviation = *shown.delta_t_k - shown.air_transmittance.value_or(1) * shown.said.state.delta_t_k;
     if (!std::isfinite(deviation)) continue;
     sum += deviation;
     ++count;
   }
   return count > 0 ? std::optional(sum / count) : std::nullopt;
+}
+
+/// Of the bench, the same at every presentation of a run; nothing where it is not stated.
+std::optional<double> air_of(std::span<const Presentation> presentations) {
+  return presentations.empty() ? std::nullopt : presentations.front().air_transmittance;
+}
+
+/// What is left uncertain of what the air takes, unless the plan says it.
+std::optional<BudgetRow> row_of_air(const UncertaintyPlan& plan, std::span<const Presentation> presentations) {
+  const auto transmittance = air_of(presentations);
+  const bool stated = std::any_of(plan.rows.begin(), plan.rows.end(),
+                                  [](const BudgetRow& row) { return input_of(row) == BudgetInput::air_path; });
+  if (!transmittance || stated) return std::nullopt;
+  return BudgetRow{.name = std::string(air_path_row),
+                   .value = bench_air_relative_half_width * (1 - *transmittance),
+                   .distribution = BudgetDistribution::rectangular,
+                   .unit = "1",
+                   .source = "half of what the shipped tables say the air takes",
+                   .enters = BudgetInput::air_path};
 }
 
 /// What a point's rows are converted with.
@@ -83,8 +104,9 @@ double sensitivity_of(const BudgetRow& row, const Conversion& at) {
 
 /// The rows of the plan and of the run, with their sensitivities.
 std::vector<BudgetRow> rows_at(const UncertaintyPlan& plan, const TodPoint& point, const Conversion& at,
-                               const std::optional<double>& deviation_k) {
+                               const std::optional<double>& deviation_k, const std::optional<BudgetRow>& air) {
   std::vector<BudgetRow> rows = plan.rows;
+  if (air) rows.push_back(*air);
   if (point.delta_t_se_k > 0 && std::isfinite(point.delta_t_se_k)) {
     rows.push_back({.name = std::string(seen_contrast_row),
                     .value = point.delta_t_se_k,
@@ -283,7 +305,10 @@ Result<std::optional<CurveUncertainty>> curve_uncertainty(const Plan& plan, cons
   CurveUncertainty out;
   out.u_scale = relative_u_of_scale(plan);
   out.u_camera_scale = relative_u_of_camera_scale(plan);
-  for (const BudgetInput input : not_stated(plan.uncertainty)) out.not_stated.emplace_back(to_string(input));
+  const auto air = row_of_air(plan.uncertainty, presentations);
+  for (const BudgetInput input : not_stated(plan.uncertainty)) {
+    if (input != BudgetInput::air_path || !air) out.not_stated.emplace_back(to_string(input));
+  }
   const std::vector<double> slopes = contrast_slopes(curve);
   bool read_back = true;
   for (std::size_t i = 0; i < curve.points.size(); ++i) {
@@ -301,7 +326,7 @@ Result<std::optional<CurveUncertainty>> curve_uncertainty(const Plan& plan, cons
                                                  .size_m = size_mrad * 1e-3 * distance_m,
                                                  .contrast_k = contrast_k(point),
                                                  .slope = slopes[i]},
-                                                deviation_k);
+                                                deviation_k, air);
     if (auto expanded = expand(found, point, rows, plan.uncertainty.rows.size(), plan.seed); !expanded)
       return tl::unexpected(with_context("[uncertainty]", expanded.error()));
     if (comparison) found.ratio = expanded_ratio(as_decided(*comparison), point.set_delta_t_k, found.u_not_twin);

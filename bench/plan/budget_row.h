@@ -125,6 +125,8 @@ struct UncertaintyPlan {
 /// Names of the rows that a run states itself.
 inline constexpr std::string_view finite_trials_row = "finite trials";
 inline constexpr std::string_view seen_contrast_row = "contrast as the camera saw it";
+/// Where the air of the bench is stated and the plan has no row of its own for its path.
+inline constexpr std::string_view air_path_row = "air path";
 inline constexpr std::string_view read_back_row = "target read-back against contrast seen";
 
 }  // namespace todbench

@@ -17,6 +17,8 @@ std::string_view to_string(TargetKind kind) {
       return "prompt";
     case TargetKind::scene:
       return "scene";
+    case TargetKind::display:
+      return "display";
   }
   return "";
 }

@@ -40,8 +40,10 @@ enum class TargetKind {
   scpi,    ///< black body and plate stage on the network
   prompt,  ///< the operator changes the target when asked
   scene,   ///< the simulated scene of a simulated or emulated camera
+  display  ///< a monitor that the bench draws on
 };
-inline constexpr std::array all_target_kinds{TargetKind::scpi, TargetKind::prompt, TargetKind::scene};
+inline constexpr std::array all_target_kinds{TargetKind::scpi, TargetKind::prompt, TargetKind::scene,
+                                             TargetKind::display};
 [[nodiscard]] std::string_view to_string(TargetKind kind);
 
 /// [target]: what is shown, in every combination.
@@ -51,11 +53,17 @@ struct TargetPlan {
   std::string stage;                                 ///< the same for the stage that moves the plate
   std::string black_body_table = "scpi-black-body";  ///< its words, by name or file
   std::string stage_table = "scpi-stage";
+  /// Of kind display: the program that shows pictures, the screen, and the contrast of black beside white.
+  std::string display = "todbench-gui --pictures";
+  int display_width_px = 1920, display_height_px = 1080;
+  double display_pixel_mm = 0, display_span_k = 0, display_settle_s = 0.2;
   double distance_m = 2;                                ///< entrance pupil to plate; required in a file
   std::vector<std::string> plates{"tcat-a", "tcat-b"};  ///< names or files
   std::vector<Mounting> mountings{all_mountings.begin(), all_mountings.end()};
   std::vector<double> delta_t_k{16.9, 1.93, 0.23};  ///< set-points, never 0; the sign is the polarity
   int phases = 16;                                  ///< sub-pixel shifts per plate, mounting and contrast
+  /// Of the air between plate and camera; 0 % humidity: not stated, and nothing is corrected.
+  double air_temperature_c = 20, air_humidity_percent = 0;
   double settle_timeout_s = 600;
   double plate_change_s = 60, mounting_change_s = 30, contrast_change_s = 20, shift_change_s = 0.1;
   bool operator==(const TargetPlan&) const = default;

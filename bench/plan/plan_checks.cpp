@@ -1,6 +1,7 @@
 #include "bench/plan/plan_checks.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "bench/text/text.h"
@@ -41,6 +42,22 @@ ValueMistakes check_black_body(const Plan& plan, std::size_t /*row*/) {
 
 ValueMistakes check_stage(const Plan& plan, std::size_t /*row*/) {
   return check_address(plan, plan.target.stage);
+}
+
+ValueMistakes check_display_pixel(const Plan& plan, std::size_t /*row*/) {
+  if (plan.target.kind != TargetKind::display || plan.target.display_pixel_mm > 0) return {};
+  return {{std::nullopt, "needed for kind \"display\", expected a number above 0"}};
+}
+
+ValueMistakes check_display_span(const Plan& plan, std::size_t /*row*/) {
+  if (plan.target.kind != TargetKind::display) return {};
+  if (!(plan.target.display_span_k > 0))
+    return {{std::nullopt, "needed for kind \"display\", expected a number above 0"}};
+  for (const double delta_t_k : plan.target.delta_t_k) {
+    if (std::abs(delta_t_k) > plan.target.display_span_k)
+      return {{std::nullopt, "the contrast " + number_text(delta_t_k) + " K is beyond what the display spans"}};
+  }
+  return {};
 }
 
 ValueMistakes check_contrasts(const Plan& plan, std::size_t /*row*/) {
@@ -205,6 +222,9 @@ ValueMistakes check_require(const Plan& plan, std::size_t /*row*/) {
   if (!plan.uncertainty.require) return {};
   std::string missing;
   for (const BudgetInput input : not_stated(plan.uncertainty)) {
+    // The run states it itself.
+    if (input == BudgetInput::air_path && plan.target.air_humidity_percent > 0 && plan.target.kind != TargetKind::scene)
+      continue;
     missing += (missing.empty() ? "" : ", ") + std::string(to_string(input));
   }
   if (missing.empty()) return {};

@@ -27,7 +27,7 @@ class Said {
 };
 
 struct ContrastRow {
-  Said read_back, sensors, seen;
+  Said read_back, sensors, seen, expected;
   double longest_s = 0;
   int presentations = 0;
 };
@@ -41,6 +41,7 @@ std::map<double, ContrastRow, std::greater<>> rows_by_contrast(const std::vector
     if (shown.said.black_body_temperature_k && shown.said.plate_temperature_k)
       row.sensors.add(*shown.said.black_body_temperature_k - *shown.said.plate_temperature_k, set_k);
     row.seen.add(shown.delta_t_k, set_k);
+    if (shown.air_transmittance) row.expected.add(*shown.air_transmittance * shown.said.state.delta_t_k, set_k);
     if (std::isfinite(shown.said.settling_s)) row.longest_s = std::max(row.longest_s, shown.said.settling_s);
     ++row.presentations;
   }
@@ -74,15 +75,25 @@ std::optional<Table> target_table(const ReportData& data) {
                  "Black body − plate (K)",
                  "Longest settling (s)",
                  "Presentations"};
+  const auto air = data.presentations.front().air_transmittance;
+  if (air) {
+    rows.caption +=
+        ". The air leaves " + shown(100 * *air, 2) +
+        " % of a contrast on its way to the camera: what the camera saw is compared with that of the read-back";
+    rows.header[5] = "Seen − read back behind the air (K)";
+    rows.header.insert(rows.header.begin() + 2, "Read back behind the air (K)");
+  }
   for (const auto& [set_k, row] : rows_by_contrast(data.presentations)) {
     const auto read_back = row.read_back.mean(), seen = row.seen.mean();
+    const auto arriving = air ? row.expected.mean() : read_back;
     const RichText deviation =
         read_back ? unbroken(shown(*read_back - set_k, 4) + " (" + shown(*row.read_back.farthest(), 4) + ")")
                   : missing(silent);
     rows.rows.push_back({plain(stated(set_k)), kelvin(read_back, silent), kelvin(seen, unseen), deviation,
-                         kelvin(difference(seen, set_k), unseen), kelvin(difference(seen, read_back), unseen),
+                         kelvin(difference(seen, set_k), unseen), kelvin(difference(seen, arriving), unseen),
                          kelvin(row.sensors.mean(), "no sensor says so"), plain(shown(row.longest_s, 1)),
                          plain(std::to_string(row.presentations))});
+    if (air) rows.rows.back().insert(rows.rows.back().begin() + 2, kelvin(row.expected.mean(), silent));
   }
   return rows;
 }

@@ -6,6 +6,7 @@
 #include "bench/plan/plan_options.h"
 #include "bench/plan/resources.h"
 #include "bench/run/bench_host.h"
+#include "bench/run/display_target.h"
 #include "bench/run/reconnecting_source.h"
 #include "bench/run/terminal_operator.h"
 #include "tod/instruments/prompt_target.h"
@@ -77,6 +78,17 @@ Result<std::unique_ptr<Target>> open_target(const LoadedPlan& loaded, std::stop_
                                             const AskOperator& ask_operator, const OnTargetWait& on_wait) {
   const Plan& plan = loaded.plan();
   if (plan.target.kind == TargetKind::prompt) return prompt_target(ask_operator ? ask_operator : ask_at_terminal());
+  if (plan.target.kind == TargetKind::display) {
+    auto show = shown_by_program(plan.target.display);
+    if (!show) return tl::unexpected(show.error());
+    return display_target({.plates = loaded.shown_plates(),
+                           .display = {.size_px = {plan.target.display_width_px, plan.target.display_height_px},
+                                       .pixel_mm = plan.target.display_pixel_mm},
+                           .span_k = plan.target.display_span_k,
+                           .settle = std::chrono::milliseconds(static_cast<long>(1000 * plan.target.display_settle_s)),
+                           .description = "display: " + plan.target.display},
+                          *std::move(show));
+  }
   ScpiTargetOptions options;
   options.black_body = plan.target.black_body;
   options.stage = plan.target.stage;
@@ -146,7 +158,7 @@ Result<OpenedBench> open_bench(const LoadedPlan& loaded, std::stop_token stop, c
     if (!sensor) {
       return fail(ErrorCode::invalid_input,
                   "a target of kind 'scene' is the simulated scene of a camera 'sim:NAME'; camera " + plan.camera.id +
-                      " needs kind 'scpi' or 'prompt'");
+                      " needs kind 'scpi', 'prompt' or 'display'");
     }
     auto spec = load_sensor(*sensor);
     if (!spec) return tl::unexpected(spec.error());

@@ -270,6 +270,9 @@ Result<MeasuredRun> run_measured(const Plan& plan, const ExperimentInputs& input
   auto response = simulated_responses(model, plan, inputs.plates, options, stop);
   if (!response) return tl::unexpected(response.error());
   options.contrast_response = std::move(*response);
+  const auto air = stated_air(plan, inputs.sensor);
+  if (!air) return tl::unexpected(air.error());
+  options.air_transmittance = *air;
   options.free_running = !bench.simulated;
   options.frames_after_change += settle_frames(modules);
   const auto schedule =

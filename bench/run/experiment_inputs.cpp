@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "bench/plan/bench_air.h"
 #include "bench/plan/plan_options.h"
 #include "bench/run/module_chain.h"
 #include "bench/text/text.h"
@@ -73,6 +74,15 @@ Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlann
   return inputs;
 }
 
+Result<std::optional<double>> stated_air(const Plan& plan, const SensorSpec& sensor) {
+  if (!(plan.target.air_humidity_percent > 0) || plan.target.kind == TargetKind::scene) return std::optional<double>();
+  const auto found = bench_transmittance(
+      {.temperature_c = plan.target.air_temperature_c, .humidity_percent = plan.target.air_humidity_percent},
+      plan.target.distance_m, {sensor.wavelength_min_um, sensor.wavelength_max_um});
+  if (!found) return fail("[target] air_humidity_percent", found.error());
+  return std::optional(*found);
+}
+
 MeasurementOptions simulated_options(const Plan& plan, const ExperimentInputs& inputs) {
   MeasurementOptions options =
       measurement_options(plan, inputs.plates, inputs.sensor.ifov_mrad() / inputs.sensor.samples_per_pitch());
@@ -86,6 +96,7 @@ MeasurementOptions simulated_options(const Plan& plan, const ExperimentInputs& i
 }
 
 Result<void> check_measured_geometry(const Plan& plan, const ExperimentInputs& inputs, cv::Size picture) {
+  if (const auto air = stated_air(plan, inputs.sensor); !air) return tl::unexpected(air.error());
   return check_geometry(measurement_options(plan, inputs.plates, plan.camera.ifov_mrad), inputs, picture);
 }
 

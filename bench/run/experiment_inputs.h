@@ -36,6 +36,10 @@ struct ExperimentInputs {
 /// with modules it is not asked and everything is simulated.
 [[nodiscard]] Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlanner& planner);
 
+/// What the air that the plan states leaves of a contrast in the band of the sensor; nothing where it states none, and
+/// before a simulated scene, which has none. Errors: bench_transmittance().
+[[nodiscard]] Result<std::optional<double>> stated_air(const Plan& plan, const SensorSpec& sensor);
+
 /// How the simulated sensor is measured: as the camera, but nothing has to settle and nothing is corrected.
 [[nodiscard]] MeasurementOptions simulated_options(const Plan& plan, const ExperimentInputs& inputs);
 

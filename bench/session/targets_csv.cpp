@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
 
 #include "bench/session/csv_fields.h"
@@ -11,7 +12,7 @@
 namespace todbench {
 namespace {
 
-constexpr std::array<std::string_view, 16> target_columns{"presentation",
+constexpr std::array<std::string_view, 17> target_columns{"presentation",
                                                           "plate",
                                                           "mounting",
                                                           "set_delta_t_k",
@@ -26,7 +27,8 @@ constexpr std::array<std::string_view, 16> target_columns{"presentation",
                                                           "reached_plate",
                                                           "reached_mounting",
                                                           "reached_shift_x_mm",
-                                                          "reached_shift_y_mm"};
+                                                          "reached_shift_y_mm",
+                                                          "air_transmittance"};
 
 std::string number_field(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? number_text(*value) : std::string();
@@ -51,10 +53,14 @@ std::string target_line(const Presentation& shown) {
   add(to_string(said.state.mounting));
   add(number_field(said.state.shift_mm.x));
   add(number_field(said.state.shift_mm.y));
+  add(number_field(shown.air_transmittance));
   return line + "\n";
 }
 
-Presentation read_target(FieldReader& fields) {
+/// Without the air, as sessions had it before.
+constexpr std::span older_columns(target_columns.data(), 16);
+
+Presentation read_target(FieldReader& fields, bool has_air) {
   // What an instrument said that was no number.
   const auto said = [&fields] { return fields.optional_number().value_or(std::nan("")); };
   Presentation shown;
@@ -74,6 +80,7 @@ Presentation read_target(FieldReader& fields) {
   shown.said.state.mounting = fields.mounting();
   shown.said.state.shift_mm.x = said();
   shown.said.state.shift_mm.y = said();
+  if (has_air) shown.air_transmittance = fields.optional_number();
   return shown;
 }
 
@@ -104,13 +111,15 @@ Result<std::vector<Presentation>> read_targets(const std::filesystem::path& file
   if (!text) return tl::unexpected(text.error());
   const Result<CsvTable> table = parse_csv(*text, file.string());
   if (!table) return tl::unexpected(table.error());
-  if (const Result<void> as_expected = check_columns(*table, target_columns); !as_expected)
+  const bool has_air = table->header.size() != older_columns.size();
+  if (const Result<void> as_expected = check_columns(*table, has_air ? std::span(target_columns) : older_columns);
+      !as_expected)
     return tl::unexpected(as_expected.error());
   std::vector<Presentation> presentations;
   presentations.reserve(table->rows.size());
   for (const CsvRow& row : table->rows) {
     FieldReader fields(row.fields, target_columns);
-    presentations.push_back(read_target(fields));
+    presentations.push_back(read_target(fields, has_air));
     if (fields.wrong()) return table->wrong(row.line, *fields.wrong());
   }
   return presentations;

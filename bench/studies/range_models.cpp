@@ -163,13 +163,22 @@ Interval joined_with_air(const Prepared& model, const RangeQuestion& question, d
 
 /// R75 with every threshold of the curve changed, which is the contrast changed the other way.
 Interval interval_of_curve(const Prepared& model, const RangeQuestion& question) {
-  const double factor = std::exp(normal_z95 * question.curve_u_percent / 100);
+  const double factor = std::exp(normal_z95 * std::hypot(question.curve_u_percent, question.scale_u_percent) / 100);
   const auto changed = [&](double times) {
     Prepared other = model;
     other.target.contrast *= times;
     return range_at(other, question.air.air, 0.75);
   };
   return {changed(1 / factor), changed(factor)};
+}
+
+/// Every frequency of the curve is that of the pixel's angle, so the range goes with one over it.
+Interval joined_with_ifov(const Interval& interval, double r75, double ifov_u_percent) {
+  const auto side = [&](const std::optional<double>& bound, double direction) -> std::optional<double> {
+    if (!bound || ifov_u_percent <= 0) return bound;
+    return r75 * std::exp(direction * std::hypot(std::log(*bound / r75), normal_z95 * ifov_u_percent / 100));
+  };
+  return {side(interval.low, -1), side(interval.high, 1)};
 }
 
 /// TOD keeps the numbers of the one prediction that the rest of the program uses.
@@ -201,9 +210,17 @@ Result<void> answer(Prepared& model, const RangeSources& sources, const RangeQue
   model.head.reason = found.reason;
   if (found.at_least_m) model.head.r75_ci95_m.low = found.at_least_m;
   // The curve is a formula without an error of its own; what is stated of it and what the air does are known.
-  if (found.range_m && (question.extinction_u_percent > 0 || question.curve_u_percent > 0)) {
-    model.head.r75_ci95_m = joined_with_air(model, question, *found.range_m, interval_of_curve(model, question));
-    if (!(question.curve_u_percent > 0))
+  const bool curve_known = std::hypot(question.curve_u_percent, question.scale_u_percent) > 0;
+  if (found.range_m && (question.extinction_u_percent > 0 || curve_known || question.ifov_u_percent > 0)) {
+    model.head.r75_ci95_m =
+        joined_with_ifov(joined_with_air(model, question, *found.range_m, interval_of_curve(model, question)),
+                         *found.range_m, question.ifov_u_percent);
+    if (question.scale_u_percent > 0 || question.ifov_u_percent > 0) {
+      model.head.notes.push_back(
+          fmt::format("the interval has the session's budget: {:.2g} % of kelvin, {:.2g} % of the IFOV",
+                      question.scale_u_percent, question.ifov_u_percent));
+    }
+    if (!curve_known && question.ifov_u_percent <= 0)
       model.head.notes.emplace_back("the interval is that of the air alone: the curve has no stated uncertainty");
   }
   return {};

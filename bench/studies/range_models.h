@@ -29,6 +29,9 @@ struct RangeQuestion {
   Atmosphere air{};
   double extinction_u_percent = 0;  ///< relative standard uncertainty of the extinction
   double curve_u_percent = 0;       ///< of the thresholds of MRTD, MTDP-like curve and CTF; TOD brings its own
+  /// Relative standard uncertainties of kelvin and of the angle of a pixel, from the budget of a session; of the models
+  /// of formulas, TOD has them in its own curve.
+  double scale_u_percent = 0, ifov_u_percent = 0;
   FormulaConditions formula{};
   std::optional<double> target_contrast{};  ///< of luminances, for TTP; else |dT| / (2 x scene contrast)
 };

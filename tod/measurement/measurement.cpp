@@ -260,6 +260,7 @@ class Run {
                                      .set = state,
                                      .said = presented_,
                                      .delta_t_k = seen ? std::optional(contrast_k_) : std::nullopt,
+                                     .air_transmittance = options_.air_transmittance,
                                      .host_time_ns = there_ns});
     if (listener_.on_presentation) listener_.on_presentation(result_.presentations.back());
   }

@@ -35,6 +35,8 @@ struct MeasurementOptions {
   /// By plate name: what effective_contrast() reads of a contrast of 1 K, blur included, from a simulated picture; 1
   /// where it is not known. Measured contrasts are divided by it.
   std::map<std::string, double> contrast_response;
+  /// What the air between target and camera leaves of a contrast, kept with every presentation; nothing: not stated.
+  std::optional<double> air_transmittance{};
   static constexpr int graded_draws = 32;   ///< of the observer's own noise, for the probabilities of one frame
   AnswerKind answers = AnswerKind::binary;  ///< graded: Trial::probability_correct too
   int frames_per_presentation = 1;          ///< successive good ones, over which graded answers are averaged; 1 or more

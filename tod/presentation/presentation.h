@@ -14,6 +14,8 @@ struct Presentation {
   PresentedTarget said;           ///< what it answered
   /// Effective contrast of the set-up at this set-point, as the camera saw it; nothing: it could not be measured.
   std::optional<double> delta_t_k;
+  /// What the air between target and camera leaves of a contrast; nothing: it was not stated.
+  std::optional<double> air_transmittance{};
   /// When the target was there, on the clock of Trial::host_time_ns; nothing: a simulated scene, which takes no time.
   std::optional<std::int64_t> host_time_ns;
   bool operator==(const Presentation&) const = default;

@@ -1,11 +1,15 @@
 #include "bench/gui/presenters/chain_presenter.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "bench/plan/atmospheres.h"
 #include "bench/plan/descriptions.h"
+#include "bench/plan/scene_descriptions.h"
+#include "bench/studies/scene_pictures.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "tod/plate/test_pattern.h"
@@ -127,6 +131,54 @@ cv::Mat1d filtered(const cv::Mat1d& samples, double sigma) {
   return spread * samples * spread.t();
 }
 
+/// The stages of a scene in the order of the views; counts are those of the display, a pixel a sample.
+Result<std::vector<StagePicture>> scene_chain(const ChainOptions& options) {
+  ScenePicturesTask task;
+  auto scene = load_scene(options.scene, [](const std::string& path) -> Result<StoredPicture> {
+    return fail(ErrorCode::invalid_input, path + ": a scene of a picture is shown by 'todbench picture'");
+  });
+  if (!scene) return tl::unexpected(scene.error());
+  auto sensor = load_sensor(options.sensor);
+  if (!sensor) return tl::unexpected(sensor.error());
+  auto observer = load_observer(options.observer);
+  if (!observer) return tl::unexpected(observer.error());
+  auto air = load_atmosphere(options.atmosphere, {.band = {sensor->wavelength_min_um, sensor->wavelength_max_um},
+                                                  .weight_temperature_k = sensor->scene_temperature_k});
+  if (!air) return tl::unexpected(air.error());
+  task.scene = *std::move(scene);
+  task.sensor = *std::move(sensor);
+  task.observer = *std::move(observer);
+  task.air = *std::move(air);
+  task.view.range_m = options.range_m;
+  task.accuracy = Accuracy::draft();
+  task.effects.skip = options.skip;
+  task.seed = options.seed;
+  const auto seen = scene_pictures(task);
+  if (!seen) return tl::unexpected(seen.error());
+  constexpr std::array shown{Stage::scene, Stage::optics,  Stage::detector, Stage::samples,
+                             Stage::noise, Stage::display, Stage::observer};
+  std::vector<StagePicture> out;
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const SceneStage& stage = seen->stages[i];
+    StagePicture picture{.stage = shown[i],
+                         .kelvin = {},
+                         .pixels_per_pitch = stage.pixels_per_pitch,
+                         .note = QString::fromStdString(stage.note),
+                         .grey_k = std::pair(seen->grey_low_k, seen->grey_high_k)};
+    stage.kelvin.convertTo(picture.kelvin, CV_64F);
+    if (shown[i] == Stage::display) {
+      StagePicture counts = picture;
+      counts.stage = Stage::quantised;
+      cv::resize(picture.kelvin, counts.kelvin, {}, 1.0 / enlarged, 1.0 / enlarged, cv::INTER_NEAREST);
+      counts.pixels_per_pitch /= enlarged;
+      counts.note = QString("%1 mK per count").arg(1000 * task.sensor.kelvin_per_count);
+      out.push_back(std::move(counts));
+    }
+    out.push_back(std::move(picture));
+  }
+  return out;
+}
+
 QString onoff(const SensorPlan& plan, Effect effect, const QString& on) {
   return plan.simulates(effect) ? on : QString("skipped");
 }
@@ -156,6 +208,7 @@ QString name_of(Stage stage) {
 }
 
 Result<std::vector<StagePicture>> chain_pictures(const ChainOptions& options) {
+  if (!options.scene.empty()) return scene_chain(options);
   auto setting = setting_of(options);
   if (!setting) return tl::unexpected(setting.error());
   const Setting& s = *setting;

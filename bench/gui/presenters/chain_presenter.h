@@ -1,9 +1,12 @@
-// One triangle on its way through the simulated sensor: the picture after every stage.
+// One triangle, or a scene behind air, on its way through the simulated sensor: the picture after every stage.
 #pragma once
 
 #include <QObject>
 #include <QString>
 #include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/gui/presenters/workbench.h"
@@ -19,6 +22,9 @@ struct ChainOptions {
   std::vector<Effect> skip;
   std::uint64_t seed = 1;
   std::uint64_t index = 0;  ///< of the exposure
+  std::string scene;        ///< in place of the triangle, by name; empty: the triangle
+  std::string atmosphere = "clear";
+  double range_m = 400;  ///< from camera to scene
 };
 
 enum class Stage { scene, optics, detector, samples, noise, quantised, display, observer };
@@ -28,14 +34,15 @@ inline constexpr std::array all_stages{Stage::scene, Stage::optics,    Stage::de
 
 struct StagePicture {
   Stage stage = Stage::scene;
-  cv::Mat1d kelvin;             ///< above the surround
-  double pixels_per_pitch = 1;  ///< of this picture
-  QString note;                 ///< what happened here, with numbers
+  cv::Mat1d kelvin;                                   ///< above the surround
+  double pixels_per_pitch = 1;                        ///< of this picture
+  QString note;                                       ///< what happened here, with numbers
+  std::optional<std::pair<double, double>> grey_k{};  ///< black and white of a scene, the same in every picture
 };
 
 /// Scene, optics and detector are sampled 16 times per pitch; samples, noise and quantisation are the pictures of the
 /// sensor model itself. Display and observer are enlarged 8 times. Every picture shows the same square. Errors: as the
-/// loaders.
+/// loaders. Of a scene they are those of `todbench picture` (scene_pictures()) at the accuracy `draft`.
 [[nodiscard]] Result<std::vector<StagePicture>> chain_pictures(const ChainOptions& options);
 
 /// Computes in the background. In the window's thread.

@@ -9,7 +9,9 @@
 class QCheckBox;
 class QComboBox;
 class QDoubleSpinBox;
+class QFormLayout;
 class QLabel;
+class QSlider;
 class QSpinBox;
 
 namespace todbench {
@@ -28,11 +30,17 @@ class ChainView final : public QWidget {
 
  private:
   [[nodiscard]] QWidget* options_panel();
+  void add_scene_rows(QFormLayout& form);
+  void show_rows();
+  [[nodiscard]] double range_m() const;
   void request();
   void show_pictures();
 
   ChainPresenter& presenter_;
-  QComboBox *sensor_, *apex_;
+  QFormLayout* form_;
+  QComboBox *what_, *sensor_, *apex_, *air_;
+  QSlider* range_;
+  QLabel* range_text_;
   QDoubleSpinBox *size_, *contrast_;
   QSpinBox* index_;
   std::vector<std::pair<Effect, QCheckBox*>> effects_;

@@ -2,7 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include "bench/plan/atmospheres.h"
 #include "bench/plan/descriptions.h"
+#include "bench/plan/scene_descriptions.h"
+#include "bench/studies/scene_pictures.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "tests/bench/gui/gui_test_support.h"
@@ -104,6 +107,41 @@ TEST(ChainPresenter, ComputesInTheBackgroundAndSaysWhenItIsDone) {
   EXPECT_TRUE(testing::wait_until([&] { return !presenter.busy(); }));
   EXPECT_EQ(presenter.pictures().size(), all_stages.size());
   bench.shut_down();
+}
+
+TEST(ChainPresenter, ShowsAScenesPicturesAsTheCommandMakesThem) {
+  ChainOptions options;
+  options.scene = "craft-at-sea";
+  options.atmosphere = "us-standard";
+  options.range_m = 700;
+  ScenePicturesTask task;
+  const auto scene = load_scene("craft-at-sea", {});
+  const auto sensor = load_sensor("sc2000");
+  const auto air = load_atmosphere("us-standard", {.band = {7.5, 13}});
+  ASSERT_TRUE(scene && sensor && air);
+  task.scene = *scene;
+  task.sensor = *sensor;
+  task.air = *air;
+  task.view.range_m = 700;
+  task.accuracy = Accuracy::draft();
+  task.observer = load_observer("hvs-1").value();
+
+  const auto pictures = chain_pictures(options);
+  const auto expected = scene_pictures(task);
+
+  ASSERT_TRUE(pictures) << pictures.error().message;
+  ASSERT_TRUE(expected) << expected.error().message;
+  ASSERT_EQ(pictures->size(), all_stages.size());
+  for (std::size_t i = 0; i < all_stages.size(); ++i) EXPECT_EQ((*pictures)[i].stage, all_stages[i]);
+  cv::Mat1d noise, display;
+  expected->stages[4].kelvin.convertTo(noise, CV_64F);
+  expected->stages[5].kelvin.convertTo(display, CV_64F);
+  EXPECT_EQ(largest_difference(picture(*pictures, Stage::noise).kelvin, noise), 0);
+  EXPECT_EQ(largest_difference(picture(*pictures, Stage::display).kelvin, display), 0);
+  EXPECT_EQ(picture(*pictures, Stage::quantised).kelvin.size(), noise.size());
+  EXPECT_EQ(pictures->front().grey_k->first, expected->grey_low_k);
+  options.range_m = 1e7;
+  EXPECT_FALSE(chain_pictures(options)) << "beyond the air's table";
 }
 
 }  // namespace

@@ -132,6 +132,33 @@ TEST(CurveUncertainty, HoldsWhatTargetAndCameraDisagreeBy) {
   EXPECT_THAT(found.not_stated, ::testing::Not(Contains(std::string(read_back_row))));
 }
 
+TEST(CurveUncertainty, CorrectsTheReadBackForTheAirAndStatesWhatIsUncertainOfIt) {
+  std::vector<Presentation> presentations(2);
+  for (Presentation& shown : presentations) {
+    shown.set.delta_t_k = shown.said.state.delta_t_k = 10;
+    shown.delta_t_k = 9.95;
+    shown.air_transmittance = 0.994;
+  }
+  const TodCurve curve{"o", "s", {point_of(10, 2.5, 0.01)}};
+  const Plan plan = plan_of({{.name = "form", .value = 1, .unit = "%"}});
+  const Plan own = plan_of({{.name = "air-path", .value = 0.1, .unit = "%"}});
+
+  const auto found = applied(plan, curve, presentations);
+
+  EXPECT_NEAR(row_of(found.points.at(0), read_back_row).row.value, 9.95 - 9.94, 1e-12);
+  const AppliedRow& air = row_of(found.points.at(0), air_path_row);
+  EXPECT_NEAR(air.contribution, 0.5 * 0.006 / std::sqrt(3.0), 1e-12);  // the slope of a single contrast is 1
+  EXPECT_TRUE(air.from_run);
+  EXPECT_THAT(found.not_stated, ::testing::Not(Contains("air-path")));
+  // The plan's own row is the only one where there is one.
+  const auto stated = applied(own, curve, presentations);
+  EXPECT_EQ(row_of(stated.points.at(0), "air-path").row.value, 0.1);
+  for (const AppliedRow& row : stated.points.at(0).rows) EXPECT_NE(row.row.name, air_path_row);
+  // Without the air it is missing, as it was.
+  for (Presentation& shown : presentations) shown.air_transmittance.reset();
+  EXPECT_THAT(applied(plan, curve, presentations).not_stated, Contains("air-path"));
+}
+
 TEST(CurveUncertainty, NeverLiesInsideTheStatisticalInterval) {
   // Of two degrees of freedom a second row makes k fall faster than u rises.
   TodPoint point = point_of(2, 2.5, 0.01);

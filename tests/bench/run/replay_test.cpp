@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "acquisition/recording/frame_stream.h"
+#include "bench/plan/bench_air.h"
 #include "bench/plan/descriptions.h"
 #include "bench/session/manifest.h"
 #include "tests/bench/run/measured_session.h"
@@ -59,10 +60,19 @@ TEST_F(MeasuredSession, KeepsWhatTheInstrumentsSaidOfEveryPresentation) {
     EXPECT_THAT(report, HasSubstr(column));
 }
 
-TEST_F(MeasuredSession, WithinTheToleranceOfThePlanHasNoNoteOfItsReadBack) {
+TEST_F(MeasuredSession, WithinTheToleranceOfThePlanHasNoNoteOfItsReadBackAndStatesTheAir) {
+  plan_.target.air_humidity_percent = 60;
+
   const auto run = measure("m");
 
   ASSERT_TRUE(run) << run.error().message;
+  const auto session = read_session(at("m"));
+  ASSERT_TRUE(session) << session.error().message;
+  const double air = bench_transmittance({.temperature_c = 20, .humidity_percent = 60}, 2, {7.5, 13}).value();
+  for (const Presentation& shown : session->presentations) EXPECT_EQ(shown.air_transmittance, air);
+  EXPECT_THAT(content_of(at("m") / "report.html"), HasSubstr("Read back behind the air (K)"));
+  // Neither its twin nor a simulation has air.
+  for (const Presentation& shown : session->twin_presentations) EXPECT_FALSE(shown.air_transmittance);
   EXPECT_THAT(content_of(at("m") / "log.txt"), Not(HasSubstr("the target says it shows")));
 }
 

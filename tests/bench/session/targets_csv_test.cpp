@@ -38,6 +38,7 @@ TEST_F(TargetsCsv, EveryValueComesBackExactly) {
   silent.said.black_body_temperature_k.reset();
   silent.delta_t_k.reset();
   silent.host_time_ns.reset();
+  silent.air_transmittance = 0.98765432109876543;
   const std::vector<Presentation> presentations{testing::full_presentation(), silent};
 
   write(presentations);
@@ -53,7 +54,21 @@ TEST_F(TargetsCsv, TheHeaderStatesTheUnits) {
   EXPECT_EQ(testing::content_of(file_),
             "presentation,plate,mounting,set_delta_t_k,reached_delta_t_k,delta_t_k,plate_temperature_k,"
             "black_body_temperature_k,settling_s,host_time_ns,set_shift_x_mm,set_shift_y_mm,reached_plate,"
-            "reached_mounting,reached_shift_x_mm,reached_shift_y_mm\n");
+            "reached_mounting,reached_shift_x_mm,reached_shift_y_mm,air_transmittance\n");
+}
+
+TEST_F(TargetsCsv, OfAnEarlierVersionHasNoAir) {
+  Presentation with_air = testing::full_presentation();
+  with_air.air_transmittance = 0.994;
+  write({with_air});
+  std::string text = testing::content_of(file_);
+  for (const std::string column : {",air_transmittance", ",0.994"}) text.erase(text.find(column), column.size());
+  (void)folder_.write("targets.csv", text);
+
+  const auto back = read_targets(file_);
+
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(*back, std::vector{testing::full_presentation()});
 }
 
 TEST_F(TargetsCsv, WhatATargetSaysThatIsNoNumberIsEmpty) {

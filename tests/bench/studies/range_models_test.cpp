@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "bench/plan/bench_air.h"
+#include "bench/report/grid_figure.h"
 #include "bench/report/html.h"
 #include "bench/report/range_figure.h"
 #include "bench/studies/turbulent_ranges.h"
@@ -116,6 +118,51 @@ TEST(RangeModels, TheUncertaintyOfACurveJoinsTheInterval) {
   const double change = 1.959963984540054 * 0.1 / std::log(3 / 0.01);
   EXPECT_NEAR(*models->front().r75_ci95_m.low / *models->front().r75_m, 1 - change, 1e-6);
   EXPECT_NEAR(*models->front().r75_ci95_m.high / *models->front().r75_m, 1 + change, 1e-6);
+}
+
+TEST(RangeModels, TheBudgetOfASessionJoinsTheIntervalsOfFormulas) {
+  RangeSources given;
+  std::vector<CurvePoint> points;
+  for (int i = 0; i <= 10; ++i) points.push_back({0.3 * i, 0.01 * std::exp(1.8 * i)});
+  given.mrtd = *LogLinearCurve::of(points, "MRTD");
+  RangeQuestion kelvin = question("clear"), angle = question("clear"), both = question("clear");
+  kelvin.scale_u_percent = both.scale_u_percent = 3;
+  kelvin.curve_u_percent = both.curve_u_percent = 4;
+  angle.ifov_u_percent = both.ifov_u_percent = 2;
+  const auto half_of = [&](const RangeQuestion& asked) {
+    const auto models = range_models(std::array{RangeModel::acquire}, given, asked);
+    EXPECT_TRUE(models && models->front().r75_m);
+    EXPECT_THAT(models->front().notes, ::testing::SizeIs(1));
+    return std::log(*models->front().r75_m / *models->front().r75_ci95_m.low);
+  };
+
+  // As the uncertainty of the curve, 3 and 4 % in quadrature; the angle as it is.
+  const double of_kelvin = -std::log(1 - 1.959963984540054 * 0.05 / std::log(3 / 0.01));
+  const double of_angle = 1.959963984540054 * 0.02;
+  EXPECT_NEAR(half_of(kelvin), of_kelvin, 1e-6);
+  EXPECT_NEAR(half_of(angle), of_angle, 1e-9);
+  EXPECT_NEAR(half_of(both), std::hypot(of_kelvin, of_angle), 1e-6);
+}
+
+TEST(GridFigure, HasALineForEachSizeAndEndsWhereNothingIsKnown) {
+  const GridFigure grid{.model = "tod",
+                        .sizes_m = {5, 2},
+                        .contrasts_k = {4, 1, 10},
+                        .r75_m = {900.0, 400.0, 1200.0, 300.0, std::nullopt, 450.0}};
+
+  const auto plot = grid_plot(grid);
+
+  ASSERT_TRUE(plot);
+  ASSERT_EQ(plot->series.size(), 2u);
+  EXPECT_EQ(plot->series[0].label, "5 m");
+  ASSERT_EQ(plot->series[0].points.size(), 3u);
+  EXPECT_EQ(plot->series[0].points[0].x, 1);
+  EXPECT_EQ(plot->series[0].points[2].y, 1200);
+  EXPECT_FALSE(plot->series[1].points[0].y);
+  EXPECT_TRUE(drawn(*plot));
+  GridFigure none = grid;
+  for (auto& r75 : none.r75_m) r75.reset();
+  EXPECT_FALSE(grid_plot(none));
 }
 
 TEST(RangeModels, TheFormOfPChangesTheTtpRange) {
@@ -266,6 +313,40 @@ TEST(Atmospheres, OfTheShippedTableAreThoseOfTheSheetOfFacts) {
     EXPECT_NEAR(air->air.at(1000).value(), at_1_km, 6e-4) << name;
     EXPECT_NEAR(air->air.at(5000).value(), at_5_km, 6e-4) << name;
   }
+}
+
+TEST(BenchAir, OfTheHumidityOfAModelAtmosphereIsThatOfItsTable) {
+  // Midlatitude summer at the ground: 294.2 K, 14 g/m3 (Anderson et al. 1986); saturation after Magnus 18.4 g/m3.
+  BenchAir summer{.temperature_c = 294.2 - 273.15, .humidity_percent = 100};
+  summer.humidity_percent = 100 * 14.0 / absolute_humidity_g_m3(summer);
+  const auto table = load_atmosphere("midlatitude-summer", {.haze = "none"});
+  ASSERT_TRUE(table);
+  for (const double length_m : {1.0, 2.0, 5.0}) {
+    const auto found = bench_transmittance(summer, length_m, {7.5, 13});
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_NEAR(*found, table->air.at(length_m).value(), 1e-12) << length_m;
+  }
+  // The sheet of facts: 0.3 to 1.2 % of contrast over 2 m, less than half of it from 8 to 12 um.
+  const auto dry = bench_transmittance({.temperature_c = 5, .humidity_percent = 20}, 2, {7.5, 13});
+  const auto humid = bench_transmittance({.temperature_c = 30, .humidity_percent = 63}, 2, {7.5, 13});
+  const auto narrow = bench_transmittance({.temperature_c = 30, .humidity_percent = 63}, 2, {8, 12});
+  EXPECT_NEAR(1 - *dry, 0.003, 0.0005);
+  EXPECT_NEAR(1 - *humid, 0.012, 0.0005);
+  EXPECT_LT(1 - *narrow, (1 - *humid) / 2);
+}
+
+TEST(BenchAir, HoldsTheWaterThatTablesOfSaturationSay) {
+  // 17.3 g/m3 at 20 °C, 30.4 at 30 °C: three digits, Magnus' pressure to 0.3 %, vapour as an ideal gas to 0.1 %.
+  EXPECT_NEAR(absolute_humidity_g_m3({.temperature_c = 20, .humidity_percent = 100}) / 17.3, 1, 0.007);
+  EXPECT_NEAR(absolute_humidity_g_m3({.temperature_c = 30, .humidity_percent = 50}) / 15.2, 1, 0.007);
+}
+
+TEST(BenchAir, RefusesWhatNoTableHas) {
+  EXPECT_FALSE(bench_transmittance({.temperature_c = 50, .humidity_percent = 90}, 2, {7.5, 13})) << "75 g/m3";
+  EXPECT_FALSE(bench_transmittance({}, 2, {1, 2})) << "no band near";
+  EXPECT_FALSE(bench_transmittance({}, 0, {7.5, 13}));
+  EXPECT_FALSE(bench_transmittance({}, 1e6, {7.5, 13}));
+  EXPECT_FALSE(bench_transmittance({.temperature_c = NAN}, 2, {7.5, 13}));
 }
 
 TEST(Atmospheres, EveryShippedTableCanBeRead) {

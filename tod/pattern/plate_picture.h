@@ -1,0 +1,22 @@
+// A plate as a picture for a display, drawn by exact area.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "acquisition/core/result.h"
+#include "tod/plate/target_plate.h"
+
+namespace todbench {
+
+struct DisplayGeometry {
+  cv::Size size_px;
+  double pixel_mm = 1;  ///< centre to centre, square
+};
+
+/// A pixel has the mean over its area: `ground`, and `pattern` within triangles and rectangles. The plate's origin is
+/// the middle of the display, moved by `shift_mm` (x right, y down). `invalid_input`: a cut-out that leaves the
+/// display, a level outside 0 to 1, a display without pixels.
+[[nodiscard]] Result<cv::Mat1d> plate_picture(const TargetPlate& mounted_plate, cv::Point2d shift_mm,
+                                              const DisplayGeometry& display, double ground, double pattern);
+
+}  // namespace todbench
