@@ -348,6 +348,8 @@ const auto& table() {
       measure_row(DemandKind::temperature_scale_at_most),
       measure_row(DemandKind::mtf_x),
       measure_row(DemandKind::mtf_y),
+      measure_row(DemandKind::ctf_x),
+      measure_row(DemandKind::ctf_y),
   };
   return rows;
 }

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <utility>
 
+#include "bench/report/ctf_figures.h"
 #include "bench/report/drawing.h"
 #include "bench/report/number_format.h"
 #include "bench/report/plot.h"
@@ -13,7 +14,7 @@
 namespace todbench {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 23> names{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 33> names{{
     {"transfer_slope", "Temperature scale: contrast seen over contrast shown"},
     {"transfer_offset", "Temperature scale: offset"},
     {"transfer_nonlinearity", "Temperature scale: nonlinearity"},
@@ -37,6 +38,16 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 23> names{{
     {"mtf_y", "MTF along y"},
     {"mtf50_y", "Frequency of MTF 0.5 along y"},
     {"mtf_y_model", "MTF along y, closed form of the sensor model"},
+    {"ctf_x", "CTF of four bars along x, best sampling phase"},
+    {"ctf_mean_x", "CTF along x, mean of the sampling phases"},
+    {"ctf_worst_x", "CTF along x, worst sampling phase"},
+    {"ctf_x_model", "CTF along x, best phase, closed form of the sensor model"},
+    {"ctf_worst_x_model", "CTF along x, worst phase, closed form of the sensor model"},
+    {"ctf_y", "CTF of four bars along y, best sampling phase"},
+    {"ctf_mean_y", "CTF along y, mean of the sampling phases"},
+    {"ctf_worst_y", "CTF along y, worst sampling phase"},
+    {"ctf_y_model", "CTF along y, best phase, closed form of the sensor model"},
+    {"ctf_worst_y_model", "CTF along y, worst phase, closed form of the sensor model"},
 }};
 
 std::string name_of(const MeasureLine& line) {
@@ -208,6 +219,8 @@ std::optional<Section> measures_section(const ReportData& data) {
   }
   if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
   if (auto figures = mtf_figures(*data.measures, data.camera.has_value()))
+    section.blocks.emplace_back(*std::move(figures));
+  if (auto figures = ctf_figures(*data.measures, data.camera.has_value()))
     section.blocks.emplace_back(*std::move(figures));
   if (main && main->picture) section.blocks.emplace_back(plate_figures(*main->picture, twin, data.camera.has_value()));
   if (!conditions.empty()) section.blocks.emplace_back(list_of(conditions));

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 
+#include "bench/session/ctf_record.h"
 #include "bench/text/base64.h"
 #include "bench/text/json_reader.h"
 #include "tod/measures/pixel_noise.h"
@@ -303,6 +304,7 @@ Json side_json(const std::optional<CameraMeasures>& measures) {
           {"noise", measures->noise ? noise_json(*measures->noise) : Json()},
           {"transfer", measures->transfer ? transfer_json(*measures->transfer) : Json()},
           {"mtf", measures->mtf ? mtf_json(*measures->mtf) : Json()},
+          {"ctf", measures->ctf ? ctf_json(*measures->ctf) : Json()},
           {"picture", found.picture ? panels_json(*found.picture) : Json()},
           {"reasons", found.reasons}};
 }
@@ -335,6 +337,8 @@ std::optional<MeasureLines> side_from(const JsonReader& side) {
   }
   const JsonReader mtf = side.at_if_there("mtf");
   if (!mtf.is_null()) found.mtf = mtf_from(mtf);
+  const JsonReader ctf = side.at_if_there("ctf");
+  if (!ctf.is_null()) found.ctf = ctf_from(ctf);
   const JsonReader picture = side.at_if_there("picture");
   if (!picture.is_null()) found.picture = panels_from(picture);
   found.reasons = side.at("reasons").texts();
@@ -348,6 +352,7 @@ MeasureLines measure_lines(const CameraMeasures& measures) {
   if (measures.transfer) add_transfer(found, *measures.transfer);
   if (measures.noise) add_noise(found, measures);
   if (measures.mtf) add_mtf(found, *measures.mtf);
+  if (measures.ctf) add_ctf_lines(found, *measures.ctf);
   if (measures.picture) add_picture(found, *measures.picture);
   found.reasons.insert(found.reasons.end(), measures.reasons.begin(), measures.reasons.end());
   return found;
@@ -371,6 +376,8 @@ Result<SessionMeasures> measures_from(const Json& record) {
     return fail(ErrorCode::invalid_input, "'picture': expected three PNG files as base64 of one size");
   if (!complete(measures.main) || !complete(measures.twin))
     return fail(ErrorCode::invalid_input, "'mtf.edges': expected lists of one length and a pitch above 0");
+  if (!ctf_drawable(measures.main) || !ctf_drawable(measures.twin))
+    return fail(ErrorCode::invalid_input, "'ctf.groups': expected frequencies and a pitch above 0");
   return measures;
 }
 

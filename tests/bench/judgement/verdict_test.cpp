@@ -282,10 +282,10 @@ TEST(DemandKinds, EveryKindHasOneRowWithANameAndAUnit) {
     EXPECT_FALSE(row.name.empty() || row.unit.empty());
     EXPECT_EQ(to_string(row.kind), row.name);
   }
-  EXPECT_EQ(names,
-            (std::set<std::string_view>{"acuity", "identified", "equivalence", "netd", "temporal_noise", "noise_t",
-                                        "noise_v", "noise_h", "noise_tv", "noise_th", "noise_vh", "noise_tvh",
-                                        "temperature_scale_at_least", "temperature_scale_at_most", "mtf_x", "mtf_y"}));
+  EXPECT_EQ(names, (std::set<std::string_view>{"acuity", "identified", "equivalence", "netd", "temporal_noise",
+                                               "noise_t", "noise_v", "noise_h", "noise_tv", "noise_th", "noise_vh",
+                                               "noise_tvh", "temperature_scale_at_least", "temperature_scale_at_most",
+                                               "mtf_x", "mtf_y", "ctf_x", "ctf_y"}));
 }
 
 /// A verdict with every kind of demand, sides that are open and numbers that do not exist.
