@@ -69,10 +69,11 @@ Figure ctf_figure(EdgeAxis axis, const SessionMeasures& measures, bool camera) {
   plot.id = "ctf-" + name;
   plot.title = "CTF along " + name;
   plot.description = "Modulation of four bars over their frequency at best and worst sampling phase, 95 % intervals";
-  plot.width = 430, plot.height = 340;
+  plot.width = 430, plot.height = 390;
   plot.x = {.label = "Frequency (1/mrad)", .low = 0, .high = 0, .ticks = {}};
   plot.y = {.label = "CTF along " + name, .low = 0, .high = 1.1, .ticks = {}};
   const auto reach = [&](const CtfGroups& side) {
+    plot.bands = {{"beyond half a cycle per pixel", PlotTone::muted, {0.5 / side.pitch_mrad, std::nullopt}}};
     for (const BarsCtf& group : side.groups) {
       plot.x.high = std::max(plot.x.high, 1.15 * group.frequency_per_pitch / side.pitch_mrad);
       plot.y.high = std::max(plot.y.high, 1.05 * group.best.high);
@@ -88,6 +89,8 @@ Figure ctf_figure(EdgeAxis axis, const SessionMeasures& measures, bool camera) {
     add_model(plot, *measures.main->ctf, axis);
     add_side(plot, *measures.main->ctf, axis, camera ? "camera" : "sensor", true);
   }
+  // Wide bars may all lie below it.
+  if (!plot.bands.empty() && plot.bands.front().x.low >= plot.x.high) plot.bands.clear();
   return {drawn(plot), "CTF of four bars along " + name +
                            ": modulation at the best and at the worst phase of the sampling, with 95 % intervals"};
 }

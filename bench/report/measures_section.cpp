@@ -111,8 +111,8 @@ Figure mtf_figure(const EdgeMtf& edge, const SessionMeasures& measures, bool cam
   for (const char c : edge.place) plot.id += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
   plot.title = "MTF along " + axis + ", " + edge.place;
   plot.description = "Modulation transfer over spatial frequency with 95 % intervals";
-  plot.width = 430, plot.height = 320;
-  double highest = 1.1;
+  plot.width = 430, plot.height = 350;
+  double highest = 1.1, beyond_pitch_mrad = 0;
   const std::optional<MeasureLines>* const sides[] = {&measures.twin, &measures.main};
   for (const auto* side : sides) {
     const EdgeMtf* found = edge_of(*side, edge);
@@ -130,8 +130,11 @@ Figure mtf_figure(const EdgeMtf& edge, const SessionMeasures& measures, bool cam
     if (first) plot.series.push_back(mtf_bars(*found, pitch_mrad, tone, PlotMarker::disc));
     for (const double value : found->mtf) highest = std::max(highest, value);
     plot.x.high = 1 / pitch_mrad;
+    beyond_pitch_mrad = pitch_mrad;
   }
   plot.x.label = "Frequency (1/mrad)";
+  if (beyond_pitch_mrad > 0)
+    plot.bands.push_back({"beyond half a cycle per pixel", PlotTone::muted, {0.5 / beyond_pitch_mrad, std::nullopt}});
   plot.y = {.label = "MTF along " + axis, .low = 0, .high = highest, .ticks = {}};
   return {drawn(plot), "MTF along " + axis + " at '" + edge.place + "'; up to one cycle per pixel pitch"};
 }
@@ -211,7 +214,10 @@ std::optional<Section> measures_section(const ReportData& data) {
       if (line_of(main, line.measure) == nullptr) lines.push_back(line);
   }
   for (const MeasureLine& line : lines) {
-    std::vector<RichText> row{plain(name_of(line)), value_of(line_of(main, line.measure))};
+    const MeasureLine* of_main = line_of(main, line.measure);
+    // A camera has no closed form: nothing that could have been measured.
+    const bool closed_form = of_main == nullptr && line.measure.ends_with("_model");
+    std::vector<RichText> row{plain(name_of(line)), closed_form ? plain("–") : value_of(of_main)};
     if (twin) row.push_back(value_of(line_of(twin, line.measure)));
     table.rows.push_back(std::move(row));
     if (std::find(conditions.begin(), conditions.end(), line.conditions) == conditions.end())
