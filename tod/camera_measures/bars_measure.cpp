@@ -252,11 +252,16 @@ double far_exchange(const cv::Mat1d& covered, const std::vector<cv::Point>& with
   return everything - far_from_cut_outs(covered, some_of(within)) + far_from_cut_outs(covered, some_of(outside));
 }
 
-/// How the MTF begins: 1 - a f, mean over the edges of the squares; from 0.1 and 0.2 cycles per pitch.
+/// How the MTF begins: exp(-a f - c f^2), a; a normal blur is c alone. Mean over the edges of the squares; from 0.1 and
+/// 0.2 cycles per pitch.
 std::optional<double> slope_of_mtf(const PlateEdges& edges) {
   if (edges.edges.empty()) return std::nullopt;
   double sum = 0;
-  for (const EdgeMtf& edge : edges.edges) sum += (4 * (1 - edge.at(0.1)) - (1 - edge.at(0.2))) / 0.2;
+  const auto fall = [](double mtf) {
+    constexpr double least = 1e-3;
+    return -std::log(std::max(mtf, least));
+  };
+  for (const EdgeMtf& edge : edges.edges) sum += (4 * fall(edge.at(0.1)) - fall(edge.at(0.2))) / 0.2;
   return std::max(0.0, sum / static_cast<double>(edges.edges.size()));
 }
 

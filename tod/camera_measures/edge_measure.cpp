@@ -64,13 +64,15 @@ std::optional<double> first_half(const EdgeMtf& edge) {
 }
 
 /// By how much of itself a side's MTF may be too large, because what the optics spread beyond the window counts as
-/// nothing: an MTF that begins as 1 - a f - c f^2 has a line spread of a / (2 pi^2 t^2) far away, of which a / (pi^2 T)
-/// lies beyond T on both sides. Beyond the ends of a short side lies up to as much again on either. From 0 up to
+/// nothing: an MTF that begins as exp(-a f - c f^2) has a line spread of a / (2 pi^2 t^2) far away, of which a / (pi^2
+/// T) lies beyond T on both sides. Beyond the ends of a short side lies up to as much again on either. From 0 up to
 /// that; a from the MTF at 0.1 and 0.2 cycles per pitch.
 double beyond_window(const SlantedEdge& side) {
   constexpr std::size_t low = 10;
   constexpr double with_ends = 3, largest = 0.05;
-  const double near = 1 - side.mtf[low], far = 1 - side.mtf[2 * low];
+  // Of the logarithm: a normal blur is c alone, however wide.
+  constexpr double least = 1e-3;
+  const double near = -std::log(std::max(side.mtf[low], least)), far = -std::log(std::max(side.mtf[2 * low], least));
   const double slope = (4 * near - far) / (2 * side.frequency_per_pitch[low]);
   const double reach = std::max(0.5 * side.window_pitch, 1.0);
   return std::clamp(with_ends * slope / (std::numbers::pi * std::numbers::pi * reach), 0.0, largest);
