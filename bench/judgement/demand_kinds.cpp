@@ -349,6 +349,8 @@ const auto& table() {
       measure_row(DemandKind::temperature_scale_at_most),
       measure_row(DemandKind::mtf_x),
       measure_row(DemandKind::mtf_y),
+      measure_row(DemandKind::ctf_x),
+      measure_row(DemandKind::ctf_y),
       zone_row(DemandKind::zone_bad_pixels),
       zone_row(DemandKind::zone_substituted_pixels),
       zone_row(DemandKind::zone_clusters),

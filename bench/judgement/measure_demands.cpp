@@ -47,6 +47,10 @@ constexpr std::array measure_demands{
                   "MTF along x at the frequency of the plan at least "},
     MeasureDemand{DemandKind::mtf_y, LimitedMeasure::mtf_y, LimitSide::at_least, "mtf_y", "1",
                   "MTF along y at the frequency of the plan at least "},
+    MeasureDemand{DemandKind::ctf_x, LimitedMeasure::ctf_x, LimitSide::at_least, "ctf_x", "1",
+                  "CTF along x of the bars nearest to the frequency of the plan, best phase, at least "},
+    MeasureDemand{DemandKind::ctf_y, LimitedMeasure::ctf_y, LimitSide::at_least, "ctf_y", "1",
+                  "CTF along y of the bars nearest to the frequency of the plan, best phase, at least "},
 };
 
 const MeasureDemand& demand_of(DemandKind kind) {
@@ -59,8 +63,8 @@ const MeasureDemand& demand_of(DemandKind kind) {
 /// Relative standard uncertainty of a measure from the budget.
 double stated_u(LimitedMeasure measure, const CurveUncertainty* uncertainty) {
   if (uncertainty == nullptr) return 0;
-  // A ratio of modulations: what is common to both frequencies cancels.
-  if (measure == LimitedMeasure::mtf_x || measure == LimitedMeasure::mtf_y) return 0;
+  // A ratio of contrasts in one picture: what is common to both cancels.
+  if (is_modulation(measure)) return 0;
   const bool of_scale = measure == LimitedMeasure::transfer_slope || measure == LimitedMeasure::netd;
   return of_scale ? uncertainty->u_scale : uncertainty->u_camera_scale;
 }
@@ -170,6 +174,10 @@ DemandKindRow measure_row(DemandKind kind) {
       return row<DemandKind::mtf_x>();
     case DemandKind::mtf_y:
       return row<DemandKind::mtf_y>();
+    case DemandKind::ctf_x:
+      return row<DemandKind::ctf_x>();
+    case DemandKind::ctf_y:
+      return row<DemandKind::ctf_y>();
     case DemandKind::acuity:
     case DemandKind::identified:
     case DemandKind::equivalence:

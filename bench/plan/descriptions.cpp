@@ -59,6 +59,18 @@ PlateRectangle read_rectangle(TomlReader& table, std::size_t number) {
   return rectangle;
 }
 
+PlateBars read_bars(TomlReader& table, std::size_t number) {
+  PlateBars bars;
+  bars.name = table.text("name", "bars " + std::to_string(number));
+  bars.position_mm.x = table.number("x_mm", NumberRange::any(), std::nullopt);
+  bars.position_mm.y = table.number("y_mm", NumberRange::any(), std::nullopt);
+  bars.bar_mm = table.number("bar_mm", NumberRange::positive(), std::nullopt);
+  bars.length_mm = table.number("length_mm", NumberRange::positive(), std::nullopt);
+  const std::string axis = table.choice("axis", std::vector<std::string>{"x", "y"}, std::nullopt);
+  bars.angle_deg = table.number("angle_deg", NumberRange::between(-45, 45), 0.0) + (axis == "y" ? 90 : 0);
+  return bars;
+}
+
 /// The fallback of a key that may be missing is what the parameter is without it.
 void read_key(TomlReader& reader, const SensorKey& key, SensorSpec& spec) {
   const bool required = key.presence == KeyPresence::required;
@@ -183,6 +195,8 @@ Result<TargetPlate> parse_plate(const Resource& resource) {
   for (TomlReader& row : reader->sections("row")) read_row(row, ++number, plate);
   number = 0;
   for (TomlReader& table : reader->sections("rectangle")) plate.rectangles.push_back(read_rectangle(table, ++number));
+  number = 0;
+  for (TomlReader& table : reader->sections("bars")) plate.bars.push_back(read_bars(table, ++number));
   return checked(*reader, resource, std::move(plate));
 }
 

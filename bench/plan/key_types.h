@@ -55,8 +55,11 @@ struct ChoicesKey {
   MayBeEmpty may_be_empty = MayBeEmpty::no;
 };
 /// Name or file of a description.
+/// What a plate that is named alone is for.
+enum class PlateUse { mtf, ctf };
 struct ResourceKey {
   ResourceKind kind;
+  PlateUse use = PlateUse::mtf;  ///< of a plate
 };
 struct ResourcesKey {
   ResourceKind kind;

@@ -57,32 +57,44 @@ std::vector<ValueMistake> read_plates(const std::vector<std::string>& references
 }
 
 /// Of keys that name one part: whether the plan needs it.
-bool is_asked_for(ResourceKind kind, const Plan& plan) {
-  if (kind == ResourceKind::plate) return plan.measures.mtf;
-  if (kind == ResourceKind::black_body || kind == ResourceKind::stage) return plan.target.kind == TargetKind::scpi;
+bool is_asked_for(const ResourceKey& key, const Plan& plan) {
+  if (key.kind == ResourceKind::plate) return key.use == PlateUse::mtf ? plan.measures.mtf : plan.measures.ctf;
+  if (key.kind == ResourceKind::black_body || key.kind == ResourceKind::stage)
+    return plan.target.kind == TargetKind::scpi;
   return true;
 }
 
-std::vector<ValueMistake> read_mtf_plate(const Plan& plan, const ResourceFinder& find, PlanParts& parts) {
-  parts.mtf_plate.reset();
-  if (!is_asked_for(ResourceKind::plate, plan)) return {};
-  Result<TargetPlate> plate = read_part(ResourceKind::plate, plan.measures.mtf_plate, find, parts, parse_plate);
+/// Why a plate cannot be used for a measure; empty: it can.
+std::string unfit_for(PlateUse use, const TargetPlate& plate) {
+  if (plate.rectangles.empty()) return "the plate has no rectangles, and an MTF or CTF needs straight edges";
+  if (use == PlateUse::ctf && plate.bars.empty()) return "the plate has no bars, and a CTF needs groups of them";
+  return "";
+}
+
+std::vector<ValueMistake> read_measure_plate(PlateUse use, const Plan& plan, const ResourceFinder& find,
+                                             PlanParts& parts) {
+  const bool mtf = use == PlateUse::mtf;
+  std::optional<TargetPlate>& part = mtf ? parts.mtf_plate : parts.ctf_plate;
+  const std::string& reference = mtf ? plan.measures.mtf_plate : plan.measures.ctf_plate;
+  part.reset();
+  if (!is_asked_for({ResourceKind::plate, use}, plan)) return {};
+  Result<TargetPlate> plate = read_part(ResourceKind::plate, reference, find, parts, parse_plate);
   if (!plate) return {{std::nullopt, plate.error().message}};
-  if (plate->rectangles.empty())
-    return {{std::nullopt, plan.measures.mtf_plate + ": the plate has no rectangles, and an MTF needs straight edges"}};
+  if (const std::string why = unfit_for(use, *plate); !why.empty()) return {{std::nullopt, reference + ": " + why}};
   for (std::size_t i = 0; i < parts.plates.size(); ++i) {
-    if (parts.plates[i].name == plate->name && i < plan.target.plates.size() &&
-        plan.target.plates[i] != plan.measures.mtf_plate)
-      return {{std::nullopt, plan.measures.mtf_plate + ": a plate of the trials has the name '" + plate->name + "'"}};
+    if (parts.plates[i].name == plate->name && i < plan.target.plates.size() && plan.target.plates[i] != reference)
+      return {{std::nullopt, reference + ": a plate of the trials has the name '" + plate->name + "'"}};
   }
-  parts.mtf_plate = *std::move(plate);
+  if (!mtf && parts.mtf_plate && parts.mtf_plate->name == plate->name && plan.measures.mtf_plate != reference)
+    return {{std::nullopt, reference + ": the plate of the MTF has the name '" + plate->name + "', too"}};
+  part = *std::move(plate);
   return {};
 }
 
 /// Nothing is read of an instrument that is not talked to.
 std::vector<ValueMistake> read_instrument(ResourceKind kind, const std::string& reference, const Plan& plan,
                                           const ResourceFinder& find, PlanParts& parts) {
-  if (!is_asked_for(kind, plan)) return {};
+  if (!is_asked_for({kind}, plan)) return {};
   const bool black_body = kind == ResourceKind::black_body;
   InstrumentTable& table = black_body ? parts.black_body : parts.stage;
   auto mistakes = keep(read_part(kind, reference, find, parts, parse_instrument), table);
@@ -100,7 +112,7 @@ Result<void> read_changed(const Plan& plan, const Plan* known, const ResourceFin
       const auto* one = std::get_if<ResourceKey>(&key.type);
       if (one == nullptr && !std::holds_alternative<ResourcesKey>(key.type)) continue;
       if (known != nullptr && key.place.get(plan, 0) == key.place.get(*known, 0) &&
-          (one == nullptr || is_asked_for(one->kind, plan) == is_asked_for(one->kind, *known)))
+          (one == nullptr || is_asked_for(*one, plan) == is_asked_for(*one, *known)))
         continue;
       const auto mistakes = read_parts(key.type, plan, find, parts);
       if (!mistakes.empty()) return tl::unexpected(error_of({.at = {&section, &key, 0}, .mistake = mistakes.front()}));
@@ -127,7 +139,8 @@ std::vector<ValueMistake> read_parts(const KeyType& type, const Plan& plan, cons
   const ResourceKind kind = many != nullptr ? many->kind : std::get<ResourceKey>(type).kind;
   switch (kind) {
     case ResourceKind::plate:
-      return many != nullptr ? read_plates(plan.target.plates, find, parts) : read_mtf_plate(plan, find, parts);
+      return many != nullptr ? read_plates(plan.target.plates, find, parts)
+                             : read_measure_plate(std::get<ResourceKey>(type).use, plan, find, parts);
     case ResourceKind::observer:
       return keep(read_part(kind, plan.observer, find, parts, parse_observer), parts.observer);
     case ResourceKind::sensor:
@@ -148,9 +161,10 @@ std::vector<ValueMistake> read_parts(const KeyType& type, const Plan& plan, cons
 
 std::vector<TargetPlate> LoadedPlan::shown_plates() const {
   std::vector<TargetPlate> plates = parts_.plates;
-  const auto& added = parts_.mtf_plate;
-  const auto there = [&](const TargetPlate& plate) { return plate.name == added->name; };
-  if (added && std::none_of(plates.begin(), plates.end(), there)) plates.push_back(*added);
+  for (const auto* added : {&parts_.mtf_plate, &parts_.ctf_plate}) {
+    const auto there = [&](const TargetPlate& plate) { return plate.name == (*added)->name; };
+    if (*added && std::none_of(plates.begin(), plates.end(), there)) plates.push_back(**added);
+  }
   return plates;
 }
 

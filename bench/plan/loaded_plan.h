@@ -26,6 +26,7 @@ struct PlanParts {
   TemplateObserverSpec observer;
   SensorSpec sensor;                       ///< with its own microscan
   std::optional<TargetPlate> mtf_plate{};  ///< where [measures] asks for an MTF
+  std::optional<TargetPlate> ctf_plate{};  ///< where it asks for a CTF
   InstrumentTable black_body{}, stage{};   ///< of a plan with a target of kind scpi; else whatever
   /// The texts they were read from, by kind and reference.
   std::map<std::pair<ResourceKind, std::string>, Resource> sources{};
@@ -45,7 +46,7 @@ class LoadedPlan {
 
   [[nodiscard]] const Plan& plan() const { return plan_; }
   [[nodiscard]] const std::vector<TargetPlate>& plates() const { return parts_.plates; }
-  /// Every plate that a target has to be able to show: of the trials and of the MTF.
+  /// Every plate that a target has to be able to show: of the trials, of MTF and CTF.
   [[nodiscard]] std::vector<TargetPlate> shown_plates() const;
   [[nodiscard]] const TemplateObserverSpec& observer() const { return parts_.observer; }
   /// With the microscan of the plan.

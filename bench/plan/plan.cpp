@@ -63,17 +63,25 @@ std::string_view to_string(LimitedMeasure measure) {
       return "mtf_x";
     case LimitedMeasure::mtf_y:
       return "mtf_y";
+    case LimitedMeasure::ctf_x:
+      return "ctf_x";
+    case LimitedMeasure::ctf_y:
+      return "ctf_y";
   }
   return "";
 }
 
+bool is_modulation(LimitedMeasure measure) {
+  return measure == LimitedMeasure::mtf_x || measure == LimitedMeasure::mtf_y || measure == LimitedMeasure::ctf_x ||
+         measure == LimitedMeasure::ctf_y;
+}
+
 bool takes_at_least(LimitedMeasure measure) {
-  return measure == LimitedMeasure::transfer_slope || measure == LimitedMeasure::mtf_x ||
-         measure == LimitedMeasure::mtf_y;
+  return measure == LimitedMeasure::transfer_slope || is_modulation(measure);
 }
 
 bool takes_at_most(LimitedMeasure measure) {
-  return measure != LimitedMeasure::mtf_x && measure != LimitedMeasure::mtf_y;
+  return !is_modulation(measure);
 }
 
 double relative_u_of_scale(const Plan& plan) {

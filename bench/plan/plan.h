@@ -130,6 +130,8 @@ enum class DemandKind {
   temperature_scale_at_most,
   mtf_x,
   mtf_y,
+  ctf_x,
+  ctf_y,
   // Pixels of a zone, [[limits.zone]].
   zone_bad_pixels,
   zone_substituted_pixels,
@@ -158,12 +160,17 @@ enum class LimitedMeasure {
   transfer_slope,  ///< the temperature scale
   mtf_x,           ///< at the frequency of [measures]
   mtf_y,
+  ctf_x,  ///< best phase, of the group nearest to the frequency of [measures]
+  ctf_y,
 };
 inline constexpr std::array limited_measures{
     LimitedMeasure::netd,      LimitedMeasure::temporal_noise, LimitedMeasure::noise_t,  LimitedMeasure::noise_v,
     LimitedMeasure::noise_h,   LimitedMeasure::noise_tv,       LimitedMeasure::noise_th, LimitedMeasure::noise_vh,
-    LimitedMeasure::noise_tvh, LimitedMeasure::transfer_slope, LimitedMeasure::mtf_x,    LimitedMeasure::mtf_y};
+    LimitedMeasure::noise_tvh, LimitedMeasure::transfer_slope, LimitedMeasure::mtf_x,    LimitedMeasure::mtf_y,
+    LimitedMeasure::ctf_x,     LimitedMeasure::ctf_y};
 [[nodiscard]] std::string_view to_string(LimitedMeasure measure);
+/// An MTF or a CTF.
+[[nodiscard]] bool is_modulation(LimitedMeasure measure);
 /// Which limits a measure can have.
 [[nodiscard]] bool takes_at_least(LimitedMeasure measure);
 [[nodiscard]] bool takes_at_most(LimitedMeasure measure);
@@ -246,6 +253,11 @@ struct MeasuresPlan {
   double mtf_delta_t_k = 10;              ///< at which it is shown
   int mtf_frames = 64;                    ///< averaged
   double mtf_frequency_per_pitch = 0.25;  ///< at which the MTF is stated and limited
+  bool ctf = false;                       ///< along both axes, from the bars of a plate of its own
+  std::string ctf_plate = "bars";         ///< name or file
+  double ctf_delta_t_k = 10;              ///< at which it is shown
+  int ctf_frames = 64;                    ///< averaged
+  double ctf_frequency_per_pitch = 0.4;   ///< the group nearest to it is stated and limited
   bool operator==(const MeasuresPlan&) const = default;
 };
 

@@ -153,6 +153,11 @@ ValueMistakes check_mtf_contrast(const Plan& plan, std::size_t /*row*/) {
   return {{std::nullopt, "an edge without contrast has no MTF"}};
 }
 
+ValueMistakes check_ctf_contrast(const Plan& plan, std::size_t /*row*/) {
+  if (!plan.measures.ctf || plan.measures.ctf_delta_t_k != 0) return {};
+  return {{std::nullopt, "bars without contrast have no CTF"}};
+}
+
 ValueMistakes check_limit_contrast(const Plan& plan, std::size_t row) {
   ValueMistakes mistakes;
   const double limit = plan.limits.acuity[row].delta_t_k;
@@ -180,7 +185,8 @@ ValueMistakes check_margin(const Plan& plan, std::size_t /*row*/) {
 ValueMistakes check_limited_measure(const Plan& plan, std::size_t row) {
   const LimitedMeasure measure = plan.limits.measures[row].measure;
   const bool mtf = measure == LimitedMeasure::mtf_x || measure == LimitedMeasure::mtf_y;
-  const bool noise = !mtf && measure != LimitedMeasure::transfer_slope;
+  const bool ctf = measure == LimitedMeasure::ctf_x || measure == LimitedMeasure::ctf_y;
+  const bool noise = !mtf && !ctf && measure != LimitedMeasure::transfer_slope;
   const bool transfer = measure == LimitedMeasure::transfer_slope || measure == LimitedMeasure::netd;
   ValueMistakes mistakes;
   if (noise && !plan.measures.noise)
@@ -192,6 +198,9 @@ ValueMistakes check_limited_measure(const Plan& plan, std::size_t row) {
   if (mtf && !plan.measures.mtf)
     mistakes.push_back(
         {std::nullopt, "a limit on " + std::string(to_string(measure)) + " needs mtf = true in [measures]"});
+  if (ctf && !plan.measures.ctf)
+    mistakes.push_back(
+        {std::nullopt, "a limit on " + std::string(to_string(measure)) + " needs ctf = true in [measures]"});
   for (std::size_t other = 0; other < row; ++other) {
     if (plan.limits.measures[other].measure == measure)
       mistakes.push_back({std::nullopt, "a second row for " + std::string(to_string(measure))});

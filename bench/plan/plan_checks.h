@@ -43,6 +43,7 @@ using ValueMistakes = std::vector<ValueMistake>;
 [[nodiscard]] ValueMistakes check_zone_limits(const Plan& plan, std::size_t row);
 /// Not 0 where an MTF is asked for.
 [[nodiscard]] ValueMistakes check_mtf_contrast(const Plan& plan, std::size_t row);
+[[nodiscard]] ValueMistakes check_ctf_contrast(const Plan& plan, std::size_t row);
 /// Among the contrasts of the target, and not in an earlier row.
 [[nodiscard]] ValueMistakes check_limit_contrast(const Plan& plan, std::size_t row);
 /// Above what the rows of the budget that do not cancel between camera and twin make of a ratio.

@@ -473,7 +473,7 @@ PlanSection measures_section() {
                     .place = of(&MeasuresPlan::mtf),
                     .form = {"Measure the MTF", "planMtf"}},
                    {.name = "mtf_plate",
-                    .type = ResourceKey{ResourceKind::plate},
+                    .type = ResourceKey{ResourceKind::plate, PlateUse::mtf},
                     .sentence = "name or file of a plate with slanted rectangles",
                     .place = of(&MeasuresPlan::mtf_plate)},
                    {.name = "mtf_delta_t_k",
@@ -489,7 +489,30 @@ PlanSection measures_section() {
                    {.name = "mtf_frequency_per_pitch",
                     .type = NumberKey{NumberRange::above_to(0, 1)},
                     .sentence = "cycles per pixel pitch at which the MTF is stated and limited",
-                    .place = of(&MeasuresPlan::mtf_frequency_per_pitch)}}};
+                    .place = of(&MeasuresPlan::mtf_frequency_per_pitch)},
+                   {.name = "ctf",
+                    .type = FlagKey{},
+                    .sentence = "contrast transfer along both axes, from the bars of ctf_plate",
+                    .place = of(&MeasuresPlan::ctf),
+                    .form = {"Measure the CTF", "planCtf"}},
+                   {.name = "ctf_plate",
+                    .type = ResourceKey{ResourceKind::plate, PlateUse::ctf},
+                    .sentence = "name or file of a plate with bars and squares",
+                    .place = of(&MeasuresPlan::ctf_plate)},
+                   {.name = "ctf_delta_t_k",
+                    .type = NumberKey{NumberRange::between(-500, 500)},
+                    .unit = "K",
+                    .sentence = "contrast at which ctf_plate is shown",
+                    .place = of(&MeasuresPlan::ctf_delta_t_k),
+                    .check = check_ctf_contrast},
+                   {.name = "ctf_frames",
+                    .type = WholeKey{1, 10000},
+                    .sentence = "averaged for the CTF",
+                    .place = of(&MeasuresPlan::ctf_frames)},
+                   {.name = "ctf_frequency_per_pitch",
+                    .type = NumberKey{NumberRange::above_to(0, 1)},
+                    .sentence = "cycles per pixel pitch; the group of bars nearest to it is stated and limited",
+                    .place = of(&MeasuresPlan::ctf_frequency_per_pitch)}}};
 }
 
 PlanSection limits_section() {
@@ -524,26 +547,25 @@ PlanSection measure_limits_section() {
   const auto rows = [](auto& plan) -> auto& {
     return plan.limits.measures;
   };
-  return {
-      .name = "limits.measure",
-      .sentence =
-          "Limits on a physical measure of [measures], in its unit (K; K/K for transfer_slope, 1 for mtf_x and mtf_y).",
-      .keys = {{.name = "measure",
-                .type = ChoiceKey{names_of(limited_measures)},
-                .sentence = "by its name in measures.json",
-                .place = in_row(rows, &MeasureLimit::measure),
-                .required = Required::always,
-                .check = check_limited_measure},
-               {.name = "at_least",
-                .type = OptionalNumberKey{positive},
-                .sentence = "lower limit of transfer_slope, mtf_x or mtf_y",
-                .place = in_row(rows, &MeasureLimit::at_least)},
-               {.name = "at_most",
-                .type = OptionalNumberKey{positive},
-                .sentence = "upper limit; mtf_x and mtf_y have none",
-                .place = in_row(rows, &MeasureLimit::at_most),
-                .check = check_measure_limits}},
-      .rows = rows_of(rows)};
+  return {.name = "limits.measure",
+          .sentence =
+              "Limits on a physical measure of [measures], in its unit (K; K/K for transfer_slope, 1 for MTF and CTF).",
+          .keys = {{.name = "measure",
+                    .type = ChoiceKey{names_of(limited_measures)},
+                    .sentence = "by its name in measures.json",
+                    .place = in_row(rows, &MeasureLimit::measure),
+                    .required = Required::always,
+                    .check = check_limited_measure},
+                   {.name = "at_least",
+                    .type = OptionalNumberKey{positive},
+                    .sentence = "lower limit of transfer_slope, an MTF or a CTF",
+                    .place = in_row(rows, &MeasureLimit::at_least)},
+                   {.name = "at_most",
+                    .type = OptionalNumberKey{positive},
+                    .sentence = "upper limit; MTF and CTF have none",
+                    .place = in_row(rows, &MeasureLimit::at_most),
+                    .check = check_measure_limits}},
+          .rows = rows_of(rows)};
 }
 
 PlanSection zone_limits_section() {

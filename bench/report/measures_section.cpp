@@ -5,6 +5,7 @@
 #include <cctype>
 #include <utility>
 
+#include "bench/report/ctf_figures.h"
 #include "bench/report/drawing.h"
 #include "bench/report/number_format.h"
 #include "bench/report/pixel_figures.h"
@@ -14,7 +15,7 @@
 namespace todbench {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 24> names{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 34> names{{
     {"transfer_slope", "Temperature scale: contrast seen over contrast shown"},
     {"transfer_offset", "Temperature scale: offset"},
     {"transfer_nonlinearity", "Temperature scale: nonlinearity"},
@@ -39,6 +40,16 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 24> names{{
     {"mtf_y", "MTF along y"},
     {"mtf50_y", "Frequency of MTF 0.5 along y"},
     {"mtf_y_model", "MTF along y, closed form of the sensor model"},
+    {"ctf_x", "CTF of four bars along x, best sampling phase"},
+    {"ctf_mean_x", "CTF along x, mean of the sampling phases"},
+    {"ctf_worst_x", "CTF along x, worst sampling phase"},
+    {"ctf_x_model", "CTF along x, best phase, closed form of the sensor model"},
+    {"ctf_worst_x_model", "CTF along x, worst phase, closed form of the sensor model"},
+    {"ctf_y", "CTF of four bars along y, best sampling phase"},
+    {"ctf_mean_y", "CTF along y, mean of the sampling phases"},
+    {"ctf_worst_y", "CTF along y, worst sampling phase"},
+    {"ctf_y_model", "CTF along y, best phase, closed form of the sensor model"},
+    {"ctf_worst_y_model", "CTF along y, worst phase, closed form of the sensor model"},
 }};
 
 std::string name_of(const MeasureLine& line) {
@@ -105,8 +116,8 @@ Figure mtf_figure(const EdgeMtf& edge, const SessionMeasures& measures, bool cam
   for (const char c : edge.place) plot.id += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
   plot.title = "MTF along " + axis + ", " + edge.place;
   plot.description = "Modulation transfer over spatial frequency with 95 % intervals";
-  plot.width = 430, plot.height = 320;
-  double highest = 1.1;
+  plot.width = 430, plot.height = 350;
+  double highest = 1.1, beyond_pitch_mrad = 0;
   const std::optional<MeasureLines>* const sides[] = {&measures.twin, &measures.main};
   for (const auto* side : sides) {
     const EdgeMtf* found = edge_of(*side, edge);
@@ -124,8 +135,11 @@ Figure mtf_figure(const EdgeMtf& edge, const SessionMeasures& measures, bool cam
     if (first) plot.series.push_back(mtf_bars(*found, pitch_mrad, tone, PlotMarker::disc));
     for (const double value : found->mtf) highest = std::max(highest, value);
     plot.x.high = 1 / pitch_mrad;
+    beyond_pitch_mrad = pitch_mrad;
   }
   plot.x.label = "Frequency (1/mrad)";
+  if (beyond_pitch_mrad > 0)
+    plot.bands.push_back({"beyond half a cycle per pixel", PlotTone::muted, {0.5 / beyond_pitch_mrad, std::nullopt}});
   plot.y = {.label = "MTF along " + axis, .low = 0, .high = highest, .ticks = {}};
   return {drawn(plot), "MTF along " + axis + " at '" + edge.place + "'; up to one cycle per pixel pitch"};
 }
@@ -205,7 +219,10 @@ std::optional<Section> measures_section(const ReportData& data) {
       if (line_of(main, line.measure) == nullptr) lines.push_back(line);
   }
   for (const MeasureLine& line : lines) {
-    std::vector<RichText> row{plain(name_of(line)), value_of(line_of(main, line.measure))};
+    const MeasureLine* of_main = line_of(main, line.measure);
+    // A camera has no closed form: nothing that could have been measured.
+    const bool closed_form = of_main == nullptr && line.measure.ends_with("_model");
+    std::vector<RichText> row{plain(name_of(line)), closed_form ? plain("–") : value_of(of_main)};
     if (twin) row.push_back(value_of(line_of(twin, line.measure)));
     table.rows.push_back(std::move(row));
     if (std::find(conditions.begin(), conditions.end(), line.conditions) == conditions.end())
@@ -213,6 +230,8 @@ std::optional<Section> measures_section(const ReportData& data) {
   }
   if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
   if (auto figures = mtf_figures(*data.measures, data.camera.has_value()))
+    section.blocks.emplace_back(*std::move(figures));
+  if (auto figures = ctf_figures(*data.measures, data.camera.has_value()))
     section.blocks.emplace_back(*std::move(figures));
   if (main && main->picture) section.blocks.emplace_back(plate_figures(*main->picture, twin, data.camera.has_value()));
   if (auto figures = pixel_figures(*data.measures, data.camera.has_value()))

@@ -96,6 +96,19 @@ void add_verdict(std::string& table, const ReportData& data) {
   }
 }
 
+void add_bars(std::string& table, const std::string& section, const BarsCtf& group) {
+  const auto phase = [&](const std::string& name, const Modulation& found) {
+    add(table, {.section = section,
+                .name = "ctf_" + name + "_" + std::string(to_string(group.axis)) + " at " +
+                        number_text(group.frequency_per_pitch) + " cycles per pitch, " + group.group,
+                .value = found.value,
+                .interval = {found.low, found.high},
+                .interval_percent = 95,
+                .unit = "1"});
+  };
+  phase("best", group.best), phase("mean", group.mean), phase("worst", group.worst);
+}
+
 void add_measures(std::string& table, const std::string& section, const std::optional<MeasureLines>& side) {
   if (!side) return;
   for (const MeasureLine& line : side->lines) {
@@ -107,6 +120,9 @@ void add_measures(std::string& table, const std::string& section, const std::opt
                 .interval_percent = bounded ? std::optional(95) : std::nullopt,
                 .unit = line.unit,
                 .text = line.conditions});
+  }
+  if (side->ctf) {
+    for (const BarsCtf& group : side->ctf->groups) add_bars(table, section, group);
   }
   if (!side->mtf) return;
   for (const EdgeMtf& edge : side->mtf->edges) {

@@ -45,7 +45,7 @@ class Walk {
   /// What [measures] asks for behind the trials, as measure_camera() goes through it.
   void measure(const TargetState& last, const std::string& first_plate) {
     const MeasuresPlan& measures = plan_.measures;
-    if (!measures.noise && !measures.transfer && !measures.triangles && !measures.mtf) return;
+    if (!measures.noise && !measures.transfer && !measures.triangles && !measures.mtf && !measures.ctf) return;
     const TargetPlan& target = plan_.target;
     const auto change = [&](double seconds, int frames) {
       time_.changes_s += seconds;
@@ -64,7 +64,9 @@ class Walk {
       for (std::size_t i = 0; i < target.delta_t_k.size(); ++i)
         change(target.contrast_change_s, plan_.measurement.contrast_frames);
     }
-    if (measures.mtf) change(std::max(target.plate_change_s, target.contrast_change_s), measures.mtf_frames);
+    const double new_plate_s = std::max(target.plate_change_s, target.contrast_change_s);
+    if (measures.mtf) change(new_plate_s, measures.mtf_frames);
+    if (measures.ctf) change(new_plate_s, measures.ctf_frames);
   }
 
   [[nodiscard]] BenchTime finished(double frame_rate_hz) {

@@ -66,9 +66,12 @@ EmulationArguments emulation_for(const Plan& plan) {
   EmulationArguments arguments;
   arguments.sensor = plan.simulation.sensor;
   arguments.plates = plan.target.plates;
-  const std::string& edge = plan.measures.mtf_plate;
-  if (plan.measures.mtf && std::find(arguments.plates.begin(), arguments.plates.end(), edge) == arguments.plates.end())
-    arguments.plates.push_back(edge);
+  const auto add = [&](const std::string& plate) {
+    if (std::find(arguments.plates.begin(), arguments.plates.end(), plate) == arguments.plates.end())
+      arguments.plates.push_back(plate);
+  };
+  if (plan.measures.mtf) add(plan.measures.mtf_plate);
+  if (plan.measures.ctf) add(plan.measures.ctf_plate);
   arguments.distance_m = plan.target.distance_m;
   arguments.black_body_port = 0;
   arguments.stage_port = 0;

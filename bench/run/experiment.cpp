@@ -281,7 +281,7 @@ Result<MeasuredRun> run_measured(const Plan& plan, const ExperimentInputs& input
   if (!result) return tl::unexpected(result.error());
   MeasuredRun run{*std::move(result), std::nullopt};
   if (run.result.ended_by) return run;
-  auto measures = physical_measures(plan, options, inputs.mtf_plate, bench, {folder, listener}, std::move(stop));
+  auto measures = physical_measures(plan, options, inputs, bench, {folder, listener}, std::move(stop));
   if (measures)
     run.measures = *std::move(measures);
   else

@@ -42,6 +42,7 @@ Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlann
   ExperimentInputs inputs;
   inputs.plates = loaded.plates();
   inputs.mtf_plate = loaded.parts().mtf_plate;
+  inputs.ctf_plate = loaded.parts().ctf_plate;
   inputs.observer = loaded.observer();
   inputs.motion = plan.simulation.motion;
   if (has_modules(plan, loaded.sensor())) {

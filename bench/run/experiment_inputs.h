@@ -18,6 +18,7 @@ namespace todbench {
 struct ExperimentInputs {
   std::vector<TargetPlate> plates;         ///< of the trials
   std::optional<TargetPlate> mtf_plate{};  ///< where an MTF is asked for
+  std::optional<TargetPlate> ctf_plate{};  ///< where a CTF is asked for
   TemplateObserverSpec observer;
   SensorSpec sensor;                      ///< as planned: parameters of skipped effects at their neutral values
   SensorPlan effects;                     ///< what the scene calls for within the tolerance, and why

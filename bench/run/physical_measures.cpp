@@ -10,6 +10,7 @@
 #include "sim_devices/sensor/effect_row.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "sim_devices/sensor/transfer_functions.h"
+#include "tod/range/bars_sampled.h"
 
 namespace todbench {
 namespace {
@@ -27,6 +28,29 @@ void add_closed_form(MtfMeasure& mtf, const SensorModel& model, const Experiment
       const double u = f * samples * along, w = f * samples * across;
       edge.model.push_back(std::abs(edge.axis == EdgeAxis::x ? transfer(u, w) : transfer(w, u)));
     }
+  }
+}
+
+/// Of the bars of each group: their spectrum through the sensor's transfer along the normal, sampled once a pitch. The
+/// pitch is that of the samples, of which a microscan has several to a detector.
+void add_closed_form(CtfMeasure& ctf, const SensorModel& model, const ExperimentInputs& inputs) {
+  const TransferFunction transfer =
+      sensor_transfer(model.spec(), model.plan(), inputs.accuracy.wavelengths, inputs.motion);
+  const int samples = model.spec().samples_per_pitch();
+  constexpr double least_transfer = 1e-6;
+  constexpr double widest_band = 16, band_step = 0.5;  // cycles per sample
+  for (BarsCtf& group : ctf.bars.groups) {
+    const double angle = group.angle_deg * std::numbers::pi / 180;
+    const double along = std::cos(angle), across = std::sin(angle);
+    const auto of = [&](double f) {
+      const double u = f * samples * along, w = f * samples * across;
+      return std::real(group.axis == EdgeAxis::x ? transfer(u, w) : transfer(w, u));
+    };
+    double band = widest_band;
+    while (band > 1 && std::abs(of(band)) < least_transfer && std::abs(of(band - 0.5 * band_step)) < least_transfer)
+      band -= band_step;
+    const BarModulation found = bar_modulation(BlurredBars(group.frequency_per_pitch, of, band));
+    group.model = BarsModel{found.best, found.mean, found.worst};
   }
 }
 
@@ -63,11 +87,12 @@ std::optional<double> closed_form_netd_k(const SensorSpec& spec, const SensorPla
 }  // namespace
 
 bool measures_asked(const Plan& plan) {
-  return plan.measures.noise || plan.measures.transfer || plan.measures.triangles || plan.measures.mtf;
+  const MeasuresPlan& measures = plan.measures;
+  return measures.noise || measures.transfer || measures.triangles || measures.mtf || measures.ctf;
 }
 
 Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan, const MeasurementOptions& options,
-                                                        const std::optional<TargetPlate>& mtf_plate, OpenedBench& bench,
+                                                        const ExperimentInputs& inputs, OpenedBench& bench,
                                                         const SessionFrame& frame, std::stop_token stop) {
   if (!measures_asked(plan)) return std::nullopt;
   phase(frame.folder, frame.listener, "physical measures");
@@ -78,10 +103,14 @@ Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan, const 
                                   .transfer = plan.measures.transfer,
                                   .transfer_steps_k = plan.measures.transfer_steps_k,
                                   .triangles_k = triangle_contrasts(plan),
-                                  .mtf_plate = plan.measures.mtf ? mtf_plate : std::nullopt,
+                                  .mtf_plate = inputs.mtf_plate,
                                   .mtf_delta_t_k = plan.measures.mtf_delta_t_k,
                                   .mtf_frames = plan.measures.mtf_frames,
                                   .mtf_frequency_per_pitch = plan.measures.mtf_frequency_per_pitch,
+                                  .ctf_plate = inputs.ctf_plate,
+                                  .ctf_delta_t_k = plan.measures.ctf_delta_t_k,
+                                  .ctf_frames = plan.measures.ctf_frames,
+                                  .ctf_frequency_per_pitch = plan.measures.ctf_frequency_per_pitch,
                                   .measurement = options},
                                  *bench.host, std::move(stop));
   if (!measures) return tl::unexpected(measures.error());
@@ -122,11 +151,12 @@ Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loade
   if (!response) return tl::unexpected(response.error());
   options.contrast_response = *std::move(response);
   OpenedBench bench = simulated_bench(model, loaded.shown_plates(), plan.target.distance_m, {}, inputs.motion);
-  auto measures = physical_measures(plan, options, inputs.mtf_plate, bench, frame, std::move(stop));
+  auto measures = physical_measures(plan, options, inputs, bench, frame, std::move(stop));
   if (measures && *measures) compare_with(**measures, *model, inputs);
   if (measures && *measures && (*measures)->noise)
     (*measures)->netd_model_k = closed_form_netd_k(model->spec(), model->plan());
   if (measures && *measures && (*measures)->mtf) add_closed_form(*(*measures)->mtf, *model, inputs);
+  if (measures && *measures && (*measures)->ctf) add_closed_form(*(*measures)->ctf, *model, inputs);
   return measures;
 }
 

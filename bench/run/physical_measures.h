@@ -14,16 +14,16 @@ namespace todbench {
 /// The plan asks for a measure.
 [[nodiscard]] bool measures_asked(const Plan& plan);
 
-/// With the bench of the trials, after them; `options` are those of the trials, `mtf_plate` that of the plan. What
+/// With the bench of the trials, after them; `options` are those of the trials, the plates those of `inputs`. What
 /// cannot be measured is a reason in the result and a note. Nothing: none is asked for. Fails with `interrupted` only.
 [[nodiscard]] Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan,
                                                                       const MeasurementOptions& options,
-                                                                      const std::optional<TargetPlate>& mtf_plate,
+                                                                      const ExperimentInputs& inputs,
                                                                       OpenedBench& bench, const SessionFrame& frame,
                                                                       std::stop_token stop);
 
 /// The same of the plan's sensor as it is described, with every effect: also with those that the planner leaves out of
-/// the trials. Beside its MTF stands the closed form.
+/// the trials. Beside its MTF and CTF stand the closed forms.
 [[nodiscard]] Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loaded,
                                                                        const ExperimentInputs& inputs,
                                                                        const SessionFrame& frame, std::stop_token stop);

@@ -7,6 +7,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
+#include "bench/session/ctf_record.h"
 #include "bench/text/base64.h"
 #include "bench/text/json_reader.h"
 #include "tod/measures/pixel_noise.h"
@@ -332,6 +333,7 @@ Json side_json(const std::optional<CameraMeasures>& measures) {
           {"transfer", measures->transfer ? transfer_json(*measures->transfer) : Json()},
           {"pixels", measures->pixels ? pixels_json(*measures->pixels) : Json()},
           {"mtf", measures->mtf ? mtf_json(*measures->mtf) : Json()},
+          {"ctf", measures->ctf ? ctf_json(*measures->ctf) : Json()},
           {"maps", pixel_maps_json(found.maps)},
           {"picture", found.picture ? panels_json(*found.picture) : Json()},
           {"reasons", found.reasons}};
@@ -366,6 +368,8 @@ std::optional<MeasureLines> side_from(const JsonReader& side) {
   }
   const JsonReader mtf = side.at_if_there("mtf");
   if (!mtf.is_null()) found.mtf = mtf_from(mtf);
+  const JsonReader ctf = side.at_if_there("ctf");
+  if (!ctf.is_null()) found.ctf = ctf_from(ctf);
   const JsonReader picture = side.at_if_there("picture");
   if (!picture.is_null()) found.picture = panels_from(picture);
   found.maps = pixel_maps_from(side.at_if_there("maps"));
@@ -381,6 +385,7 @@ MeasureLines measure_lines(const CameraMeasures& measures) {
   if (measures.noise) add_noise(found, measures);
   if (measures.pixels) add_pixels(found, *measures.pixels);
   if (measures.mtf) add_mtf(found, *measures.mtf);
+  if (measures.ctf) add_ctf_lines(found, *measures.ctf);
   if (measures.picture) add_picture(found, *measures.picture);
   found.maps = pixel_maps(measures);
   found.reasons.insert(found.reasons.end(), measures.reasons.begin(), measures.reasons.end());
@@ -405,6 +410,8 @@ Result<SessionMeasures> measures_from(const Json& record) {
     return fail(ErrorCode::invalid_input, "'picture': expected three PNG files as base64 of one size");
   if (!complete(measures.main) || !complete(measures.twin))
     return fail(ErrorCode::invalid_input, "'mtf.edges': expected lists of one length and a pitch above 0");
+  if (!ctf_drawable(measures.main) || !ctf_drawable(measures.twin))
+    return fail(ErrorCode::invalid_input, "'ctf.groups': expected frequencies and a pitch above 0");
   return measures;
 }
 

@@ -28,6 +28,12 @@ struct MtfCurves {
   std::vector<EdgeMtf> edges;
 };
 
+/// The CTF of every group of bars, for figures.
+struct CtfGroups {
+  double pitch_mrad = 0;
+  std::vector<BarsCtf> groups;
+};
+
 /// The plate as it was seen, as the sensor model makes it, and the difference: grey PNG files as base64, of the same
 /// part of the picture.
 struct PlatePanels {
@@ -42,6 +48,7 @@ struct PlatePanels {
 struct MeasureLines {
   std::vector<MeasureLine> lines;
   std::optional<MtfCurves> mtf{};
+  std::optional<CtfGroups> ctf{};
   std::optional<PlatePanels> picture{};
   std::vector<PixelMap> maps{};
   std::vector<std::string> reasons;
@@ -57,9 +64,8 @@ struct SessionMeasures {
   std::optional<MeasureLines> twin;
 };
 
-/// {"main": {"quantities": [...], "noise": {...}, "transfer": {...}, "pixels": {...}, "mtf": {...}, "maps": [...],
-/// "picture": {...}, "reasons": [...]}, "twin": the same
-/// or null}
+/// {"main": {"quantities": [...], "noise": {...}, "transfer": {...}, "pixels": {...}, "mtf": {...}, "ctf": {...},
+/// "maps": [...], "picture": {...}, "reasons": [...]}, "twin": the same or null}
 [[nodiscard]] Json measures_json(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin);
 /// `invalid_input`, naming the key, for a record that is not complete or of other types.
 [[nodiscard]] Result<SessionMeasures> measures_from(const Json& record);

@@ -158,7 +158,7 @@ FieldScene scene_of_plate(const TargetPlate& plate, double delta_t_k, double bac
                              .emissivity = 1,
                              .target = true});
   }
-  for (const auto& r : plate.rectangles) {
+  for (const auto& r : straight_cut_outs(plate)) {
     scene.regions.push_back({.name = r.name,
                              .outline_m = placed(outline_mm(r), 1e-3, {0, 0}),
                              .temperature_k = background_k + delta_t_k,

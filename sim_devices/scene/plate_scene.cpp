@@ -22,12 +22,17 @@ bool same_geometry(const PlateScene& a, const PlateScene& b) {
   const auto same_rectangle = [](const PlateRectangle& s, const PlateRectangle& t) {
     return s.position_mm == t.position_mm && s.size_mm == t.size_mm && s.angle_deg == t.angle_deg;
   };
+  const auto same_bars = [](const PlateBars& s, const PlateBars& t) {
+    return s.position_mm == t.position_mm && s.bar_mm == t.bar_mm && s.length_mm == t.length_mm &&
+           s.angle_deg == t.angle_deg;
+  };
   return a.distance_m == b.distance_m && a.shift_mm == b.shift_mm && a.centre_px == b.centre_px &&
          a.rotation_deg == b.rotation_deg && a.motion == b.motion &&
          std::equal(a.plate.triangles.begin(), a.plate.triangles.end(), b.plate.triangles.begin(),
                     b.plate.triangles.end(), same_triangle) &&
          std::equal(a.plate.rectangles.begin(), a.plate.rectangles.end(), b.plate.rectangles.begin(),
-                    b.plate.rectangles.end(), same_rectangle);
+                    b.plate.rectangles.end(), same_rectangle) &&
+         std::equal(a.plate.bars.begin(), a.plate.bars.end(), b.plate.bars.begin(), b.plate.bars.end(), same_bars);
 }
 
 }  // namespace todbench

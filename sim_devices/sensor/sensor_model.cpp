@@ -113,9 +113,10 @@ struct SensorModel::State {
 
   /// Rectangles may be large against the picture: not each by itself, but the whole frame at once.
   void draw_rectangles(const PlateScene& scene, cv::Mat1f& picture) const {
-    if (scene.plate.rectangles.empty()) return;
+    const std::vector<PlateRectangle> cut_outs = straight_cut_outs(scene.plate);
+    if (cut_outs.empty()) return;
     std::vector<PaintedPolygon> painted;
-    for (const PlateRectangle& rectangle : scene.plate.rectangles) {
+    for (const PlateRectangle& rectangle : cut_outs) {
       Polygon outline = outline_mm(rectangle);
       for (auto& corner : outline) corner = place_of(scene, corner, picture.size());
       painted.push_back({std::move(outline), 1});

@@ -99,6 +99,36 @@ TEST_F(Laboratories, AMeasurementOverTheNetworkIsAWholeSession) {
   EXPECT_EQ(provenance["camera"]["transport"], "GigE Vision");
 }
 
+/// How far a value lies from the closed form, in half-widths of its 95 % interval.
+double half_widths(double value, const Json& interval, double model) {
+  return std::abs(value - model) / (0.5 * (interval[1].get<double>() - interval[0].get<double>()));
+}
+
+TEST_F(Laboratories, TheStageShowsEdgeAndBarsAndTheyGiveTheTransferOfTheCamera) {
+  EmulatedLaboratory laboratory({"--plates", "tcat-a,edge,bars"});
+  write_plan(laboratory.plan(1) + "[measures]\nmtf = true\nctf = true\nmtf_frames = 32\nctf_frames = 32\n");
+
+  const Ended ended = measure();
+
+  ASSERT_TRUE(completed(ended));
+  const Json measures = Json::parse(content_of(session() / "measures.json"));
+  const Json &camera = measures["main"], &twin = measures["twin"];
+  EXPECT_TRUE(camera["reasons"].empty()) << camera["reasons"];
+  ASSERT_EQ(camera["mtf"]["edges"].size(), 2u) << camera;
+  ASSERT_EQ(camera["ctf"]["groups"].size(), 10u) << camera;
+  // The emulated camera is the sensor of the twin. Two half-widths are four standard uncertainties.
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Json &edge = camera["mtf"]["edges"][i], &model = twin["mtf"]["edges"][i]["model"];
+    for (const std::size_t k : {10u, 25u, 50u})
+      EXPECT_LT(half_widths(edge["mtf"][k], edge["mtf_ci95"][k], model[k]), 2) << edge["axis"] << k;
+  }
+  for (std::size_t i = 0; i < 10; ++i) {
+    const Json &group = camera["ctf"]["groups"][i], &model = twin["ctf"]["groups"][i]["model"];
+    for (const char* phase : {"best", "worst"})
+      EXPECT_LT(half_widths(group[phase]["value"], group[phase]["ci95"], model[phase]), 2) << group["group"] << phase;
+  }
+}
+
 #ifdef TODBENCH_MODULE_EXAMPLE
 TEST_F(Laboratories, AProgramBehindALiveCameraCostsNoFrame) {
   EmulatedLaboratory laboratory;

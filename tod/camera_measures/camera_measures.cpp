@@ -95,6 +95,13 @@ class Run {
       else if (auto kept = keep("MTF", mtf.error()); !kept)
         return tl::unexpected(kept.error());
     }
+    if (options_.ctf_plate) {
+      auto ctf = measure_ctf(measures.reasons);
+      if (ctf)
+        measures.ctf = *std::move(ctf);
+      else if (auto kept = keep("CTF", ctf.error()); !kept)
+        return tl::unexpected(kept.error());
+    }
     return measures;
   }
 
@@ -212,6 +219,27 @@ class Run {
     reasons.insert(reasons.end(), found->reasons.begin(), found->reasons.end());
     if (mtf.edges.empty()) return fail(ErrorCode::calibration, "no edge of the plate could be measured");
     return mtf;
+  }
+
+  /// Groups that could not be measured are reasons.
+  Result<CtfMeasure> measure_ctf(std::vector<std::string>& reasons) {
+    const TargetPlate& bars_plate = *options_.ctf_plate;
+    const auto shown = show(bars_plate.name, options_.ctf_delta_t_k);
+    if (!shown) return tl::unexpected(shown.error());
+    const auto picture = taker_.average(options_.ctf_frames, stop_);
+    if (!picture) return tl::unexpected(picture.error());
+    auto found = plate_bars_ctf(picture->kelvin, bars_plate, where_);
+    if (!found) return tl::unexpected(found.error());
+    reasons.insert(reasons.end(), found->reasons.begin(), found->reasons.end());
+    if (found->groups.empty()) return fail(ErrorCode::calibration, "no group of bars could be measured");
+    CtfMeasure ctf;
+    ctf.plate = bars_plate.name;
+    ctf.frames = options_.ctf_frames;
+    ctf.set_delta_t_k = options_.ctf_delta_t_k, ctf.said_delta_t_k = shown->state.delta_t_k;
+    ctf.pitch_mrad = options_.measurement.ifov_mrad;
+    ctf.frequency_per_pitch = options_.ctf_frequency_per_pitch;
+    ctf.bars = *std::move(found);
+    return ctf;
   }
 
   /// The upright rectangle of the picture that the plate covers, without its rim.
@@ -364,6 +392,15 @@ class Run {
 };
 
 }  // namespace
+
+const BarsCtf* CtfMeasure::stated(EdgeAxis axis) const {
+  const BarsCtf* nearest = nullptr;
+  const auto apart = [&](const BarsCtf& group) { return std::abs(group.frequency_per_pitch - frequency_per_pitch); };
+  for (const BarsCtf& group : bars.groups) {
+    if (group.axis == axis && (nearest == nullptr || apart(group) < apart(*nearest))) nearest = &group;
+  }
+  return nearest;
+}
 
 std::optional<ComponentEstimate> CameraMeasures::temporal_variance_k2() const {
   if (!noise) return std::nullopt;

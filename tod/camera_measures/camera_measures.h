@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "acquisition/core/frame_source.h"
+#include "tod/camera_measures/bars_measure.h"
 #include "tod/camera_measures/edge_measure.h"
 #include "tod/camera_measures/pixel_measure.h"
 #include "tod/camera_measures/triangle_strip.h"
@@ -28,6 +29,10 @@ struct CameraMeasuresOptions {
   double mtf_delta_t_k = 10;               ///< at which it is shown
   int mtf_frames = 64;                     ///< averaged, at least 1
   double mtf_frequency_per_pitch = 0.25;   ///< at which the MTF is stated, up to 1
+  std::optional<TargetPlate> ctf_plate{};  ///< in identity mounting; nothing: no CTF
+  double ctf_delta_t_k = 10;               ///< at which it is shown
+  int ctf_frames = 64;                     ///< averaged, at least 1
+  double ctf_frequency_per_pitch = 0.4;    ///< the group nearest to it is stated
   /// Plates, frames to average, corrections, timeouts and integrity are those of the TOD measurement; the first plate
   /// in identity mounting is shown.
   MeasurementOptions measurement;
@@ -69,6 +74,18 @@ struct MtfMeasure {
   std::vector<EdgeMtf> edges;      ///< the most central rectangle first
 };
 
+struct CtfMeasure {
+  std::string plate;
+  int frames = 0;
+  double set_delta_t_k = 0, said_delta_t_k = 0;
+  double pitch_mrad = 0;           ///< IFOV of a pixel, as the measurement has it
+  double frequency_per_pitch = 0;  ///< asked for
+  PlateBarsCtf bars;
+
+  /// The group on this axis whose frequency is nearest to the one that was asked for; null: none on this axis.
+  [[nodiscard]] const BarsCtf* stated(EdgeAxis axis) const;
+};
+
 /// The first plate at the contrast that shows it best, as the mean of so many frames.
 struct PlateView {
   int frames = 0;
@@ -98,6 +115,7 @@ struct CameraMeasures {
   std::optional<PixelMeasure> pixels{};
   std::optional<TransferMeasure> transfer{};
   std::optional<MtfMeasure> mtf{};
+  std::optional<CtfMeasure> ctf{};
   std::vector<TriangleStrip> triangles{};  ///< by contrast
   std::optional<double> netd_model_k{};    ///< of a simulated sensor in closed form
   std::optional<PlateView> view{};         ///< where the plate was found

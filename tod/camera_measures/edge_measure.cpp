@@ -5,61 +5,20 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "hvs/shape/polygon_coverage.h"
+#include "tod/camera_measures/plate_offset.h"
 
 namespace todbench {
 namespace {
 
 constexpr double clear_px = 3.5;      // of a region from the corners of its rectangle and from what is beside it
 constexpr double longest_reach = 26;  // of a region to both sides of its edge
-constexpr double least_match = 0.5;   // of the correlation with the plate
-constexpr int template_margin = 3;
-
-cv::Rect2d box_of(const Polygon& polygon) {
-  cv::Point2d low = polygon.front(), high = polygon.front();
-  for (const cv::Point2d& p : polygon) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
-  return {low, high};
-}
 
 Polygon in_picture(const PlateRectangle& rectangle, const Registration& where) {
   Polygon outline = outline_mm(rectangle);
   for (cv::Point2d& corner : outline) corner = where.pixel(corner);
   return outline;
-}
-
-/// By how much the rectangles lie beside where the mapping has them: whole pixels, the edges find the rest.
-Result<cv::Point2d> shift_of(const cv::Mat1d& picture, const std::vector<Polygon>& outlines, const std::string& plate) {
-  cv::Rect2d box = box_of(outlines.front());
-  for (const Polygon& outline : outlines) box |= box_of(outline);
-  const cv::Point origin(static_cast<int>(std::floor(box.x)) - template_margin,
-                         static_cast<int>(std::floor(box.y)) - template_margin);
-  const cv::Size size(static_cast<int>(std::ceil(box.width)) + 2 * template_margin + 1,
-                      static_cast<int>(std::ceil(box.height)) + 2 * template_margin + 1);
-  if (size.width > picture.cols || size.height > picture.rows)
-    return fail(ErrorCode::calibration, "plate '" + plate + "' is larger than the picture");
-  cv::Mat1d expected(size, 0.0);
-  for (const Polygon& outline : outlines) {
-    Polygon cells = outline;  // pixel_coverage() has corners of pixels at whole numbers, the picture centres
-    for (cv::Point2d& p : cells) p += cv::Point2d(0.5 - origin.x, 0.5 - origin.y);
-    expected += pixel_coverage(cells, size);
-  }
-  cv::Mat1f from, to, match;
-  cv::Mat1d(picture - cv::mean(picture)[0]).convertTo(from, CV_32F);
-  expected.convertTo(to, CV_32F);
-  cv::matchTemplate(from, to, match, cv::TM_CCOEFF_NORMED);
-  match = cv::abs(match);
-  double best = 0;
-  cv::Point at;
-  cv::minMaxLoc(match, nullptr, &best, nullptr, &at);
-  if (!(best >= least_match))
-    return fail(ErrorCode::calibration, "the rectangles of plate '" + plate + "' are not in the picture");
-  return cv::Point2d(at - origin);
 }
 
 /// What the region of an edge must stay clear of.
@@ -105,13 +64,15 @@ std::optional<double> first_half(const EdgeMtf& edge) {
 }
 
 /// By how much of itself a side's MTF may be too large, because what the optics spread beyond the window counts as
-/// nothing: an MTF that begins as 1 - a f - c f^2 has a line spread of a / (2 pi^2 t^2) far away, of which a / (pi^2 T)
-/// lies beyond T on both sides. Beyond the ends of a short side lies up to as much again on either. From 0 up to
+/// nothing: an MTF that begins as exp(-a f - c f^2) has a line spread of a / (2 pi^2 t^2) far away, of which a / (pi^2
+/// T) lies beyond T on both sides. Beyond the ends of a short side lies up to as much again on either. From 0 up to
 /// that; a from the MTF at 0.1 and 0.2 cycles per pitch.
 double beyond_window(const SlantedEdge& side) {
   constexpr std::size_t low = 10;
   constexpr double with_ends = 3, largest = 0.05;
-  const double near = 1 - side.mtf[low], far = 1 - side.mtf[2 * low];
+  // Of the logarithm: a normal blur is c alone, however wide.
+  constexpr double least = 1e-3;
+  const double near = -std::log(std::max(side.mtf[low], least)), far = -std::log(std::max(side.mtf[2 * low], least));
   const double slope = (4 * near - far) / (2 * side.frequency_per_pitch[low]);
   const double reach = std::max(0.5 * side.window_pitch, 1.0);
   return std::clamp(with_ends * slope / (std::numbers::pi * std::numbers::pi * reach), 0.0, largest);
@@ -215,12 +176,20 @@ Result<PlateEdges> plate_edges(const cv::Mat1d& picture, const TargetPlate& moun
   if (!cv::checkRange(picture)) return fail(ErrorCode::invalid_input, "the picture holds a value that is no number");
   std::vector<Polygon> outlines;
   for (const PlateRectangle& rectangle : mounted_plate.rectangles) outlines.push_back(in_picture(rectangle, where));
-  const auto moved = shift_of(picture, outlines, mounted_plate.name);
+  const auto moved = plate_offset(picture, outlines, mounted_plate.name);
   if (!moved) return tl::unexpected(moved.error());
   PlateEdges out;
   out.moved_px = *moved;
   for (Polygon& outline : outlines)
     for (cv::Point2d& corner : outline) corner += *moved;
+  std::vector<cv::Rect2d> bars;
+  for (const PlateRectangle& bar : straight_cut_outs(mounted_plate)) {
+    // Those behind the rectangles.
+    Polygon outline = in_picture(bar, where);
+    for (cv::Point2d& corner : outline) corner += *moved;
+    bars.push_back(box_of(outline));
+  }
+  bars.erase(bars.begin(), bars.begin() + static_cast<std::ptrdiff_t>(outlines.size()));
   const double w = mounted_plate.width_mm / 2, h = mounted_plate.height_mm / 2;
   const cv::Point2d top_left = where.pixel({-w, -h}) + *moved, bottom_right = where.pixel({w, h}) + *moved;
   Surroundings around{cv::Rect2d(top_left, bottom_right), {}};
@@ -235,6 +204,7 @@ Result<PlateEdges> plate_edges(const cv::Mat1d& picture, const TargetPlate& moun
     around.others.clear();
     for (std::size_t k = 0; k < outlines.size(); ++k)
       if (k != i) around.others.push_back(box_of(outlines[k]));
+    around.others.insert(around.others.end(), bars.begin(), bars.end());
     add_rectangle(picture, mounted_plate.rectangles[i].name, outlines[i], around, out);
   }
   return out;

@@ -25,7 +25,7 @@ std::optional<double> extreme(std::span<const double> samples, double first_samp
 
 }  // namespace
 
-Result<BarModulation> bar_modulation(std::span<const double> samples, const FourBars& bars) {
+Result<RowModulation> bar_modulation(std::span<const double> samples, const FourBars& bars) {
   const double f = bars.frequency_per_pitch;
   if (!(f > 0) || !std::isfinite(f) || !std::isfinite(bars.first_sample_at))
     return fail(ErrorCode::invalid_input, "bars need a frequency above 0");
@@ -47,7 +47,7 @@ Result<BarModulation> bar_modulation(std::span<const double> samples, const Four
     if (!found) return fail(ErrorCode::invalid_input, "a gap has no sample");
     gap[i] = *found;
   }
-  BarModulation found;
+  RowModulation found;
   for (const double value : bar) found.modulation += value / static_cast<double>(bar.size());
   for (const double value : gap) found.modulation -= value / static_cast<double>(gap.size());
   for (std::size_t i = 0; i < gap.size(); ++i) found.bars_separated += gap[i] < bar[i] && gap[i] < bar[i + 1] ? 1 : 0;

@@ -13,7 +13,7 @@ struct FourBars {
   double first_sample_at = 0;      ///< of samples[0], in pitches from the middle of the pattern
 };
 
-struct BarModulation {
+struct RowModulation {
   /// Mean over bars of the largest sample within max(1 / (4 f), 1/2) of a bar's centre minus mean over gaps of the
   /// smallest within the same of a gap's centre; of the unit of the samples. Below 0 where bars and gaps are exchanged.
   double modulation = 0;
@@ -21,6 +21,6 @@ struct BarModulation {
 };
 
 /// `invalid_input`: a frequency that is not positive, or samples that do not reach over the whole pattern.
-[[nodiscard]] Result<BarModulation> bar_modulation(std::span<const double> samples, const FourBars& bars);
+[[nodiscard]] Result<RowModulation> bar_modulation(std::span<const double> samples, const FourBars& bars);
 
 }  // namespace todbench

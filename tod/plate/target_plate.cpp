@@ -120,8 +120,12 @@ Result<void> validate(const TargetPlate& plate) {
     return tl::unexpected(refusal(plate, "width_mm and height_mm must be positive, they are " + number(plate.width_mm) +
                                              " and " + number(plate.height_mm)));
   }
-  if (plate.triangles.empty() && plate.rectangles.empty())
+  if (plate.triangles.empty() && plate.rectangles.empty() && plate.bars.empty())
     return tl::unexpected(refusal(plate, "it has no triangles and no rectangles"));
+  for (const PlateBars& b : plate.bars) {
+    if (!positive(b.bar_mm) || !positive(b.length_mm) || !std::isfinite(b.angle_deg))
+      return tl::unexpected(refusal(plate, b.name + ": bar_mm and length_mm must be positive"));
+  }
   CutOuts cut_outs(plate);
   for (const PlateTriangle& t : plate.triangles) {
     if (!positive(t.size_mm)) {
@@ -130,7 +134,7 @@ Result<void> validate(const TargetPlate& plate) {
     auto added = cut_outs.add(t.name, t.position_mm, triangle(t.size_mm, t.apex, t.position_mm));
     if (!added) return added;
   }
-  for (const PlateRectangle& r : plate.rectangles) {
+  for (const PlateRectangle& r : straight_cut_outs(plate)) {
     if (!positive(r.size_mm.width) || !positive(r.size_mm.height) || !std::isfinite(r.angle_deg))
       return tl::unexpected(refusal(plate, r.name + ": width_mm and height_mm must be positive"));
     if (auto added = cut_outs.add(r.name, r.position_mm, outline_mm(r)); !added) return added;
@@ -144,6 +148,21 @@ Polygon outline_mm(const PlateRectangle& rectangle) {
   const cv::Point2d a = along * (rectangle.size_mm.width / 2), b = across * (rectangle.size_mm.height / 2);
   const cv::Point2d at = rectangle.position_mm;
   return {at - a - b, at + a - b, at + a + b, at - a + b};
+}
+
+std::vector<PlateRectangle> straight_cut_outs(const TargetPlate& plate) {
+  std::vector<PlateRectangle> all = plate.rectangles;
+  for (const PlateBars& group : plate.bars) {
+    const double angle = group.angle_deg * std::numbers::pi / 180;
+    const cv::Point2d across(std::cos(angle), std::sin(angle));
+    for (int i = 0; i < 4; ++i) {
+      all.push_back({group.name + ", bar " + std::to_string(i + 1),
+                     group.position_mm + across * ((2 * i - 3) * group.bar_mm),
+                     {group.bar_mm, group.length_mm},
+                     group.angle_deg});
+    }
+  }
+  return all;
 }
 
 Apex mounted(Apex apex, Mounting mounting) {
@@ -184,6 +203,11 @@ TargetPlate mounted(const TargetPlate& plate, Mounting mounting) {
     if (f.x) r.position_mm.x = 0 - r.position_mm.x;
     if (f.y) r.position_mm.y = 0 - r.position_mm.y;
     if (f.x != f.y) r.angle_deg = 0 - r.angle_deg;
+  }
+  for (PlateBars& b : result.bars) {
+    if (f.x) b.position_mm.x = 0 - b.position_mm.x;
+    if (f.y) b.position_mm.y = 0 - b.position_mm.y;
+    if (f.x != f.y) b.angle_deg = 0 - b.angle_deg;
   }
   result.mounting = combined(plate.mounting, mounting);
   return result;

@@ -30,6 +30,15 @@ struct PlateRectangle {
 /// Its corners, clockwise from the one that is top left before it is turned.
 [[nodiscard]] Polygon outline_mm(const PlateRectangle& rectangle);
 
+/// Four cut-outs with spaces as wide between them: a square wave of 1 / (2 bar_mm) cycles per millimetre.
+struct PlateBars {
+  std::string name;         ///< unique on the plate
+  cv::Point2d position_mm;  ///< of the middle of the group, as of a triangle
+  double bar_mm = 0;        ///< width of a bar and of a space
+  double length_mm = 0;     ///< of a bar
+  double angle_deg = 0;     ///< from x to the direction across the bars, clockwise
+};
+
 /// How the plate is held. A mounting permutes places *and* apex labels; it is how a bench defeats memory and asymmetry.
 enum class Mounting { identity, rotated_180, mirrored_horizontally, mirrored_vertically };
 inline constexpr std::array all_mountings{Mounting::identity, Mounting::rotated_180, Mounting::mirrored_horizontally,
@@ -45,7 +54,11 @@ struct TargetPlate {
   std::vector<PlateTriangle> triangles;
   Mounting mounting = Mounting::identity;  ///< in which places and apexes are stated; set by mounted(), never by a file
   std::vector<PlateRectangle> rectangles{};  ///< no trials are made with them
+  std::vector<PlateBars> bars{};             ///< nor with these
 };
+
+/// Its rectangles, then the bars of its groups one by one ("NAME, bar 1").
+[[nodiscard]] std::vector<PlateRectangle> straight_cut_outs(const TargetPlate& plate);
 
 /// `invalid_input` for an empty plate, a size that is not positive, a repeated name, or a cut-out that leaves the plate
 /// or touches another.

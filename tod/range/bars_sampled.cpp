@@ -33,14 +33,14 @@ struct Sampled {
   }
 };
 
-Sampled sampled_at(const BlurredBars& bars, double phase) {
-  const double width = 1 / (2 * bars.frequency_per_pitch());
+template <typename Profile>
+Sampled sampled_at(const Profile& profile, double width, double phase) {
   const double reach = std::max(width / 2, 0.5);
   // The samples stand at whole numbers + phase; rounding must not lose one that stands exactly at the edge.
   const auto extreme = [&](double centre, auto better, double start) {
     constexpr double edge = 1e-9;
     for (double k = std::ceil(centre - reach - phase - edge); k + phase <= centre + reach + edge; ++k)
-      start = better(start, bars.at(k + phase));
+      start = better(start, profile(k + phase));
     return start;
   };
   const auto larger = [](double a, double b) { return std::max(a, b); };
@@ -49,6 +49,28 @@ Sampled sampled_at(const BlurredBars& bars, double phase) {
   Sampled found;
   for (int i = 0; i < 4; ++i) found.bars[static_cast<std::size_t>(i)] = extreme((2 * i - 3) * width, larger, -infinity);
   for (int i = 0; i < 3; ++i) found.gaps[static_cast<std::size_t>(i)] = extreme((2 * i - 2) * width, smaller, infinity);
+  return found;
+}
+
+template <typename Profile>
+BarModulation over_phases(const Profile& profile, double frequency_per_pitch, int phases) {
+  const double width = 1 / (2 * frequency_per_pitch);
+  BarModulation found;
+  found.best = -std::numeric_limits<double>::infinity();
+  found.worst = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < phases; ++i) {
+    const double phase = (i + 0.5) / phases - 0.5;
+    const Sampled sampled = sampled_at(profile, width, phase);
+    const double modulation = sampled.modulation();
+    found.mean += modulation / phases;
+    found.worst = std::min(found.worst, modulation);
+    if (sampled.separated() == 4) found.share_of_four += 1.0 / phases;
+    if (modulation > found.best) {
+      found.best = modulation;
+      found.best_phase_pitch = phase;
+      found.bars_separated_at_best = sampled.separated();
+    }
+  }
   return found;
 }
 
@@ -80,23 +102,11 @@ double BlurredBars::at(double x_pitch) const {
 }
 
 BarModulation bar_modulation(const BlurredBars& bars, int phases) {
-  BarModulation found;
-  found.best = -std::numeric_limits<double>::infinity();
-  found.worst = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < phases; ++i) {
-    const double phase = (i + 0.5) / phases - 0.5;
-    const Sampled sampled = sampled_at(bars, phase);
-    const double modulation = sampled.modulation();
-    found.mean += modulation / phases;
-    found.worst = std::min(found.worst, modulation);
-    if (sampled.separated() == 4) found.share_of_four += 1.0 / phases;
-    if (modulation > found.best) {
-      found.best = modulation;
-      found.best_phase_pitch = phase;
-      found.bars_separated_at_best = sampled.separated();
-    }
-  }
-  return found;
+  return over_phases([&](double x) { return bars.at(x); }, bars.frequency_per_pitch(), phases);
+}
+
+BarModulation bar_modulation(const std::function<double(double)>& profile, double frequency_per_pitch, int phases) {
+  return over_phases(profile, frequency_per_pitch, phases);
 }
 
 }  // namespace todbench

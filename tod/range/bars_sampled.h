@@ -31,5 +31,9 @@ struct BarModulation {
 };
 /// Phases (i + 1/2) / phases - 1/2 pitch. Precondition: phases >= 1.
 [[nodiscard]] BarModulation bar_modulation(const BlurredBars& bars, int phases = 64);
+/// The same of any profile over the place in pitches, such as a measured one; it is asked for places up to
+/// 7 / (4 f) + 1 / 2 from the middle.
+[[nodiscard]] BarModulation bar_modulation(const std::function<double(double)>& profile, double frequency_per_pitch,
+                                           int phases = 64);
 
 }  // namespace todbench

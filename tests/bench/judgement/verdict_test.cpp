@@ -298,6 +298,8 @@ TEST(DemandKinds, EveryKindHasOneRowWithANameAndAUnit) {
                                                "temperature_scale_at_most",
                                                "mtf_x",
                                                "mtf_y",
+                                               "ctf_x",
+                                               "ctf_y",
                                                "zone_bad_pixels",
                                                "zone_substituted_pixels",
                                                "zone_clusters",

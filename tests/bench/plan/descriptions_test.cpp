@@ -222,6 +222,35 @@ TEST(PlateFile, RectanglesAreReadWithTheirTurn) {
   EXPECT_EQ(plate->rectangles[0].angle_deg, 5);
 }
 
+TEST(PlateFile, BarsAreReadAsGroupsOfFourAcrossTheirAxis) {
+  const auto plate = parse_plate({"b.toml",
+                                  "name = \"b\"\nwidth_mm = 100\nheight_mm = 80\n[[bars]]\nx_mm = 1\ny_mm = 2\n"
+                                  "bar_mm = 2\nlength_mm = 20\naxis = \"y\"\n"});
+
+  ASSERT_TRUE(plate) << plate.error().message;
+  ASSERT_EQ(plate->bars.size(), 1u);
+  const auto cut_outs = straight_cut_outs(*plate);
+  ASSERT_EQ(cut_outs.size(), 4u);
+  EXPECT_EQ(cut_outs[0].name, "bars 1, bar 1");
+  EXPECT_NEAR(cut_outs[0].position_mm.y, 2 - 6, 1e-12);
+  EXPECT_NEAR(cut_outs[3].position_mm.y, 2 + 6, 1e-12);
+  EXPECT_NEAR(cut_outs[0].position_mm.x, 1, 1e-12);
+  // Seen in a mirror a group that is turned is turned the other way.
+  TargetPlate turned = *plate;
+  turned.bars[0].angle_deg = 96;
+  const TargetPlate mirrored = mounted(turned, Mounting::mirrored_horizontally);
+  EXPECT_EQ(mirrored.bars[0].position_mm.x, -1);
+  EXPECT_EQ(mirrored.bars[0].angle_deg, -96);
+  for (const char* wrong :
+       {"bar_mm = 0\nlength_mm = 20\naxis = \"y\"", "bar_mm = 2\nlength_mm = 20\naxis = \"z\"",
+        "bar_mm = 9\nlength_mm = 20\naxis = \"x\"\nangle_deg = 60", "bar_mm = 20\nlength_mm = 20\naxis = \"x\""}) {
+    EXPECT_FALSE(parse_plate({"b.toml", std::string("name = \"b\"\nwidth_mm = 100\nheight_mm = 80\n[[bars]]\n"
+                                                    "x_mm = 1\ny_mm = 2\n") +
+                                            wrong + "\n"}))
+        << wrong;
+  }
+}
+
 TEST(PlateFile, IsFoundByItsPath) {
   const testing::TemporaryFolder folder;
   const std::filesystem::path file = folder.write("small.toml", small_plate);

@@ -18,6 +18,7 @@
 #include "bench/text/base64.h"
 #include "bench/text/files.h"
 #include "sim_devices/sensor/pixel_faults.h"
+#include "tests/bench/run/bars_coverage.h"
 #include "tests/bench/run/edge_coverage.h"
 #include "tests/support/temporary_folder.h"
 
@@ -207,6 +208,93 @@ TEST(PhysicalMeasures, FindTheMtfOfTheSensorModelAndJudgeIt) {
   EXPECT_THAT(page, HasSubstr("mtf-xsquare"));
 }
 
+Plan ctf_plan() {
+  Plan plan = measures_plan();
+  plan.measures.noise = plan.measures.transfer = false;
+  plan.measures.ctf = true;
+  return plan;
+}
+
+TEST(PhysicalMeasures, FindTheCtfOfTheSensorModelAndJudgeIt) {
+  const TemporaryFolder folder;
+  Plan plan = ctf_plan();
+  plan.limits.measures = {{LimitedMeasure::ctf_x, 0.3, std::nullopt}, {LimitedMeasure::ctf_y, 0.95, std::nullopt}};
+
+  const auto outcome = measure_plan(plan, {.folder = folder.path() / "session"}, {}, {});
+
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  ASSERT_FALSE(outcome->ended_by) << outcome->ended_by->message;
+  ASSERT_TRUE(outcome->measures && outcome->twin_measures);
+  EXPECT_THAT(outcome->measures->reasons, ::testing::IsEmpty());
+  ASSERT_TRUE(outcome->measures->ctf && outcome->twin_measures->ctf);
+  ASSERT_EQ(outcome->twin_measures->ctf->bars.groups.size(), 10u);
+  for (const BarsCtf& group : outcome->twin_measures->ctf->bars.groups) {
+    ASSERT_TRUE(group.model);
+    // Noise of 0.07 K over sqrt(64) against 10 K, and what the optics spread far away.
+    EXPECT_NEAR(group.best.value, group.model->best, 0.015) << group.group;
+    EXPECT_NEAR(group.worst.value, group.model->worst, 0.015) << group.group;
+    EXPECT_LT(group.best.low, group.best.value);
+  }
+  for (const BarsCtf& group : outcome->measures->ctf->bars.groups) EXPECT_FALSE(group.model);
+  const auto session = open_session(folder.path() / "session", {});
+  ASSERT_TRUE(session) << session.error().message;
+  ASSERT_TRUE(session->measures && session->measures->main->ctf && session->measures->twin->ctf);
+  EXPECT_EQ(session->measures->main->ctf->groups.size(), 10u);
+  EXPECT_TRUE(session->measures->twin->ctf->groups.front().model);
+  const auto* x = line_of(session->measures->main, "ctf_x");
+  ASSERT_NE(x, nullptr);
+  const BarsCtf* stated = outcome->measures->ctf->stated(EdgeAxis::x);
+  ASSERT_NE(stated, nullptr);
+  EXPECT_NEAR(stated->frequency_per_pitch, 0.4, 0.01);
+  EXPECT_EQ(x->value, stated->best.value);
+  ASSERT_NE(line_of(session->measures->twin, "ctf_x_model"), nullptr);
+  ASSERT_GE(outcome->verdict.demands.size(), 3u);
+  EXPECT_EQ(outcome->verdict.demands[outcome->verdict.demands.size() - 2].decision, VerdictKind::pass);
+  EXPECT_EQ(outcome->verdict.demands.back().decision, VerdictKind::fail);
+  const std::string page = render_report(*report_data(*session, "session"));
+  EXPECT_THAT(page, HasSubstr("ctf-x"));
+  EXPECT_THAT(page, HasSubstr("ctf-y"));
+}
+
+TEST(PlateBars, HoldTheTruthAtBestAndWorstPhase) {
+  for (const double aberration_pitch : {0.0, 0.6}) {
+    SensorSpec sensor = *load_sensor("sc2000");
+    sensor.aberration_sigma_pitch = aberration_pitch;
+    const auto coverage = testing::bars_coverage(sensor, 0.001, 12, 4);
+    ASSERT_TRUE(coverage) << coverage.error().message;
+    ASSERT_EQ(coverage->groups.size(), 10u);
+    EXPECT_LT(coverage->largest_error, 0.02);
+    double within = 0;
+    for (const auto& group : coverage->groups) within += (group.within[0] + group.within[2]) / 20;
+    // 240 intervals of which those of one picture share the contrast: as if 12 were independent, 0.063.
+    EXPECT_GT(within, 0.95 - 3 * 0.063) << aberration_pitch;
+  }
+}
+
+TEST(PlateBars, AreRefusedWhereTheyCannotBeRead) {
+  const TargetPlate plate = *load_plate("bars");
+  Registration where;
+  where.plate_to_pixel = {0.38, 0, 160, 0, 0.38, 120, 0, 0, 1};
+  EXPECT_FALSE(plate_bars_ctf(cv::Mat1d(240, 320, 5.0), plate, where));
+  EXPECT_FALSE(plate_bars_ctf(cv::Mat1d(90, 90, 5.0), plate, where));
+  TargetPlate no_squares = plate, no_bars = plate;
+  no_squares.rectangles.clear(), no_bars.bars.clear();
+  EXPECT_FALSE(plate_bars_ctf(cv::Mat1d(240, 320, 5.0), no_squares, where));
+  EXPECT_FALSE(plate_bars_ctf(cv::Mat1d(240, 320, 5.0), no_bars, where));
+  // So far away that no bar is long enough in pixels.
+  SensorSpec sensor = *load_sensor("sc2000");
+  const SensorModel model(sensor, full_plan(sensor, {}, {}), Accuracy::draft(), 1);
+  PlateScene scene;
+  scene.plate = plate;
+  scene.distance_m = 8;
+  const double scale = 1 / (scene.distance_m * sensor.ifov_mrad());
+  where.plate_to_pixel = {scale, 0, 159.5, 0, scale, 119.5, 0, 0, 1};
+  cv::Mat1d small;
+  model.unit_signal(scene)->convertTo(small, CV_64F);
+  const auto far = plate_bars_ctf(small, plate, where);
+  EXPECT_TRUE(!far || far->groups.empty());
+}
+
 /// The plate as a sensor with noise sees it, the mean of 16 frames, found at the place where it is.
 PlateView seen_by(const SensorSpec& sensor, const TargetPlate& plate, std::uint64_t seed) {
   const SensorModel model(sensor, full_plan(sensor, {}, {}), Accuracy::draft(), seed);
@@ -278,6 +366,11 @@ TEST(PhysicalMeasures, RefusePlatesThatDoNotHaveWhatIsAskedOfThem) {
     const auto loaded = LoadedPlan::load(plan);
     return loaded ? std::string() : loaded.error().message;
   };
+  Plan no_bars = ctf_plan(), no_contrast = ctf_plan(), no_ctf = ctf_plan();
+  no_bars.measures.ctf_plate = "edge";
+  no_contrast.measures.ctf_delta_t_k = 0;
+  no_ctf.measures.ctf = false;
+  no_ctf.limits.measures = {{LimitedMeasure::ctf_y, 0.5, std::nullopt}};
   Plan triangles = mtf_plan(), rectangles = mtf_plan(), flat = mtf_plan(), unasked = mtf_plan(), above = mtf_plan();
   triangles.measures.mtf_plate = "tcat-b";
   rectangles.target.plates = {"edge"};
@@ -287,6 +380,10 @@ TEST(PhysicalMeasures, RefusePlatesThatDoNotHaveWhatIsAskedOfThem) {
   above.limits.measures = {{LimitedMeasure::mtf_x, std::nullopt, 0.5}};
 
   EXPECT_EQ(refusal(mtf_plan()), "");
+  EXPECT_EQ(refusal(ctf_plan()), "");
+  EXPECT_THAT(refusal(no_bars), HasSubstr("ctf_plate"));
+  EXPECT_THAT(refusal(no_contrast), HasSubstr("ctf_delta_t_k"));
+  EXPECT_THAT(refusal(no_ctf), HasSubstr("ctf = true"));
   EXPECT_THAT(refusal(triangles), HasSubstr("mtf_plate"));
   EXPECT_THAT(refusal(rectangles), HasSubstr("plates"));
   EXPECT_THAT(refusal(flat), HasSubstr("mtf_delta_t_k"));
@@ -299,6 +396,12 @@ TEST(PhysicalMeasures, RefusePlatesThatDoNotHaveWhatIsAskedOfThem) {
   ASSERT_TRUE(loaded);
   EXPECT_FALSE(loaded->parts().mtf_plate);
   EXPECT_TRUE(loaded->with(mtf_plan()).value().parts().mtf_plate);
+  Plan both = mtf_plan();
+  both.measures.ctf = true;
+  const auto more = loaded->with(both);
+  ASSERT_TRUE(more) << more.error().message;
+  EXPECT_TRUE(more->parts().mtf_plate && more->parts().ctf_plate);
+  EXPECT_EQ(more->shown_plates().size(), 3u);
 }
 
 TEST(PlateEdges, AreFoundInTheMiddleAndInTheCornersAndHoldTheTruth) {

@@ -1,0 +1,21 @@
+// The contrast transfer in measures.json.
+#pragma once
+
+#include <optional>
+
+#include "bench/session/measures_record.h"
+#include "bench/text/json.h"
+#include "bench/text/json_reader.h"
+#include "tod/camera_measures/camera_measures.h"
+
+namespace todbench {
+
+/// "ctf_x" (best phase), "ctf_mean_x" and "ctf_worst_x" of the group nearest to the frequency of the plan, and of y.
+void add_ctf_lines(MeasureLines& out, const CtfMeasure& ctf);
+
+[[nodiscard]] Json ctf_json(const CtfMeasure& ctf);
+[[nodiscard]] CtfGroups ctf_from(const JsonReader& ctf);
+/// Without frequencies above 0 there is nothing that a figure can show.
+[[nodiscard]] bool ctf_drawable(const std::optional<MeasureLines>& side);
+
+}  // namespace todbench
