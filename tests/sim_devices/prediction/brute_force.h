@@ -88,8 +88,9 @@ inline Trials trials_of(const SensorSpec& spec, const TemplateObserverSpec& obse
 }
 
 /// At the sizes of a direct estimate, with its interpolation: a weighted quadratic of ln((P - 0.25) / (1 - P)) in ln S.
-inline ThresholdByTrials threshold_by_trials(const SensorSpec& spec, const TemplateObserver& observer, const DirectPoint& direct,
-                              double scene_k, int scenes, std::uint64_t seed) {
+inline ThresholdByTrials threshold_by_trials(const SensorSpec& spec, const TemplateObserver& observer,
+                                             const DirectPoint& direct, double scene_k, int scenes,
+                                             std::uint64_t seed) {
   const double middle = direct.sizes_pitch[2];
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
