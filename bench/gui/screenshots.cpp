@@ -1,6 +1,7 @@
 #include "bench/gui/screenshots.h"
 
 #include <QApplication>
+#include <QComboBox>
 #include <QElapsedTimer>
 #include <QEventLoop>
 #include <QTimer>
@@ -119,6 +120,11 @@ int take_screenshots(MainWindow& window, const std::filesystem::path& folder) {
   window.show_view(View::chain);
   good &= wait_until([&] { return !window.chain().pictures().empty(); });
   good &= save(window, folder, "chain");
+  auto* shown = window.findChild<QComboBox*>("chainScene");
+  shown->setCurrentIndex(1);
+  good &= wait_until([&] { return !window.chain().options().scene.empty() && !window.chain().busy(); });
+  good &= save(window, folder, "chain-scene");
+  shown->setCurrentIndex(0);
   window.show_view(View::report);
   good &= wait_until([&] { return window.sessions().current() && !window.sessions().sessions().empty(); });
   good &= save(window, folder, "report");

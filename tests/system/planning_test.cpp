@@ -1,4 +1,5 @@
 // What the program says before it measures: effects, trials, uncertainty, time, and what a comparison can show.
+#include "sim_devices/sensor/effect_list.h"
 #include "tests/system/system_test_support.h"
 
 namespace todbench::testing {
@@ -37,7 +38,7 @@ TEST_F(Planning, JsonHasTheKeysOfTheContractAndOneDecisionPerEffect) {
   const Json json = one_object(ended);
   EXPECT_THAT(keys_of(json),
               UnorderedElementsAre("effects", "trials", "predicted_uncertainty_percent", "predicted_s", "frontier"));
-  ASSERT_EQ(json["effects"].size(), 15u);
+  ASSERT_EQ(json["effects"].size(), all_effects.size());
   for (const auto& effect : json["effects"]) {
     EXPECT_THAT(keys_of(effect), UnorderedElementsAre("name", "decision", "reason", "predicted_change_percent"));
     EXPECT_TRUE(effect["decision"] == "simulate" || effect["decision"] == "skip") << effect;
