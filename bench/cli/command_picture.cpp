@@ -59,7 +59,8 @@ Document picture_document(const ScenePicturesTask& task, const ScenePictures& pi
     values.values.push_back({name, plain(value)});
   };
   add("scene", task.scene.name + (task.scene.description.empty() ? "" : ": " + task.scene.description));
-  add("sensor", fmt::format("{}, {} samples a pitch", task.sensor.name, task.sensor.samples_per_pitch()));
+  const int samples = task.sensor.samples_per_pitch();
+  add("sensor", fmt::format("{}, {} {} a pitch", task.sensor.name, samples, samples == 1 ? "sample" : "samples"));
   add("range", fmt::format("{:g} m", task.view.range_m));
   add("air", fmt::format("{}; transmittance {:.4f}", task.air.source.empty() ? task.air.name : task.air.source,
                          pictures.transmittance));

@@ -195,7 +195,7 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   cv::resize(out.frame(samples), shown, {}, display_factor, display_factor, cv::INTER_NEAREST);
   cv::GaussianBlur(shown, seen_by_observer, {}, task.observer.blur_sigma_samples * display_factor, 0,
                    cv::BORDER_REFLECT_101);
-  const std::string air_note = fmt::format("behind {:g} m of air, transmittance {:.3f}", task.view.range_m, *tau);
+  const std::string air_note = fmt::format("behind {:.0f} m of air, transmittance {:.3f}", task.view.range_m, *tau);
   out.stages = {
       {"1-scene", "At the sensor", air_note, as_float(bare_scene(task, fine, scale, fine_view, fine_size), *tau),
        static_cast<double>(fine_per_pitch)},
@@ -205,8 +205,8 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
        as_float(*behind_optics, *tau), static_cast<double>(fine_per_pitch)},
       {"3-detector", "On the detectors", "the mean over the sensitive area round every place",
        as_float(*behind_detector, *tau), static_cast<double>(fine_per_pitch)},
-      {"4-sampled", "Sampled", fmt::format("{} samples a pitch and axis", n), unit(samples).clone(),
-       static_cast<double>(n)},
+      {"4-sampled", "Sampled", fmt::format("{} {} a pitch and axis", n, n == 1 ? "sample" : "samples"),
+       unit(samples).clone(), static_cast<double>(n)},
       {"5-noise", "With noise",
        fmt::format("temporal noise {:.3g} K a sample, and what else the sensor has", spec.netd_k),
        noisy(samples).clone(), static_cast<double>(n)},
