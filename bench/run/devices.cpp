@@ -172,6 +172,10 @@ Result<OpenedBench> open_bench(const LoadedPlan& loaded, std::stop_token stop, c
     bench.host = bench_host(hosting);
     return bench;
   }
+  if (plan.target.kind == TargetKind::display && camera_name(plan.camera.id, camera_scheme::sim)) {
+    return fail(ErrorCode::invalid_input,
+                "camera " + plan.camera.id + " is simulated and sees no monitor: it needs a target of kind 'scene'");
+  }
   OpenedBench bench;
   auto camera = camera_registry(stop, on_progress).open(plan.camera.id);
   if (!camera) return tl::unexpected(camera.error());

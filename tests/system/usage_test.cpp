@@ -224,6 +224,17 @@ TEST(WrongGeometry, SizesThatDoNotFitAreNamed) {
   EXPECT_THAT(ended.err, HasSubstr("plate tcat-a: its 200 x 280 mm are 306 x 428 pixels at 0.50 m"));
 }
 
+TEST(WrongTarget, ASimulatedCameraSeesNoMonitor) {
+  const TemporaryFolder folder;
+  folder.write("plan.toml",
+               "[camera]\nid = \"sim:sc2000\"\nifov_mrad = 1.3085\n[target]\nkind = \"display\"\ndistance_m = "
+               "2\ndisplay_pixel_mm = 0.3\n"
+               "display_span_k = 20\n");
+
+  expect_refused(todbench({"measure", "./plan.toml", "--out", "session"}, {.folder = folder.path()}), 2,
+                 "camera sim:sc2000 is simulated and sees no monitor");
+}
+
 TEST(WrongGeometry, APlateThatIsNotThereIsACalibrationErrorBeforeAnyTrial) {
   const TemporaryFolder folder;
   // Large triangles would be seen at this contrast, but those of the plate drown in the noise of 0.07 K.
