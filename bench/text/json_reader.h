@@ -58,24 +58,28 @@ class JsonReader {
     return pairs;
   }
   [[nodiscard]] bool is_null() const { return json_->is_null(); }
-  [[nodiscard]] double number() const { return json_->is_number() ? json_->get<double>() : (wrong("a number"), 0.0); }
+  [[nodiscard]] double number() const {
+    return json_->is_number() ? json_->get<double>() : ((void)wrong("a number"), 0.0);
+  }
   [[nodiscard]] std::optional<double> optional_number() const {
     return is_null() ? std::nullopt : std::optional<double>(number());
   }
   [[nodiscard]] std::int64_t whole() const {
-    return json_->is_number_integer() ? json_->get<std::int64_t>() : (wrong("a whole number"), 0);
+    return json_->is_number_integer() ? json_->get<std::int64_t>() : ((void)wrong("a whole number"), 0);
   }
   [[nodiscard]] std::uint64_t count() const {
-    return json_->is_number_unsigned() ? json_->get<std::uint64_t>() : (wrong("a whole number of 0 or more"), 0);
+    return json_->is_number_unsigned() ? json_->get<std::uint64_t>() : ((void)wrong("a whole number of 0 or more"), 0);
   }
   [[nodiscard]] std::string text() const {
-    return json_->is_string() ? json_->get<std::string>() : (wrong("a text"), std::string());
+    return json_->is_string() ? json_->get<std::string>() : ((void)wrong("a text"), std::string());
   }
   /// A text that has to be this one, such as the name of a format or a unit.
   void expect(std::string_view word) const {
     if (text() != word) (void)wrong("'" + std::string(word) + "'");
   }
-  [[nodiscard]] bool flag() const { return json_->is_boolean() ? json_->get<bool>() : (wrong("true or false"), false); }
+  [[nodiscard]] bool flag() const {
+    return json_->is_boolean() ? json_->get<bool>() : ((void)wrong("true or false"), false);
+  }
   [[nodiscard]] std::vector<std::string> texts() const {
     std::vector<std::string> values;
     for (const JsonReader& element : elements()) values.push_back(element.text());
@@ -114,7 +118,7 @@ class JsonReader {
   void note(const std::string& sentence) const {
     if (mistake_->empty()) *mistake_ = sentence;
   }
-  JsonReader wrong(const std::string& expected) const {
+  [[nodiscard]] JsonReader wrong(const std::string& expected) const {
     note("'" + path_ + "': expected " + expected);
     return {&nothing(), path_, mistake_};
   }

@@ -243,7 +243,7 @@ class Run {
   }
 
   /// The upright rectangle of the picture that the plate covers, without its rim.
-  Result<cv::Rect> field() const {
+  [[nodiscard]] Result<cv::Rect> field() const {
     const double w = plate().width_mm / 2, h = plate().height_mm / 2;
     const cv::Point2d corners[] = {where_.pixel({-w, -h}), where_.pixel({w, -h}), where_.pixel({-w, h}),
                                    where_.pixel({w, h})};
@@ -360,7 +360,7 @@ class Run {
       pixel_reason_ = "pixels: " + found.error().message;
   }
 
-  Result<NoiseMeasure> summed_up(const Cube& cube) const {
+  [[nodiscard]] Result<NoiseMeasure> summed_up(const Cube& cube) const {
     NoiseMeasure noise = cube.measure;
     const cv::Mat1d mean = cube.frames.mean_frame();
     const Shading shading = shading_of(mean);
