@@ -104,8 +104,7 @@ class Chain {
  public:
   enum class Content { flat, plate };
   Chain(const LoadedPlan& loaded, const ComparedModel& model)
-      : loaded_(loaded),
-        model_(loaded.sensor(), full_plan(loaded.sensor(), {}, {}), Accuracy::normal(), loaded.plan().seed),
+      : model_(loaded.sensor(), full_plan(loaded.sensor(), {}, {}), Accuracy::normal(), loaded.plan().seed),
         stages_(module_stages(loaded.sensor().modules, {})),
         frames_(1 + memory_frames(loaded.sensor(), model.package)) {
     auto package = made_stages(model.package, {});
@@ -170,7 +169,6 @@ class Chain {
     return {};
   }
 
-  const LoadedPlan& loaded_;
   SensorModel model_;
   std::vector<std::unique_ptr<ChainStage>> stages_;
   int frames_;
