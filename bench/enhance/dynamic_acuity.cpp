@@ -44,6 +44,29 @@ Result<std::vector<double>> sizes_round_threshold(const SensorSpec& sensor, Temp
 
 }  // namespace
 
+DynamicAcuity dynamic_acuity_at(const SensorSpec& sensor, double speed_mrad_s, double speed_px) {
+  const SceneMotion motion{.x_mrad_s = speed_mrad_s, .y_mrad_s = 0};
+  return {.speed_mrad_s = speed_mrad_s,
+          .speed_px = speed_px,
+          .smear_px = smear_pitch(sensor, motion).x,
+          .exposure_px = exposure_way_pitch(sensor, motion).x,
+          .lag_px = mean_lag_pitch(sensor, motion).x,
+          .points = {}};
+}
+
+Result<DynamicPoint> dynamic_point(SequenceObserver observer, const std::vector<Level>& levels,
+                                   const std::vector<Trial>& trials, const std::vector<Trial>& at_rest,
+                                   const FitOptions& fit) {
+  auto fitted = fit_psychometric(levels, fit);
+  if (!fitted) return tl::unexpected(fitted.error());
+  DynamicPoint point{.observer = observer, .fit = *std::move(fitted), .ratio = {}, .ratio_ci95 = {}};
+  if (const auto ratios = paired_ratios(trials, at_rest, fit); !ratios.empty()) {
+    point.ratio = ratios.front().ratio;
+    point.ratio_ci95 = ratios.front().ci95;
+  }
+  return point;
+}
+
 Result<std::vector<DynamicAcuity>> dynamic_acuity(const SensorSpec& sensor, TemplateObserver& observer,
                                                   DynamicTrialOptions options) {
   if (!(std::abs(options.delta_t_k) > 0)) return fail(ErrorCode::invalid_input, "a contrast of 0 K has no threshold");
@@ -59,23 +82,13 @@ Result<std::vector<DynamicAcuity>> dynamic_acuity(const SensorSpec& sensor, Temp
   const FitOptions fit;
   std::vector<DynamicAcuity> found;
   for (const DynamicTrials& moving : *trials) {
-    DynamicAcuity at{.speed_mrad_s = moving.speed_mrad_s, .speed_px = moving.speed_px, .points = {}};
-    const SceneMotion motion{.x_mrad_s = moving.speed_mrad_s, .y_mrad_s = 0};
-    at.smear_px = smear_pitch(sensor, motion).x;
-    at.exposure_px = exposure_way_pitch(sensor, motion).x;
-    at.lag_px = mean_lag_pitch(sensor, motion).x;
+    DynamicAcuity at = dynamic_acuity_at(sensor, moving.speed_mrad_s, moving.speed_px);
     for (const SequenceObserver kind : all_sequence_observers) {
       const auto k = static_cast<std::size_t>(kind);
-      auto fitted = fit_psychometric(moving.levels[k], fit);
-      if (!fitted) return tl::unexpected(fitted.error());
-      DynamicPoint point{.observer = kind, .fit = *std::move(fitted), .ratio = {}, .ratio_ci95 = {}};
-      const auto ratios = paired_ratios(trials_of(moving.levels[k], options.delta_t_k),
-                                        trials_of(trials->front().levels[k], options.delta_t_k), fit);
-      if (!ratios.empty()) {
-        point.ratio = ratios.front().ratio;
-        point.ratio_ci95 = ratios.front().ci95;
-      }
-      at.points.push_back(std::move(point));
+      auto point = dynamic_point(kind, moving.levels[k], trials_of(moving.levels[k], options.delta_t_k),
+                                 trials_of(trials->front().levels[k], options.delta_t_k), fit);
+      if (!point) return tl::unexpected(point.error());
+      at.points.push_back(*std::move(point));
     }
     found.push_back(std::move(at));
   }

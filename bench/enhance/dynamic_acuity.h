@@ -27,6 +27,13 @@ struct DynamicAcuity {
   std::vector<DynamicPoint> points;       ///< by SequenceObserver
 };
 
+/// Speeds of a target in this sensor's pixels; no points yet.
+[[nodiscard]] DynamicAcuity dynamic_acuity_at(const SensorSpec& sensor, double speed_mrad_s, double speed_px);
+/// The fit of the answers of one observer at one speed, and their ratio to those at rest. Errors: fit_psychometric()'s.
+[[nodiscard]] Result<DynamicPoint> dynamic_point(SequenceObserver observer, const std::vector<Level>& levels,
+                                                 const std::vector<Trial>& trials, const std::vector<Trial>& at_rest,
+                                                 const FitOptions& fit);
+
 /// As dynamic_trials() with its options; a speed of 0 is added in front where it is missing. Without sizes: eleven from
 /// 0.5 to 2.5 times the threshold of the resting target by a direct estimate.
 [[nodiscard]] Result<std::vector<DynamicAcuity>> dynamic_acuity(const SensorSpec& sensor, TemplateObserver& observer,

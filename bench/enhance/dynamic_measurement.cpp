@@ -10,8 +10,7 @@
 #include "bench/plan/plan_options.h"
 #include "bench/run/module_chain.h"
 #include "bench/run/simulated_responses.h"
-#include "sim_devices/sensor/effect_exposure.h"
-#include "sim_devices/sensor/effect_motion.h"
+#include "sim_devices/scene/scene_motion.h"
 #include "tod/plate/test_pattern.h"
 
 namespace todbench {
@@ -49,13 +48,7 @@ Result<DynamicContrast> contrast_of(const MovingMeasurement& measured, const std
   out.delta_t_k /= std::max(1.0, passes);
   std::map<SequenceObserver, std::vector<Trial>> at_rest;
   for (const double speed : speeds) {
-    const SceneMotion motion{.x_mrad_s = speed, .y_mrad_s = 0};
-    DynamicAcuity at{.speed_mrad_s = speed,
-                     .speed_px = speed / sensor.ifov_mrad() / measured.frame_rate_hz,
-                     .smear_px = smear_pitch(sensor, motion).x,
-                     .exposure_px = exposure_way_pitch(sensor, motion).x,
-                     .lag_px = mean_lag_pitch(sensor, motion).x,
-                     .points = {}};
+    DynamicAcuity at = dynamic_acuity_at(sensor, speed, speed / sensor.ifov_mrad() / measured.frame_rate_hz);
     for (const SequenceObserver kind : all_sequence_observers) {
       std::vector<Trial> trials;
       for (const MovingAnswer& answer : measured.answers) {
@@ -63,14 +56,9 @@ Result<DynamicContrast> contrast_of(const MovingMeasurement& measured, const std
       }
       if (speed == 0) at_rest[kind] = trials;
       if (trials.empty()) return fail(ErrorCode::integrity, "no pass at a speed could be measured");
-      auto fitted = fit_psychometric(levels_by_pass(trials), fit);
-      if (!fitted) return tl::unexpected(fitted.error());
-      DynamicPoint point{.observer = kind, .fit = *std::move(fitted), .ratio = {}, .ratio_ci95 = {}};
-      if (const auto ratios = paired_ratios(trials, at_rest[kind], fit); !ratios.empty()) {
-        point.ratio = ratios.front().ratio;
-        point.ratio_ci95 = ratios.front().ci95;
-      }
-      at.points.push_back(std::move(point));
+      auto point = dynamic_point(kind, levels_by_pass(trials), trials, at_rest[kind], fit);
+      if (!point) return tl::unexpected(point.error());
+      at.points.push_back(*std::move(point));
     }
     out.speeds.push_back(std::move(at));
   }
