@@ -376,6 +376,13 @@ std::string_view to_string(DemandKind kind) {
   return row_of(kind).name;
 }
 
+const MeasuredQuantity* quantity_of(const Evidence& evidence, std::string_view measure) {
+  if (!evidence.measures) return nullptr;
+  const auto found = std::find_if(evidence.measures->begin(), evidence.measures->end(),
+                                  [&](const MeasuredQuantity& one) { return one.measure == measure; });
+  return found == evidence.measures->end() ? nullptr : &*found;
+}
+
 std::string in_words(const Demand& demand) {
   return row_of(demand.kind).in_words(demand);
 }

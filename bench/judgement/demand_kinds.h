@@ -31,6 +31,9 @@ struct DemandKindRow {
 [[nodiscard]] const DemandKindRow& row_of(DemandKind kind);
 [[nodiscard]] std::string_view to_string(DemandKind kind);
 
+/// What was measured of this name (measures.json); null: nothing was. Lives as long as the evidence.
+[[nodiscard]] const MeasuredQuantity* quantity_of(const Evidence& evidence, std::string_view measure);
+
 /// "acuity at 16.9 K at least 0.4 1/mrad"
 [[nodiscard]] std::string in_words(const Demand& demand);
 /// The same as the first words of a line: "Acuity at 16.9 K at least 0.4 1/mrad".

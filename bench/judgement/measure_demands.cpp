@@ -88,17 +88,10 @@ std::string words_of(const Interval& interval, std::string_view unit) {
   return fmt::format("95 % interval {} to {}{}", side(interval.low), side(interval.high), unit_words(unit));
 }
 
-const MeasuredQuantity* quantity_of(const Evidence& evidence, LimitedMeasure measure) {
-  if (!evidence.measures) return nullptr;
-  const auto found = std::find_if(evidence.measures->begin(), evidence.measures->end(),
-                                  [&](const MeasuredQuantity& one) { return one.measure == to_string(measure); });
-  return found == evidence.measures->end() ? nullptr : &*found;
-}
-
 Demand judged(const MeasureDemand& asked, double limit, const Evidence& evidence) {
   Demand demand{.kind = asked.kind, .limit = limit};
   demand.conformity = ConformityDecision::inconclusive;
-  const MeasuredQuantity* measured = quantity_of(evidence, asked.measure);
+  const MeasuredQuantity* measured = quantity_of(evidence, to_string(asked.measure));
   if (measured == nullptr || !measured->value) {
     demand.reason = "this was not measured";
     return demand;

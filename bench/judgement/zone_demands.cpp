@@ -36,11 +36,7 @@ Demand judged_zone(const ZoneDemand& asked, const ZoneLimit& zone, double limit,
   Demand demand{.kind = asked.kind, .limit = limit, .zone = zone.name};
   demand.conformity = ConformityDecision::inconclusive;
   const std::string name = std::string(asked.measure) + (zone.name == whole_frame_zone ? "" : " (" + zone.name + ")");
-  const MeasuredQuantity* measured = nullptr;
-  if (evidence.measures) {
-    for (const MeasuredQuantity& one : *evidence.measures)
-      if (one.measure == name) measured = &one;
-  }
+  const MeasuredQuantity* measured = quantity_of(evidence, name);
   if (measured == nullptr || !measured->value) {
     demand.reason = "this was not measured";
     return demand;
