@@ -13,12 +13,23 @@ target_compile_options(todbench_options INTERFACE
   # GCC 12 takes appending to a std::string for overlapping memory (its bug 105651, mended in 13).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   $<$<CXX_COMPILER_ID:Clang>:-ffp-exception-behavior=maytrap;-Wno-overriding-t-option> $<$<BOOL:${TODBENCH_WERROR}>:-Werror>)
+# The undefined-behaviour checks are of the product's own sources: in those of the tests (property TODBENCH_TESTS) they would take as long to
+# compile as everything else together.
+define_property(TARGET PROPERTY TODBENCH_TESTS)
+set(of_product "$<NOT:$<BOOL:$<TARGET_PROPERTY:TODBENCH_TESTS>>>")
+string(REPLACE "," ";" sanitizers "${TODBENCH_SANITIZE}")
+foreach(sanitizer ${sanitizers})
+  target_link_options(todbench_options INTERFACE -fsanitize=${sanitizer})
+  if(sanitizer STREQUAL "undefined")
+    target_compile_options(todbench_options INTERFACE "$<${of_product}:-fsanitize=undefined>")
+  else()
+    target_compile_options(todbench_options INTERFACE -fsanitize=${sanitizer})
+  endif()
+endforeach()
 if(TODBENCH_SANITIZE)
-  target_compile_options(todbench_options INTERFACE -fsanitize=${TODBENCH_SANITIZE} -fno-omit-frame-pointer
-    -fno-sanitize-recover=all
+  target_compile_options(todbench_options INTERFACE -fno-omit-frame-pointer -fno-sanitize-recover=all
     # GCC: "the sanitizers may cause false positives of -Wmaybe-uninitialized"; release builds have the warning.
     $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
-  target_link_options(todbench_options INTERFACE -fsanitize=${TODBENCH_SANITIZE})
   target_compile_definitions(todbench_options INTERFACE TODBENCH_SANITIZED)
 endif()
 
@@ -37,11 +48,12 @@ set(todbench_standard_headers
   <map> <memory> <mutex> <numeric> <optional> <random> <set> <span> <sstream> <stop_token> <string> <string_view> <thread> <variant>
   <vector> <opencv2/core.hpp> <tl/expected.hpp>)
 
-# todbench_precompiled_headers(KIND [HEADERS ...] [DEPENDS ...] [OPTIONS ...]): a set of headers that targets of one kind share, with the
-# options that all of them are compiled with.
+# todbench_precompiled_headers(KIND [TESTS] [HEADERS ...] [DEPENDS ...] [OPTIONS ...]): a set of headers that targets of one kind share, with
+# the options that all of them are compiled with. TESTS: the targets are test programs.
 function(todbench_precompiled_headers kind)
-  cmake_parse_arguments(ARG "" "" "HEADERS;DEPENDS;OPTIONS" ${ARGN})
+  cmake_parse_arguments(ARG "TESTS" "" "HEADERS;DEPENDS;OPTIONS" ${ARGN})
   set_property(GLOBAL PROPERTY todbench_options_of_${kind} "${ARG_OPTIONS}")
+  set_property(GLOBAL PROPERTY todbench_tests_${kind} "${ARG_TESTS}")
   if(NOT TODBENCH_PRECOMPILE)
     return()
   endif()
@@ -50,12 +62,15 @@ function(todbench_precompiled_headers kind)
   add_library(todbench_precompiled_${kind} OBJECT "${source}")
   target_link_libraries(todbench_precompiled_${kind} PRIVATE todbench_options opencv_core tl::expected Threads::Threads ${ARG_DEPENDS})
   target_compile_options(todbench_precompiled_${kind} PRIVATE ${ARG_OPTIONS})
+  set_target_properties(todbench_precompiled_${kind} PROPERTIES TODBENCH_TESTS "${ARG_TESTS}")
   target_precompile_headers(todbench_precompiled_${kind} PRIVATE ${todbench_standard_headers} ${ARG_HEADERS})
 endfunction()
 
 function(todbench_precompile target kind)
   get_property(options GLOBAL PROPERTY todbench_options_of_${kind})
   target_compile_options(${target} PRIVATE ${options})
+  get_property(tests GLOBAL PROPERTY todbench_tests_${kind})
+  set_target_properties(${target} PROPERTIES TODBENCH_TESTS "${tests}")
   if(TARGET todbench_precompiled_${kind})
     target_precompile_headers(${target} REUSE_FROM todbench_precompiled_${kind})
   endif()
