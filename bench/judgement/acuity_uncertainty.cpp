@@ -305,6 +305,7 @@ Result<std::optional<CurveUncertainty>> curve_uncertainty(const Plan& plan, cons
   CurveUncertainty out;
   out.u_scale = relative_u_of_scale(plan);
   out.u_camera_scale = relative_u_of_camera_scale(plan);
+  out.u_distance = relative_u_of_distance(plan);
   const auto air = row_of_air(plan.uncertainty, presentations);
   for (const BudgetInput input : not_stated(plan.uncertainty)) {
     if (input != BudgetInput::air_path || !air) out.not_stated.emplace_back(to_string(input));

@@ -53,6 +53,7 @@ struct CurveUncertainty {
   std::vector<std::string> not_stated{};  ///< rows that a complete budget has
   double u_scale = 0;         ///< relative, of the temperature scale and what is divided by it (relative_u_of_scale())
   double u_camera_scale = 0;  ///< relative, of kelvin of the camera's scale
+  double u_distance = 0;      ///< relative, of an angle per pixel (relative_u_of_distance())
 };
 
 /// The point at this set contrast; null where there is none.

@@ -51,6 +51,16 @@ constexpr std::array measure_demands{
                   "CTF along x of the bars nearest to the frequency of the plan, best phase, at least "},
     MeasureDemand{DemandKind::ctf_y, LimitedMeasure::ctf_y, LimitSide::at_least, "ctf_y", "1",
                   "CTF along y of the bars nearest to the frequency of the plan, best phase, at least "},
+    MeasureDemand{DemandKind::ifov_x_at_least, LimitedMeasure::ifov_x, LimitSide::at_least, "ifov_x_at_least", "mrad",
+                  "IFOV along x at least "},
+    MeasureDemand{DemandKind::ifov_x_at_most, LimitedMeasure::ifov_x, LimitSide::at_most, "ifov_x_at_most", "mrad",
+                  "IFOV along x at most "},
+    MeasureDemand{DemandKind::ifov_y_at_least, LimitedMeasure::ifov_y, LimitSide::at_least, "ifov_y_at_least", "mrad",
+                  "IFOV along y at least "},
+    MeasureDemand{DemandKind::ifov_y_at_most, LimitedMeasure::ifov_y, LimitSide::at_most, "ifov_y_at_most", "mrad",
+                  "IFOV along y at most "},
+    MeasureDemand{DemandKind::distortion, LimitedMeasure::distortion, LimitSide::at_most, "distortion", "%",
+                  "distortion at the corner, of either sign, at most "},
 };
 
 const MeasureDemand& demand_of(DemandKind kind) {
@@ -64,7 +74,8 @@ const MeasureDemand& demand_of(DemandKind kind) {
 double stated_u(LimitedMeasure measure, const CurveUncertainty* uncertainty) {
   if (uncertainty == nullptr) return 0;
   // A ratio of contrasts in one picture: what is common to both cancels.
-  if (is_modulation(measure)) return 0;
+  if (is_modulation(measure) || measure == LimitedMeasure::distortion) return 0;
+  if (is_ifov(measure)) return uncertainty->u_distance;
   const bool of_scale = measure == LimitedMeasure::transfer_slope || measure == LimitedMeasure::netd;
   return of_scale ? uncertainty->u_scale : uncertainty->u_camera_scale;
 }
@@ -76,6 +87,13 @@ Interval expanded(double value, const Interval& statistical, double relative_u) 
   if (statistical.low) out.low = value - std::hypot(value - *statistical.low, stated);
   if (statistical.high) out.high = value + std::hypot(*statistical.high - value, stated);
   return out;
+}
+
+/// The interval of a size whose sign does not count: from 0 where both signs are possible.
+Interval of_either_sign(const Interval& interval) {
+  if (!interval.low || !interval.high) return {.low = 0, .high = {}};
+  const double low = std::abs(*interval.low), high = std::abs(*interval.high);
+  return {.low = *interval.low * *interval.high <= 0 ? 0 : std::min(low, high), .high = std::max(low, high)};
 }
 
 /// Behind a number; a ratio has none.
@@ -98,9 +116,13 @@ Demand judged(const MeasureDemand& asked, double limit, const Evidence& evidence
   }
   demand.result = measured->value;
   demand.interval = measured->ci95;
+  if (asked.measure == LimitedMeasure::distortion) {
+    demand.result = std::abs(*measured->value);
+    demand.interval = of_either_sign(measured->ci95);
+  }
   if (const double u = stated_u(asked.measure, evidence.uncertainty); evidence.uncertainty != nullptr) {
-    demand.statistical = measured->ci95;
-    demand.interval = expanded(*measured->value, measured->ci95, u);
+    demand.statistical = demand.interval;
+    demand.interval = expanded(*demand.result, *demand.statistical, u);
   }
   const LimitAnswer answer = decide({.value = demand.result,
                                      .interval = demand.interval,
@@ -171,6 +193,16 @@ DemandKindRow measure_row(DemandKind kind) {
       return row<DemandKind::ctf_x>();
     case DemandKind::ctf_y:
       return row<DemandKind::ctf_y>();
+    case DemandKind::ifov_x_at_least:
+      return row<DemandKind::ifov_x_at_least>();
+    case DemandKind::ifov_x_at_most:
+      return row<DemandKind::ifov_x_at_most>();
+    case DemandKind::ifov_y_at_least:
+      return row<DemandKind::ifov_y_at_least>();
+    case DemandKind::ifov_y_at_most:
+      return row<DemandKind::ifov_y_at_most>();
+    case DemandKind::distortion:
+      return row<DemandKind::distortion>();
     case DemandKind::acuity:
     case DemandKind::identified:
     case DemandKind::equivalence:

@@ -67,6 +67,12 @@ std::string_view to_string(LimitedMeasure measure) {
       return "ctf_x";
     case LimitedMeasure::ctf_y:
       return "ctf_y";
+    case LimitedMeasure::ifov_x:
+      return "ifov_x";
+    case LimitedMeasure::ifov_y:
+      return "ifov_y";
+    case LimitedMeasure::distortion:
+      return "distortion";
   }
   return "";
 }
@@ -76,8 +82,12 @@ bool is_modulation(LimitedMeasure measure) {
          measure == LimitedMeasure::ctf_y;
 }
 
+bool is_ifov(LimitedMeasure measure) {
+  return measure == LimitedMeasure::ifov_x || measure == LimitedMeasure::ifov_y;
+}
+
 bool takes_at_least(LimitedMeasure measure) {
-  return measure == LimitedMeasure::transfer_slope || is_modulation(measure);
+  return measure == LimitedMeasure::transfer_slope || is_modulation(measure) || is_ifov(measure);
 }
 
 bool takes_at_most(LimitedMeasure measure) {
@@ -102,6 +112,17 @@ double relative_u_of_camera_scale(const Plan& plan) {
     const BudgetUnit unit = budget_unit(InputKind::contrast, row.unit).value_or(BudgetUnit{});
     if (input_of(row) != BudgetInput::camera_scale || row.sensitivity || !unit.relative) continue;
     sum = std::hypot(sum, standard_of(row) * unit.factor);
+  }
+  return sum;
+}
+
+double relative_u_of_distance(const Plan& plan) {
+  double sum = 0;
+  for (const BudgetRow& row : plan.uncertainty.rows) {
+    const BudgetInput input = input_of(row);
+    if ((input != BudgetInput::distance && input != BudgetInput::entrance_pupil) || row.sensitivity) continue;
+    const BudgetUnit unit = budget_unit(InputKind::geometry, row.unit).value_or(BudgetUnit{});
+    sum = std::hypot(sum, standard_of(row) * unit.factor / (unit.relative ? 1 : plan.target.distance_m));
   }
   return sum;
 }

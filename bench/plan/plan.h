@@ -132,6 +132,11 @@ enum class DemandKind {
   mtf_y,
   ctf_x,
   ctf_y,
+  ifov_x_at_least,
+  ifov_x_at_most,
+  ifov_y_at_least,
+  ifov_y_at_most,
+  distortion,
   // Pixels of a zone, [[limits.zone]].
   zone_bad_pixels,
   zone_substituted_pixels,
@@ -162,15 +167,21 @@ enum class LimitedMeasure {
   mtf_y,
   ctf_x,  ///< best phase, of the group nearest to the frequency of [measures]
   ctf_y,
+  ifov_x,
+  ifov_y,
+  distortion,  ///< at the corner, of either sign
 };
 inline constexpr std::array limited_measures{
     LimitedMeasure::netd,      LimitedMeasure::temporal_noise, LimitedMeasure::noise_t,  LimitedMeasure::noise_v,
     LimitedMeasure::noise_h,   LimitedMeasure::noise_tv,       LimitedMeasure::noise_th, LimitedMeasure::noise_vh,
     LimitedMeasure::noise_tvh, LimitedMeasure::transfer_slope, LimitedMeasure::mtf_x,    LimitedMeasure::mtf_y,
-    LimitedMeasure::ctf_x,     LimitedMeasure::ctf_y};
+    LimitedMeasure::ctf_x,     LimitedMeasure::ctf_y,          LimitedMeasure::ifov_x,   LimitedMeasure::ifov_y,
+    LimitedMeasure::distortion};
 [[nodiscard]] std::string_view to_string(LimitedMeasure measure);
 /// An MTF or a CTF.
 [[nodiscard]] bool is_modulation(LimitedMeasure measure);
+/// An angle per pixel.
+[[nodiscard]] bool is_ifov(LimitedMeasure measure);
 /// Which limits a measure can have.
 [[nodiscard]] bool takes_at_least(LimitedMeasure measure);
 [[nodiscard]] bool takes_at_most(LimitedMeasure measure);
@@ -178,7 +189,7 @@ inline constexpr std::array limited_measures{
 /// [[limits.measure]]: limits on a physical measure, in its unit.
 struct MeasureLimit {
   LimitedMeasure measure = LimitedMeasure::netd;
-  std::optional<double> at_least{};  ///< of the temperature scale and of an MTF
+  std::optional<double> at_least{};  ///< of the temperature scale, an MTF, a CTF and an IFOV
   std::optional<double> at_most{};
   bool operator==(const MeasureLimit&) const = default;
 };
@@ -247,6 +258,7 @@ struct MeasuresPlan {
   double pixels_blinking = 3;     ///< change of level above so many medians of it
   bool transfer = false;          ///< contrast seen over contrast shown
   std::vector<double> transfer_steps_k{-4, -2, -1, 1, 2, 4};
+  bool geometry = false;                  ///< IFOV and distortion, from the places of the triangles
   bool triangles = false;                 ///< pictures of the smallest ones at every contrast
   bool mtf = false;                       ///< along both axes, from the edges of a plate of its own
   std::string mtf_plate = "edge";         ///< name or file
@@ -326,6 +338,8 @@ struct Plan {
 [[nodiscard]] double relative_u_of_scale(const Plan& plan);
 /// The same for a temperature difference in the camera's scale: its camera-scale row.
 [[nodiscard]] double relative_u_of_camera_scale(const Plan& plan);
+/// The same for an angle per pixel: the rows of the distance and of the entrance pupil.
+[[nodiscard]] double relative_u_of_distance(const Plan& plan);
 /// Standard uncertainty of ln acuity from the stated rows whose sensitivity is known before the measurement, without
 /// those that are shared with `common`.
 [[nodiscard]] double known_u_of_acuity(const Plan& plan, BudgetCommon common);

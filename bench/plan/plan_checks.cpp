@@ -186,7 +186,8 @@ ValueMistakes check_limited_measure(const Plan& plan, std::size_t row) {
   const LimitedMeasure measure = plan.limits.measures[row].measure;
   const bool mtf = measure == LimitedMeasure::mtf_x || measure == LimitedMeasure::mtf_y;
   const bool ctf = measure == LimitedMeasure::ctf_x || measure == LimitedMeasure::ctf_y;
-  const bool noise = !mtf && !ctf && measure != LimitedMeasure::transfer_slope;
+  const bool geometry = is_ifov(measure) || measure == LimitedMeasure::distortion;
+  const bool noise = !mtf && !ctf && !geometry && measure != LimitedMeasure::transfer_slope;
   const bool transfer = measure == LimitedMeasure::transfer_slope || measure == LimitedMeasure::netd;
   ValueMistakes mistakes;
   if (noise && !plan.measures.noise)
@@ -201,6 +202,9 @@ ValueMistakes check_limited_measure(const Plan& plan, std::size_t row) {
   if (ctf && !plan.measures.ctf)
     mistakes.push_back(
         {std::nullopt, "a limit on " + std::string(to_string(measure)) + " needs ctf = true in [measures]"});
+  if (geometry && !plan.measures.geometry)
+    mistakes.push_back(
+        {std::nullopt, "a limit on " + std::string(to_string(measure)) + " needs geometry = true in [measures]"});
   for (std::size_t other = 0; other < row; ++other) {
     if (plan.limits.measures[other].measure == measure)
       mistakes.push_back({std::nullopt, "a second row for " + std::string(to_string(measure))});
@@ -220,7 +224,8 @@ ValueMistakes check_measure_limits(const Plan& plan, std::size_t row) {
   if (*limits.at_least >= *limits.at_most)
     return {{std::nullopt, "nothing can pass: the lower limit of " + name + " is not below the upper one"}};
   if (plan.limits.rule == ConformityRule::simple) return {};
-  const double expanded = 1.96 * relative_u_of_scale(plan) * 0.5 * (*limits.at_least + *limits.at_most);
+  const double stated_u = is_ifov(limits.measure) ? relative_u_of_distance(plan) : relative_u_of_scale(plan);
+  const double expanded = 1.96 * stated_u * 0.5 * (*limits.at_least + *limits.at_most);
   if (2 * expanded < *limits.at_most - *limits.at_least) return {};
   return {{std::nullopt, "nothing can pass: the budget alone makes " + name + " uncertain by " +
                              number_text(std::round(1e6 * expanded) / 1e6) + ", the tolerance is " +

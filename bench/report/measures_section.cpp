@@ -7,6 +7,7 @@
 
 #include "bench/report/ctf_figures.h"
 #include "bench/report/drawing.h"
+#include "bench/report/geometry_figure.h"
 #include "bench/report/number_format.h"
 #include "bench/report/pixel_figures.h"
 #include "bench/report/plot.h"
@@ -15,10 +16,19 @@
 namespace todbench {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 34> names{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 43> names{{
     {"transfer_slope", "Temperature scale: contrast seen over contrast shown"},
     {"transfer_offset", "Temperature scale: offset"},
     {"transfer_nonlinearity", "Temperature scale: nonlinearity"},
+    {"ifov_x", "IFOV along x, from the places of the triangles"},
+    {"ifov_y", "IFOV along y, from the places of the triangles"},
+    {"ifov_stated", "IFOV as the plan states it"},
+    {"ifov_model", "IFOV of the sensor model"},
+    {"plate_rotation", "Rotation of the plate in the picture, clockwise"},
+    {"keystone_x", "Keystone: scale at the plate's right border over that at its left, less 1"},
+    {"keystone_y", "Keystone: scale at the plate's lower border over that at its upper, less 1"},
+    {"distortion", "Radial distortion at the corner of the picture"},
+    {"geometry_residual", "Places of the triangles: what the fitted lens leaves"},
     {"temporal_noise", "Temporal noise of a pixel"},
     {"netd", "NETD (temporal noise over the temperature scale)"},
     {"netd_model", "NETD, closed form of the sensor model"},
@@ -66,7 +76,9 @@ RichText value_of(const MeasureLine* line) {
   if (!line->value) return missing("not known");
   if (line->ci95.low == line->value && line->ci95.high == line->value) return plain(stated(*line->value));
   if (!line->ci95.low && !line->ci95.high) return plain(significant(*line->value, 3));
-  return interval_or_missing(line->value, line->ci95, "not measured");
+  RichText text = interval_or_missing(line->value, line->ci95, "not measured");
+  if (line->expanded) text += plain("; with the budget ") + interval_or_missing(line->value, *line->expanded, "");
+  return text;
 }
 
 const MeasureLine* line_of(const std::optional<MeasureLines>& side, std::string_view measure) {
@@ -230,6 +242,8 @@ std::optional<Section> measures_section(const ReportData& data) {
   }
   if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
   if (auto figures = mtf_figures(*data.measures, data.camera.has_value()))
+    section.blocks.emplace_back(*std::move(figures));
+  if (auto figures = geometry_figures(*data.measures, data.camera.has_value()))
     section.blocks.emplace_back(*std::move(figures));
   if (auto figures = ctf_figures(*data.measures, data.camera.has_value()))
     section.blocks.emplace_back(*std::move(figures));

@@ -45,7 +45,9 @@ class Walk {
   /// What [measures] asks for behind the trials, as measure_camera() goes through it.
   void measure(const TargetState& last, const std::string& first_plate) {
     const MeasuresPlan& measures = plan_.measures;
-    if (!measures.noise && !measures.transfer && !measures.triangles && !measures.mtf && !measures.ctf) return;
+    if (!measures.noise && !measures.transfer && !measures.geometry && !measures.triangles && !measures.mtf &&
+        !measures.ctf)
+      return;
     const TargetPlan& target = plan_.target;
     const auto change = [&](double seconds, int frames) {
       time_.changes_s += seconds;

@@ -88,7 +88,7 @@ std::optional<double> closed_form_netd_k(const SensorSpec& spec, const SensorPla
 
 bool measures_asked(const Plan& plan) {
   const MeasuresPlan& measures = plan.measures;
-  return measures.noise || measures.transfer || measures.triangles || measures.mtf || measures.ctf;
+  return measures.noise || measures.transfer || measures.geometry || measures.triangles || measures.mtf || measures.ctf;
 }
 
 Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan, const MeasurementOptions& options,
@@ -100,6 +100,7 @@ Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan, const 
                                  {.noise = plan.measures.noise,
                                   .noise_frames = plan.measures.noise_frames,
                                   .pixels = pixel_options(plan),
+                                  .geometry = plan.measures.geometry,
                                   .transfer = plan.measures.transfer,
                                   .transfer_steps_k = plan.measures.transfer_steps_k,
                                   .triangles_k = triangle_contrasts(plan),
@@ -114,6 +115,9 @@ Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan, const 
                                   .measurement = options},
                                  *bench.host, std::move(stop));
   if (!measures) return tl::unexpected(measures.error());
+  if (measures->geometry) {
+    if (const double u = relative_u_of_distance(plan); u > 0) measures->geometry->distance_relative_u = u;
+  }
   for (const auto& reason : measures->reasons) note(frame.folder, frame.listener, reason);
   return *std::move(measures);
 }
@@ -155,6 +159,10 @@ Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loade
   if (measures && *measures) compare_with(**measures, *model, inputs);
   if (measures && *measures && (*measures)->noise)
     (*measures)->netd_model_k = closed_form_netd_k(model->spec(), model->plan());
+  if (measures && *measures && (*measures)->geometry) {
+    (*measures)->geometry->distance_relative_u.reset();  // the scene is where it is
+    (*measures)->geometry->model_ifov_mrad = model->spec().ifov_mrad() / model->spec().samples_per_pitch();
+  }
   if (measures && *measures && (*measures)->mtf) add_closed_form(*(*measures)->mtf, *model, inputs);
   if (measures && *measures && (*measures)->ctf) add_closed_form(*(*measures)->ctf, *model, inputs);
   return measures;

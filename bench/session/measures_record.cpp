@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "bench/session/ctf_record.h"
+#include "bench/session/geometry_record.h"
 #include "bench/text/base64.h"
 #include "bench/text/json_reader.h"
 #include "tod/measures/pixel_noise.h"
@@ -172,11 +173,13 @@ void add_picture(MeasureLines& out, const PlatePicture& picture) {
 }
 
 Json line_json(const MeasureLine& line) {
-  return {{"measure", line.measure},
-          {"unit", line.unit},
-          {"value", json_number(line.value)},
-          {"ci95", json_interval(line.ci95)},
-          {"conditions", line.conditions}};
+  Json json{{"measure", line.measure},
+            {"unit", line.unit},
+            {"value", json_number(line.value)},
+            {"ci95", json_interval(line.ci95)},
+            {"conditions", line.conditions}};
+  if (line.expanded) json["expanded_ci95"] = json_interval(*line.expanded);
+  return json;
 }
 
 Json noise_json(const NoiseMeasure& noise) {
@@ -331,6 +334,7 @@ Json side_json(const std::optional<CameraMeasures>& measures) {
   return {{"quantities", lines},
           {"noise", measures->noise ? noise_json(*measures->noise) : Json()},
           {"transfer", measures->transfer ? transfer_json(*measures->transfer) : Json()},
+          {"geometry", measures->geometry ? geometry_json(*measures->geometry) : Json()},
           {"pixels", measures->pixels ? pixels_json(*measures->pixels) : Json()},
           {"mtf", measures->mtf ? mtf_json(*measures->mtf) : Json()},
           {"ctf", measures->ctf ? ctf_json(*measures->ctf) : Json()},
@@ -365,11 +369,15 @@ std::optional<MeasureLines> side_from(const JsonReader& side) {
   for (const JsonReader& line : side.at("quantities").elements()) {
     found.lines.push_back({line.at("measure").text(), line.at("unit").text(), line.at("value").optional_number(),
                            line.at("ci95").interval(), line.at("conditions").text()});
+    const JsonReader expanded = line.at_if_there("expanded_ci95");
+    if (!expanded.is_null()) found.lines.back().expanded = expanded.interval();
   }
   const JsonReader mtf = side.at_if_there("mtf");
   if (!mtf.is_null()) found.mtf = mtf_from(mtf);
   const JsonReader ctf = side.at_if_there("ctf");
   if (!ctf.is_null()) found.ctf = ctf_from(ctf);
+  const JsonReader geometry = side.at_if_there("geometry");
+  if (!geometry.is_null()) found.geometry = geometry_from(geometry);
   const JsonReader picture = side.at_if_there("picture");
   if (!picture.is_null()) found.picture = panels_from(picture);
   found.maps = pixel_maps_from(side.at_if_there("maps"));
@@ -382,6 +390,7 @@ std::optional<MeasureLines> side_from(const JsonReader& side) {
 MeasureLines measure_lines(const CameraMeasures& measures) {
   MeasureLines found;
   if (measures.transfer) add_transfer(found, *measures.transfer);
+  if (measures.geometry) add_geometry_lines(found, *measures.geometry);
   if (measures.noise) add_noise(found, measures);
   if (measures.pixels) add_pixels(found, *measures.pixels);
   if (measures.mtf) add_mtf(found, *measures.mtf);
@@ -412,6 +421,8 @@ Result<SessionMeasures> measures_from(const Json& record) {
     return fail(ErrorCode::invalid_input, "'mtf.edges': expected lists of one length and a pitch above 0");
   if (!ctf_drawable(measures.main) || !ctf_drawable(measures.twin))
     return fail(ErrorCode::invalid_input, "'ctf.groups': expected frequencies and a pitch above 0");
+  if (!geometry_drawable(measures.main) || !geometry_drawable(measures.twin))
+    return fail(ErrorCode::invalid_input, "'geometry.picture_px': expected numbers above 0");
   return measures;
 }
 

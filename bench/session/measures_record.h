@@ -20,6 +20,8 @@ struct MeasureLine {
   std::optional<double> value{};
   Interval ci95{};
   std::string conditions{};
+  /// With what the budget states of the bench; nothing: the budget states nothing of it, or it is not this measure's.
+  std::optional<Interval> expanded{};
 };
 
 /// The MTF of every edge, for figures.
@@ -32,6 +34,12 @@ struct MtfCurves {
 struct CtfGroups {
   double pitch_mrad = 0;
   std::vector<BarsCtf> groups;
+};
+
+/// Where the triangles lie beside the fitted lens, for figures.
+struct GeometryMap {
+  double width = 0, height = 0;  ///< of the picture, in pixels
+  std::vector<GeometryPlace> places;
 };
 
 /// The plate as it was seen, as the sensor model makes it, and the difference: grey PNG files as base64, of the same
@@ -49,6 +57,7 @@ struct MeasureLines {
   std::vector<MeasureLine> lines;
   std::optional<MtfCurves> mtf{};
   std::optional<CtfGroups> ctf{};
+  std::optional<GeometryMap> geometry{};
   std::optional<PlatePanels> picture{};
   std::vector<PixelMap> maps{};
   std::vector<std::string> reasons;
@@ -64,8 +73,8 @@ struct SessionMeasures {
   std::optional<MeasureLines> twin;
 };
 
-/// {"main": {"quantities": [...], "noise": {...}, "transfer": {...}, "pixels": {...}, "mtf": {...}, "ctf": {...},
-/// "maps": [...], "picture": {...}, "reasons": [...]}, "twin": the same or null}
+/// {"main": {"quantities": [...], "noise": {...}, "transfer": {...}, "geometry": {...}, "pixels": {...}, "mtf": {...},
+/// "ctf": {...}, "maps": [...], "picture": {...}, "reasons": [...]}, "twin": the same or null}
 [[nodiscard]] Json measures_json(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin);
 /// `invalid_input`, naming the key, for a record that is not complete or of other types.
 [[nodiscard]] Result<SessionMeasures> measures_from(const Json& record);

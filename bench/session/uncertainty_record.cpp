@@ -110,7 +110,8 @@ Json uncertainty_json(const CurveUncertainty& uncertainty) {
   return {{"points", points},
           {"not_stated", uncertainty.not_stated},
           {"u_temperature_scale", json_number(uncertainty.u_scale)},
-          {"u_camera_scale", json_number(uncertainty.u_camera_scale)}};
+          {"u_camera_scale", json_number(uncertainty.u_camera_scale)},
+          {"u_distance", json_number(uncertainty.u_distance)}};
 }
 
 Result<CurveUncertainty> uncertainty_from(const Json& record) {
@@ -120,6 +121,7 @@ Result<CurveUncertainty> uncertainty_from(const Json& record) {
   uncertainty.not_stated = reader.at("not_stated").texts();
   uncertainty.u_scale = reader.at_if_there("u_temperature_scale").optional_number().value_or(0);
   uncertainty.u_camera_scale = reader.at_if_there("u_camera_scale").optional_number().value_or(0);
+  uncertainty.u_distance = reader.at_if_there("u_distance").optional_number().value_or(0);
   if (auto finished = reader.finish(); !finished) return tl::unexpected(finished.error());
   return uncertainty;
 }

@@ -106,7 +106,9 @@ double half_widths(double value, const Json& interval, double model) {
 
 TEST_F(Laboratories, TheStageShowsEdgeAndBarsAndTheyGiveTheTransferOfTheCamera) {
   EmulatedLaboratory laboratory({"--plates", "tcat-a,edge,bars"});
-  write_plan(laboratory.plan(1) + "[measures]\nmtf = true\nctf = true\nmtf_frames = 32\nctf_frames = 32\n");
+  write_plan(laboratory.plan(1) +
+             "[measures]\ngeometry = true\nmtf = true\nctf = true\nmtf_frames = 32\nctf_frames = 32\n"
+             "[[uncertainty.component]]\nname = \"distance\"\nvalue = 0.001\nunit = \"m\"\n");
 
   const Ended ended = measure();
 
@@ -114,6 +116,16 @@ TEST_F(Laboratories, TheStageShowsEdgeAndBarsAndTheyGiveTheTransferOfTheCamera) 
   const Json measures = Json::parse(content_of(session() / "measures.json"));
   const Json &camera = measures["main"], &twin = measures["twin"];
   EXPECT_TRUE(camera["reasons"].empty()) << camera["reasons"];
+  int axes = 0;
+  for (const Json& quantity : camera["quantities"]) {
+    if (quantity["measure"] != "ifov_x" && quantity["measure"] != "ifov_y") continue;
+    ++axes;
+    const double ifov_mrad = 1.3085399449;
+    EXPECT_LT(quantity["expanded_ci95"][0], ifov_mrad);
+    EXPECT_GT(quantity["expanded_ci95"][1], ifov_mrad);
+    EXPECT_LT(half_widths(quantity["value"], quantity["ci95"], ifov_mrad), 2) << quantity;
+  }
+  EXPECT_EQ(axes, 2);
   ASSERT_EQ(camera["mtf"]["edges"].size(), 2u) << camera;
   ASSERT_EQ(camera["ctf"]["groups"].size(), 10u) << camera;
   // The emulated camera is the sensor of the twin. Two half-widths are four standard uncertainties.

@@ -64,6 +64,8 @@ class Run {
       return measures;
     }
     measures.view = view_;
+    measures.geometry = std::move(geometry_);
+    if (!geometry_reason_.empty()) measures.reasons.push_back(geometry_reason_);
     if (options_.transfer) {
       auto transfer = measure_transfer();
       if (transfer)
@@ -148,7 +150,23 @@ class Run {
     if (!found) return fail("finding the plate", found.error());
     where_ = *found;
     keep_view(*picture, largest);
+    if (options_.geometry) tell_geometry(*picture, largest);
     return {};
+  }
+
+  void tell_geometry(const AveragedPicture& picture, double delta_t_k) {
+    auto found = plate_geometry(picture.kelvin, plate(), where_);
+    if (!found) {
+      geometry_reason_ = "IFOV and distortion: " + found.error().message;
+      return;
+    }
+    geometry_ = GeometryMeasure{.plate = plate().name,
+                                .frames = options_.measurement.registration_frames,
+                                .set_delta_t_k = delta_t_k,
+                                .distance_m = options_.measurement.distance_m,
+                                .stated_ifov_mrad = options_.measurement.ifov_mrad,
+                                .picture = picture.kelvin.size(),
+                                .geometry = *std::move(found)};
   }
 
   void keep_view(const AveragedPicture& picture, double delta_t_k) {
@@ -387,11 +405,18 @@ class Run {
   Registration where_;
   std::optional<PlateView> view_;
   std::vector<ContrastPicture> step_pictures_;  ///< of the signal transfer
+  std::optional<GeometryMeasure> geometry_;
+  std::string geometry_reason_;
   std::optional<PixelMeasure> pixels_;
   std::string pixel_reason_;
 };
 
 }  // namespace
+
+GeometryValue GeometryMeasure::ifov_mrad(EdgeAxis axis) const {
+  const GeometryValue& mm = axis == EdgeAxis::x ? geometry.mm_per_px_x : geometry.mm_per_px_y;
+  return {mm.value / distance_m, mm.low / distance_m, mm.high / distance_m};
+}
 
 const BarsCtf* CtfMeasure::stated(EdgeAxis axis) const {
   const BarsCtf* nearest = nullptr;

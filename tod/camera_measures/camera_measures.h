@@ -11,6 +11,7 @@
 #include "tod/camera_measures/bars_measure.h"
 #include "tod/camera_measures/edge_measure.h"
 #include "tod/camera_measures/pixel_measure.h"
+#include "tod/camera_measures/plate_geometry.h"
 #include "tod/camera_measures/triangle_strip.h"
 #include "tod/measurement/measurement.h"
 #include "tod/measures/signal_transfer.h"
@@ -22,6 +23,7 @@ struct CameraMeasuresOptions {
   bool noise = false;                      ///< temporal noise, NETD and 3-D noise, at a contrast of 0
   int noise_frames = 64;                   ///< of the cube, at least 5
   std::optional<PixelOptions> pixels{};    ///< bad and substituted pixels in the cube of the noise; nothing: none
+  bool geometry = false;                   ///< IFOV and distortion, from the picture that shows where the plate is
   bool transfer = false;                   ///< signal transfer from the steps below
   std::vector<double> transfer_steps_k;    ///< contrasts that are shown, three or more
   std::vector<double> triangles_k{};       ///< contrasts at which the smallest triangles are shown; empty: none
@@ -63,6 +65,22 @@ struct TransferMeasure {
   int frames_each = 0;
   std::vector<TransferStep> steps;
   SignalTransfer line;  ///< seen over said: 1 where the camera's temperature scale is right
+};
+
+/// IFOV and distortion from the first plate.
+struct GeometryMeasure {
+  std::string plate;
+  int frames = 0;
+  double set_delta_t_k = 0;
+  double distance_m = 0;        ///< to the plate
+  double stated_ifov_mrad = 0;  ///< as the measurement has it
+  cv::Size picture{0, 0};
+  PlateGeometry geometry;
+  std::optional<double> distance_relative_u{};  ///< standard; nothing: none is stated
+  std::optional<double> model_ifov_mrad{};      ///< of a simulated sensor
+
+  /// Along x or y, with the interval of the picture alone.
+  [[nodiscard]] GeometryValue ifov_mrad(EdgeAxis axis) const;
 };
 
 struct MtfMeasure {
@@ -114,6 +132,7 @@ struct CameraMeasures {
   std::optional<NoiseMeasure> noise{};
   std::optional<PixelMeasure> pixels{};
   std::optional<TransferMeasure> transfer{};
+  std::optional<GeometryMeasure> geometry{};
   std::optional<MtfMeasure> mtf{};
   std::optional<CtfMeasure> ctf{};
   std::vector<TriangleStrip> triangles{};  ///< by contrast

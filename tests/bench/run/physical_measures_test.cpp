@@ -162,6 +162,69 @@ TEST(PhysicalMeasures, AreNotThereWhereNoneIsAskedForAndHaveAReasonWhereTheyCann
   EXPECT_THAT(lost->measures->reasons[0], HasSubstr("finding the plate"));
 }
 
+Plan geometry_plan() {
+  Plan plan = measures_plan();
+  plan.measures.noise = plan.measures.transfer = false;
+  plan.measures.geometry = true;
+  return plan;
+}
+
+TEST(PhysicalMeasures, FindTheIfovOfTheSensorAndJudgeItWithTheDistance) {
+  const TemporaryFolder folder;
+  Plan plan = geometry_plan();
+  const double ifov_mrad = plan.camera.ifov_mrad;
+  BudgetRow distance{.name = "distance", .value = 0.002, .unit = "m"};
+  plan.uncertainty.rows = {distance};
+  plan.limits.measures = {{LimitedMeasure::ifov_x, 0.98 * ifov_mrad, 1.02 * ifov_mrad},
+                          {LimitedMeasure::ifov_y, 1.01 * ifov_mrad, std::nullopt},
+                          {LimitedMeasure::distortion, std::nullopt, 3}};
+
+  const auto outcome = measure_plan(plan, {.folder = folder.path() / "session"}, {}, {});
+
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  ASSERT_FALSE(outcome->ended_by) << outcome->ended_by->message;
+  const auto session = open_session(folder.path() / "session", {});
+  ASSERT_TRUE(session) << session.error().message;
+  ASSERT_TRUE(session->measures && session->measures->main && session->measures->twin);
+  EXPECT_THAT(session->measures->main->reasons, ::testing::IsEmpty());
+  for (const char* name : {"ifov_x", "ifov_y"}) {
+    const auto* line = line_of(session->measures->main, name);
+    ASSERT_NE(line, nullptr);
+    // Two half-widths are four standard uncertainties.
+    const double half = 0.5 * (line->ci95.high.value() - line->ci95.low.value());
+    EXPECT_NEAR(line->value.value(), ifov_mrad, 2 * half);
+    EXPECT_LT(half, 0.003 * ifov_mrad);
+    ASSERT_TRUE(line->expanded);
+    // 2 mm of 2 m.
+    EXPECT_NEAR(line->expanded->high.value() - line->value.value(), std::hypot(1.96e-3 * line->value.value(), half),
+                1e-5);
+    const auto* twin = line_of(session->measures->twin, name);
+    ASSERT_NE(twin, nullptr);
+    EXPECT_FALSE(twin->expanded);
+  }
+  EXPECT_EQ(line_of(session->measures->twin, "ifov_model")->value, ifov_mrad);
+  const auto* distortion = line_of(session->measures->main, "distortion");
+  ASSERT_NE(distortion, nullptr);
+  EXPECT_LT(distortion->ci95.low.value(), 0);
+  EXPECT_GT(distortion->ci95.high.value(), 0);
+  ASSERT_TRUE(session->measures->main->geometry);
+  EXPECT_GE(session->measures->main->geometry->places.size(), 12u);
+  const auto decided = [&](DemandKind kind) {
+    for (const Demand& demand : outcome->verdict.demands)
+      if (demand.kind == kind) return demand;
+    return Demand{};
+  };
+  EXPECT_EQ(decided(DemandKind::ifov_x_at_least).decision, VerdictKind::pass);
+  EXPECT_EQ(decided(DemandKind::ifov_x_at_most).decision, VerdictKind::pass);
+  EXPECT_EQ(decided(DemandKind::ifov_y_at_least).decision, VerdictKind::fail);
+  ASSERT_TRUE(decided(DemandKind::ifov_x_at_most).statistical);
+  EXPECT_NEAR(decided(DemandKind::ifov_x_at_most).interval.high.value(),
+              line_of(session->measures->main, "ifov_x")->expanded->high.value(), 1e-9);
+  EXPECT_EQ(decided(DemandKind::distortion).decision, VerdictKind::pass);
+  EXPECT_EQ(decided(DemandKind::distortion).interval.low, 0);
+  EXPECT_THAT(render_report(*report_data(*session, "session")), HasSubstr("geometry-main"));
+}
+
 Plan mtf_plan() {
   Plan plan = measures_plan();
   plan.measures.noise = plan.measures.transfer = false;
@@ -379,6 +442,17 @@ TEST(PhysicalMeasures, RefusePlatesThatDoNotHaveWhatIsAskedOfThem) {
   unasked.limits.measures = {{LimitedMeasure::mtf_x, 0.5, std::nullopt}};
   above.limits.measures = {{LimitedMeasure::mtf_x, std::nullopt, 0.5}};
 
+  Plan no_geometry = geometry_plan(), distorted = geometry_plan(), narrow = geometry_plan();
+  no_geometry.measures.geometry = false;
+  no_geometry.limits.measures = {{LimitedMeasure::ifov_y, 0.5, std::nullopt}};
+  distorted.limits.measures = {{LimitedMeasure::distortion, 0.5, std::nullopt}};
+  narrow.limits.measures = {{LimitedMeasure::ifov_x, 1.307, 1.309}};
+  narrow.uncertainty.rows = {{.name = "distance", .value = 0.01, .unit = "m"}};
+
+  EXPECT_EQ(refusal(geometry_plan()), "");
+  EXPECT_THAT(refusal(no_geometry), HasSubstr("geometry = true"));
+  EXPECT_THAT(refusal(distorted), HasSubstr("no lower limit"));
+  EXPECT_THAT(refusal(narrow), HasSubstr("nothing can pass"));
   EXPECT_EQ(refusal(mtf_plan()), "");
   EXPECT_EQ(refusal(ctf_plan()), "");
   EXPECT_THAT(refusal(no_bars), HasSubstr("ctf_plate"));
