@@ -1,4 +1,4 @@
-// todbench history add, show, check, export, event
+// todbench history add, show, check, prior, export, event
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -8,6 +8,7 @@
 
 #include "bench/cli/commands.h"
 #include "bench/history/control_chart.h"
+#include "bench/history/fleet_history.h"
 #include "bench/history/history_index.h"
 #include "bench/history/history_series.h"
 #include "bench/judgement/verdict.h"
@@ -22,7 +23,7 @@ namespace {
 struct HistoryArguments {
   std::string index{default_history_file().string()};
   std::vector<std::string> folders;
-  std::string serial, measure, kind, text, utc, out;
+  std::string serial, measure, kind, text, utc, out, model, vendor, lens;
   std::optional<double> at_least, at_most;
   double horizon_days = 365;
 };
@@ -289,6 +290,55 @@ int run_event(Console& console, const HistoryArguments& a) {
   return 0;
 }
 
+int run_prior(Console& console, const HistoryArguments& a) {
+  const auto index = HistoryIndex::open(a.index);
+  if (!index) return report_error(console, index.error());
+  auto fleets = fleets_of(*index, {a.vendor, a.model, a.lens, a.serial});
+  if (!fleets) return report_error(console, fleets.error());
+  if (!a.measure.empty())
+    std::erase_if(*fleets, [&](const FleetFound& found) { return found.row.measure != a.measure; });
+  const bool none =
+      std::all_of(fleets->begin(), fleets->end(), [](const auto& found) { return !found.refused.empty(); });
+  if (none) {
+    const std::string why = fleets->empty() ? "no value of measure '" + one_line(a.measure) + "'"
+                                            : fleets->front().row.measure + ": " + fleets->front().refused;
+    return report_error(console, {ErrorCode::invalid_input, one_line(a.model) + ": no prior; " + why});
+  }
+  if (!a.out.empty()) {
+    if (auto written = write_file_atomically(a.out, fleets_toml(*fleets)); !written)
+      return report_error(console, written.error());
+    console.note("written: " + a.out);
+  }
+  if (console.json()) {
+    Json listed = Json::array(), refused = Json::array();
+    for (const FleetFound& found : *fleets) {
+      const FleetRow& row = found.row;
+      if (!found.refused.empty()) {
+        refused.push_back(
+            {{"measure", row.measure}, {"delta_t_k", json_number(row.delta_t_k)}, {"why", found.refused}});
+        continue;
+      }
+      const SpreadInterval spread = spread_interval(prior_of(row));
+      listed.push_back({{"measure", row.measure},
+                        {"delta_t_k", json_number(row.delta_t_k)},
+                        {"unit_text", found.unit_text},
+                        {"mean", json_number(row.mean)},
+                        {"sd", json_number(row.sd)},
+                        {"sd_ci95", {json_number(spread.low), json_number(spread.high)}},
+                        {"u", json_number(row.u)},
+                        {"units", row.units},
+                        {"first_utc", found.first_utc},
+                        {"last_utc", found.last_utc}});
+    }
+    console.object({{"fleets", listed}, {"refused", refused}});
+  } else if (a.out.empty()) {
+    std::string toml = fleets_toml(*fleets);
+    toml.resize(toml.find_last_not_of('\n') + 1);
+    console.text(toml);
+  }
+  return 0;
+}
+
 }  // namespace
 
 void add_history_command(CLI::App& app, Program& program) {
@@ -325,6 +375,16 @@ void add_history_command(CLI::App& app, Program& program) {
         ->check(number_in(0, 36525))
         ->capture_default_str();
     finish_command(*command, program, [a = a](Console& console) { return run_check(console, *a); });
+  }
+  {
+    const auto [command, a] = begun("prior", "what the units of a model say of the next one: rows of a plan");
+    command->add_option("MODEL", a->model, "model of the cameras")->required();
+    command->add_option("--vendor", a->vendor, "needed where several have such a model");
+    command->add_option("--lens", a->lens, "needed where units have several");
+    command->add_option("--without", a->serial, "serial number of the unit that is to be judged");
+    command->add_option("--measure", a->measure, "acuity, netd, ...; without it all");
+    command->add_option("--out", a->out, "file for the rows; without it standard output");
+    finish_command(*command, program, [a = a](Console& console) { return run_prior(console, *a); });
   }
   {
     const auto [command, a] = begun("export", "every value as CSV");

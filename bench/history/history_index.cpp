@@ -79,6 +79,12 @@ class Statement {
     good_ = good_ && sqlite3_bind_int64(statement_, ++bound_, number) == SQLITE_OK;
     return *this;
   }
+  /// For the next values of its parameters.
+  Statement& again() {
+    good_ = good_ && sqlite3_reset(statement_) == SQLITE_OK;
+    bound_ = 0;
+    return *this;
+  }
   /// SQLITE_ROW, SQLITE_DONE, or what went wrong.
   int step() { return good_ ? sqlite3_step(statement_) : SQLITE_ERROR; }
   [[nodiscard]] std::string text(int column) const {
@@ -290,6 +296,9 @@ Result<std::vector<HistorySession>> HistoryIndex::sessions(const std::optional<s
       "SELECT u.vendor, u.model, u.serial, u.lens, s.path, s.manifest_sha256, s.started_utc, s.program, "
       "s.state, s.firmware, s.id FROM session s JOIN unit u ON u.id = s.unit WHERE ?1 = '' OR u.serial = ?2 "
       "ORDER BY u.vendor, u.model, u.serial, u.lens, s.started_utc, s.id");
+  Statement of(database,
+               "SELECT measure, condition, unit_text, scale, value, u FROM value WHERE session = ? ORDER BY measure, "
+               "condition");
   asked.bind(serial ? std::string("one") : std::string()).bind(serial.value_or(""));
   int found = asked.step();
   for (; found == SQLITE_ROW; found = asked.step()) {
@@ -301,10 +310,7 @@ Result<std::vector<HistorySession>> HistoryIndex::sessions(const std::optional<s
                            .state = asked.text(8),
                            .firmware = asked.text(9),
                            .values = {}};
-    Statement of(database,
-                 "SELECT measure, condition, unit_text, scale, value, u FROM value WHERE session = ? ORDER BY measure, "
-                 "condition");
-    of.bind(asked.whole(10));
+    of.again().bind(asked.whole(10));
     int row = of.step();
     for (; row == SQLITE_ROW; row = of.step())
       session.values.push_back({of.text(0), of.text(1), of.text(2), of.text(3), of.number(4), of.number(5)});

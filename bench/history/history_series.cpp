@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tuple>
+#include <optional>
 
 namespace todbench {
 namespace {
@@ -24,9 +24,18 @@ Result<std::vector<HistorySeries>> history_series(const HistoryIndex& index, con
   if (!sessions) return tl::unexpected(sessions.error());
   std::vector<HistorySeries> all;
   std::map<std::string, std::optional<double>> breaks;
-  std::map<std::tuple<std::string, std::string, std::string, std::string>, std::string> firmware;
+  std::string firmware;
+  // Sessions come by unit: the series of the unit in hand are the last ones.
+  std::optional<HistoryUnit> in_hand;
+  std::size_t first = 0;
   for (const HistorySession& session : *sessions) {
     const HistoryUnit& unit = session.unit;
+    if (in_hand != unit) {
+      in_hand = unit;
+      first = all.size();
+      firmware.clear();
+    }
+    const auto begin = [&] { return all.begin() + static_cast<std::ptrdiff_t>(first); };
     if (!breaks.contains(unit.serial)) {
       const auto events = index.events(unit.serial);
       if (!events) return tl::unexpected(events.error());
@@ -35,14 +44,12 @@ Result<std::vector<HistorySeries>> history_series(const HistoryIndex& index, con
     const double days = days_of_utc(session.started_utc).value_or(0);
     if (breaks[unit.serial] && days < *breaks[unit.serial]) continue;
     // Another firmware begins a new series.
-    auto& known = firmware[{unit.vendor, unit.model, unit.serial, unit.lens}];
-    if (!known.empty() && known != session.firmware)
-      std::erase_if(all, [&](const HistorySeries& series) { return series.unit == unit; });
-    known = session.firmware;
+    if (!firmware.empty() && firmware != session.firmware) all.erase(begin(), all.end());
+    firmware = session.firmware;
     for (const HistoryValue& value : session.values) {
       if (!measure.empty() && value.measure != measure) continue;
-      auto found = std::find_if(all.begin(), all.end(), [&](const HistorySeries& series) {
-        return series.unit == unit && series.measure == value.measure && series.condition == value.condition;
+      auto found = std::find_if(begin(), all.end(), [&](const HistorySeries& series) {
+        return series.measure == value.measure && series.condition == value.condition;
       });
       if (found == all.end())
         found = all.insert(all.end(), {unit, value.measure, value.condition, value.unit, value.scale, {}, {}});

@@ -161,6 +161,13 @@ DemandKindRow row() {
 
 }  // namespace
 
+std::optional<LimitedMeasure> limited_measure_of(DemandKind kind) {
+  for (const MeasureDemand& demand : measure_demands) {
+    if (demand.kind == kind) return demand.measure;
+  }
+  return std::nullopt;
+}
+
 DemandKindRow measure_row(DemandKind kind) {
   switch (kind) {
     case DemandKind::netd:

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bench/judgement/demand_kinds.h"
+#include "bench/judgement/fleet_prior.h"
 #include "bench/text/text.h"
 
 namespace todbench {
@@ -123,6 +124,7 @@ Verdict judge(const Evidence& evidence) {
   for (const DemandKindRow& row : demand_kinds()) {
     for (Demand& demand : row.judge(evidence)) verdict.demands.push_back(std::move(demand));
   }
+  add_fleet_risks(verdict.demands, limits);
   if (evidence.uncertainty != nullptr) verdict.not_stated = evidence.uncertainty->not_stated;
   auto [decision, reason] = decided(verdict, evidence.curve);
   verdict.decision = decision;

@@ -41,6 +41,14 @@ inline constexpr std::array all_ratio_kinds{RatioKind::unpaired, RatioKind::pair
   return kind == RatioKind::paired ? "paired" : "unpaired";
 }
 
+/// What the fleet of the plan says of a demand (fleet_prior.h).
+struct DemandFleet {
+  int units = 0;                                          ///< that the fleet is known from
+  double p_conformity = 0;                                ///< given the result and the fleet
+  double consumer_risk = 0, producer_risk = 0;            ///< global: of this rule over the fleet
+  double consumer_risk_most = 0, producer_risk_most = 0;  ///< as far as so many units tell, 95 %
+};
+
 /// One demand with what was found. Its unit and its words follow from the kind (demand_kinds.h).
 struct Demand {
   DemandKind kind = DemandKind::identified;
@@ -57,6 +65,8 @@ struct Demand {
   std::optional<ConformityDecision> conformity{};
   /// Probability that the demand is met, given the result (decide()). Nothing: not known.
   std::optional<double> p_conformity{};
+
+  std::optional<DemandFleet> fleet{};  ///< where the plan states one
 
   std::optional<std::string> zone{};  ///< of the frame; nothing where the demand is not about one
   std::optional<RatioKind> ratio{};   ///< of a demanded equivalence that could be judged

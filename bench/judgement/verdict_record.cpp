@@ -42,6 +42,14 @@ Json demand_json(const Demand& demand) {
                           {"consumer_risk", json_number(demand.consumer_risk())},
                           {"producer_risk", json_number(demand.producer_risk())}};
   }
+  if (const auto& fleet = demand.fleet) {
+    json["fleet"] = {{"units", fleet->units},
+                     {"p_conformity", json_number(fleet->p_conformity)},
+                     {"consumer_risk", json_number(fleet->consumer_risk)},
+                     {"producer_risk", json_number(fleet->producer_risk)},
+                     {"consumer_risk_most", json_number(fleet->consumer_risk_most)},
+                     {"producer_risk_most", json_number(fleet->producer_risk_most)}};
+  }
   return json;
 }
 
@@ -64,6 +72,14 @@ Demand demand_from(const JsonReader& reader) {
   if (const JsonReader conformity = reader.at_if_there("conformity"); !conformity.is_null()) {
     demand.conformity = conformity.at("decision").named(conformity_decisions);
     demand.p_conformity = conformity.at("p_conformity").optional_number();
+  }
+  if (const JsonReader fleet = reader.at_if_there("fleet"); !fleet.is_null()) {
+    demand.fleet = DemandFleet{.units = static_cast<int>(fleet.at("units").whole()),
+                               .p_conformity = fleet.at("p_conformity").number(),
+                               .consumer_risk = fleet.at("consumer_risk").number(),
+                               .producer_risk = fleet.at("producer_risk").number(),
+                               .consumer_risk_most = fleet.at("consumer_risk_most").number(),
+                               .producer_risk_most = fleet.at("producer_risk_most").number()};
   }
   return demand;
 }

@@ -206,6 +206,23 @@ struct ZoneLimit {
   bool operator==(const ZoneLimit&) const = default;
 };
 
+/// Name of the acuity in [[limits.fleet]]; the others are those of LimitedMeasure.
+inline constexpr std::string_view fleet_acuity = "acuity";
+/// Units that say something of a spread: its standard deviation is known to a quarter.
+inline constexpr int least_fleet_units = 10;
+
+/// [[limits.fleet]]: true values of earlier units of this kind, as `todbench history prior` states them.
+struct FleetRow {
+  std::string measure{fleet_acuity};
+  std::optional<double> delta_t_k{};  ///< of an acuity
+  double mean = 0;                    ///< in the unit of the measure; of an acuity the geometric one
+  double sd = 0;                      ///< of true values, in that unit; of an acuity in ln acuity
+  double u = 0;                       ///< of the values that say so, on the scale of sd; 0: as good as nothing
+  int units = 0;
+  std::string source{};
+  bool operator==(const FleetRow&) const = default;
+};
+
 /// [limits]
 struct LimitsPlan {
   std::vector<AcuityLimit> acuity;
@@ -215,6 +232,7 @@ struct LimitsPlan {
   ConformityRule rule = ConformityRule::guarded_acceptance_and_rejection;
   /// Of a wrong acceptance at the acceptance limit, in place of the 95 % interval as guard band.
   std::optional<double> guard_band_risk{};
+  std::vector<FleetRow> fleets{};
   std::optional<double> fleet_sd_percent{};  ///< of true acuities over the fleet; for what `plan` says beforehand
   bool operator==(const LimitsPlan&) const = default;
 };

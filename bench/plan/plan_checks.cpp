@@ -212,6 +212,22 @@ ValueMistakes check_limited_measure(const Plan& plan, std::size_t row) {
   return mistakes;
 }
 
+ValueMistakes check_fleet_measure(const Plan& plan, std::size_t row) {
+  const FleetRow& fleet = plan.limits.fleets[row];
+  const bool acuity = fleet.measure == fleet_acuity;
+  const bool known = acuity || std::any_of(limited_measures.begin(), limited_measures.end(),
+                                           [&](LimitedMeasure one) { return to_string(one) == fleet.measure; });
+  if (!known) return {{std::nullopt, "no measure '" + one_line(fleet.measure) + "' that can be limited"}};
+  if (acuity && !fleet.delta_t_k) return {{std::nullopt, "a fleet of acuities needs delta_t_k"}};
+  for (std::size_t other = 0; other < row; ++other) {
+    const FleetRow& earlier = plan.limits.fleets[other];
+    if (earlier.measure != fleet.measure) continue;
+    if (!acuity || (earlier.delta_t_k && same_contrast(*earlier.delta_t_k, *fleet.delta_t_k)))
+      return {{std::nullopt, "a second row for " + fleet.measure}};
+  }
+  return {};
+}
+
 ValueMistakes check_measure_limits(const Plan& plan, std::size_t row) {
   const MeasureLimit& limits = plan.limits.measures[row];
   const std::string name(to_string(limits.measure));

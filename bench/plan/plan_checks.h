@@ -50,6 +50,8 @@ using ValueMistakes = std::vector<ValueMistake>;
 [[nodiscard]] ValueMistakes check_margin(const Plan& plan, std::size_t row);
 /// One that [measures] asks for, not in an earlier row.
 [[nodiscard]] ValueMistakes check_limited_measure(const Plan& plan, std::size_t row);
+/// A measure that can be limited, not in an earlier row; an acuity with its contrast.
+[[nodiscard]] ValueMistakes check_fleet_measure(const Plan& plan, std::size_t row);
 /// Not empty.
 [[nodiscard]] ValueMistakes check_module_command(const Plan& plan, std::size_t row);
 /// One observer at most, whose answers are not graded; no module where the function of the twin is fitted.

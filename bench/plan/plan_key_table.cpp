@@ -572,6 +572,51 @@ PlanSection measure_limits_section() {
           .rows = rows_of(rows)};
 }
 
+PlanSection fleet_section() {
+  const auto rows = [](auto& plan) -> auto& {
+    return plan.limits.fleets;
+  };
+  return {.name = "limits.fleet",
+          .sentence =
+              "What earlier units of this kind say of the next one, as `todbench history prior` writes it; the "
+              "verdict then states global risks.",
+          .keys = {{.name = "measure",
+                    .type = TextKey{},
+                    .sentence = "acuity, or a physical measure that can be limited",
+                    .place = in_row(rows, &FleetRow::measure),
+                    .required = Required::always,
+                    .check = check_fleet_measure},
+                   {.name = "delta_t_k",
+                    .type = OptionalNumberKey{NumberRange::any()},
+                    .unit = "K",
+                    .sentence = "set contrast of an acuity",
+                    .place = in_row(rows, &FleetRow::delta_t_k)},
+                   {.name = "mean",
+                    .type = NumberKey{positive},
+                    .sentence = "of true values, in the unit of the measure; of an acuity the geometric one",
+                    .place = in_row(rows, &FleetRow::mean),
+                    .required = Required::always},
+                   {.name = "sd",
+                    .type = NumberKey{positive},
+                    .sentence = "standard deviation of true values, in that unit; of an acuity in ln acuity",
+                    .place = in_row(rows, &FleetRow::sd),
+                    .required = Required::always},
+                   {.name = "u",
+                    .type = NumberKey{not_negative},
+                    .sentence = "standard uncertainty of a value that went into it, on the scale of sd",
+                    .place = in_row(rows, &FleetRow::u)},
+                   {.name = "units",
+                    .type = WholeKey{least_fleet_units, 1000000},
+                    .sentence = "that it rests on",
+                    .place = in_row(rows, &FleetRow::units),
+                    .required = Required::always},
+                   {.name = "source",
+                    .type = TextKey{},
+                    .sentence = "where they are, in words",
+                    .place = in_row(rows, &FleetRow::source)}},
+          .rows = rows_of(rows)};
+}
+
 PlanSection zone_limits_section() {
   const auto rows = [](auto& plan) -> auto& {
     return plan.limits.zones;
@@ -839,11 +884,11 @@ PlanSection module_section() {
 
 const std::vector<PlanSection>& plan_sections() {
   static const std::vector<PlanSection> sections{
-      about_section(),       camera_section(),      target_section(),        observer_section(),
-      simulation_section(),  schedule_section(),    fit_section(),           measurement_section(),
-      measures_section(),    limits_section(),      acuity_limits_section(), measure_limits_section(),
-      zone_limits_section(), uncertainty_section(), budget_row_section(),    instrument_section(),
-      module_section(),      motion_section()};
+      about_section(),       camera_section(),   target_section(),        observer_section(),
+      simulation_section(),  schedule_section(), fit_section(),           measurement_section(),
+      measures_section(),    limits_section(),   acuity_limits_section(), measure_limits_section(),
+      zone_limits_section(), fleet_section(),    uncertainty_section(),   budget_row_section(),
+      instrument_section(),  module_section(),   motion_section()};
   return sections;
 }
 

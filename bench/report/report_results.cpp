@@ -199,6 +199,13 @@ RichText conformity_words(const Demand& demand) {
   if (demand.p_conformity) text += "; probability of conformity " + probability(*demand.p_conformity);
   if (const auto risk = demand.consumer_risk()) text += ", consumer's risk " + probability(*risk);
   if (const auto risk = demand.producer_risk()) text += ", producer's risk " + probability(*risk);
+  if (const auto& fleet = demand.fleet) {
+    text += "; with the fleet of " + std::to_string(fleet->units) + " earlier units: probability of conformity " +
+            probability(fleet->p_conformity) + ", over the fleet accepted and outside " +
+            probability(fleet->consumer_risk) + " (at most " + probability(fleet->consumer_risk_most) +
+            "), rejected and inside " + probability(fleet->producer_risk) + " (at most " +
+            probability(fleet->producer_risk_most) + ")";
+  }
   return plain(text);
 }
 

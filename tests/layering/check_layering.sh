@@ -56,7 +56,7 @@ BEGIN {
   may["bench/observer_fit"] = science " bench/text bench/plan bench/judgement bench/session bench/report"
   may["bench/run"] = science " " devices " bench/text bench/plan bench/judgement bench/session bench/report"
   may["bench/studies"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
-  may["bench/history"] = core " bench/text bench/session"
+  may["bench/history"] = core " bench/text bench/plan bench/judgement bench/session"
   may["bench/serve"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
   may["bench/sweep"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
   may["bench/doctor"] = core " bench/text"

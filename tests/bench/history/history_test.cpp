@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "bench/history/control_chart.h"
+#include "bench/history/fleet_history.h"
 #include "bench/history/history_index.h"
 #include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
@@ -222,6 +223,70 @@ TEST_F(History, SaysWhoIsInTheWay) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::io);
   EXPECT_TRUE(index->add(*read_history_session(folder)));
+}
+
+/// Sessions of several units, each with an older value that counts no more.
+HistorySession session_of(int unit, int year, double ln_acuity, double u) {
+  const std::string serial = "S" + std::to_string(unit), utc = std::to_string(year) + "-01-01T00:00:00Z";
+  return {.unit = {"FLIR", "SC2000", serial, ""},
+          .path = "/sessions/" + serial + utc,
+          .manifest_sha256 = serial + utc,
+          .started_utc = utc,
+          .program = "1",
+          .state = "complete",
+          .firmware = "1",
+          .values = {{"acuity", "dT=0.23K", "1/mrad", "ln", ln_acuity, u}}};
+}
+
+TEST_F(History, SaysOfAKindOfCameraWhatItsUnitsAre) {
+  auto index = HistoryIndex::open(file());
+  ASSERT_TRUE(index) << index.error().message;
+  double mean = 0, squares = 0;
+  constexpr int units = 12;
+  const auto value = [](int unit) { return -1.2 + 0.03 * ((unit * 5) % units); };
+  for (int unit = 0; unit < units; ++unit) {
+    ASSERT_TRUE(index->add(session_of(unit, 2024, 0, 0.5)));
+    ASSERT_TRUE(index->add(session_of(unit, 2025, value(unit), 0.02)));
+    HistorySession late = session_of(unit, 2026, 3, 0.02);
+    late.state = "interrupted";
+    ASSERT_TRUE(index->add(late));
+    mean += value(unit) / units;
+  }
+  for (int unit = 0; unit < units; ++unit) squares += std::pow(value(unit) - mean, 2) / (units - 1);
+  ASSERT_TRUE(index->add(session_of(99, 2025, 5, 0.02)));
+
+  const auto found = fleets_of(*index, {.model = "SC2000", .without_serial = "S99"});
+
+  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_EQ(found->size(), 1u);
+  const FleetRow& row = found->front().row;
+  EXPECT_EQ(found->front().refused, "");
+  EXPECT_EQ(row.units, units);
+  EXPECT_NEAR(row.delta_t_k.value(), 0.23, 1e-12);
+  EXPECT_NEAR(row.mean, std::exp(mean), 1e-12);
+  EXPECT_NEAR(row.u, 0.02, 1e-12);
+  EXPECT_NEAR(row.sd, std::sqrt(squares - 0.0004), 1e-12);
+  // A plan takes the rows as they are written.
+  const auto plan = parse_plan({.origin = "test", .text = "[target]\ndistance_m = 2\n" + fleets_toml(*found)}, ".");
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_EQ(plan->limits.fleets, std::vector{row});
+}
+
+TEST_F(History, RefusesAPriorOfTooFewUnitsOrOfSeveralKinds) {
+  auto index = HistoryIndex::open(file());
+  ASSERT_TRUE(index) << index.error().message;
+  EXPECT_EQ(fleets_of(*index, {.model = "SC2000"}).error().code, ErrorCode::not_found);
+  for (int unit = 0; unit < least_fleet_units - 1; ++unit)
+    ASSERT_TRUE(index->add(session_of(unit, 2025, 0.1 * unit, 0.02)));
+  const auto few = fleets_of(*index, {.model = "SC2000"});
+  ASSERT_TRUE(few);
+  EXPECT_NE(few->front().refused, "");
+  EXPECT_EQ(fleets_toml(*few).front(), '#');
+  HistorySession other = session_of(50, 2025, 1, 0.02);
+  other.unit.vendor = "another";
+  ASSERT_TRUE(index->add(other));
+  EXPECT_EQ(fleets_of(*index, {.model = "SC2000"}).error().code, ErrorCode::invalid_input);
+  EXPECT_TRUE(fleets_of(*index, {.vendor = "FLIR", .model = "SC2000"}));
 }
 
 }  // namespace

@@ -84,6 +84,8 @@ Plan plan_with_rule() {
   plan.limits.rule = ConformityRule::non_binary;
   plan.limits.guard_band_risk = 0.01;
   plan.limits.fleet_sd_percent = 4;
+  plan.limits.fleets = {{.delta_t_k = 0.23, .mean = 0.3, .sd = 0.04, .u = 0.02, .units = 14, .source = "SC2000"},
+                        {.measure = "netd", .mean = 0.06, .sd = 0.004, .units = 10}};
   return plan;
 }
 
@@ -119,6 +121,20 @@ TEST(Plan, ReadsABudgetByTheWordsOfItsFile) {
   EXPECT_EQ(plan->uncertainty.rows[0].distribution, BudgetDistribution::rectangular);
   EXPECT_EQ(plan->uncertainty.rows[0].degrees_of_freedom, 9);
   EXPECT_EQ(input_of(plan->uncertainty.rows[1]), BudgetInput::air_path);
+}
+
+TEST(Plan, RefusesAFleetThatIsWrong) {
+  const auto refused = [](const std::string& keys) {
+    return !parse("[[limits.fleet]]\nmean = 0.3\nsd = 0.04\n" + keys).has_value();
+  };
+  EXPECT_FALSE(refused("units = 10\nmeasure = 'acuity'\ndelta_t_k = 0.23\n"));
+  EXPECT_TRUE(refused("units = 9\nmeasure = 'acuity'\ndelta_t_k = 0.23\n")) << "too few";
+  EXPECT_TRUE(refused("units = 10\nmeasure = 'acuity'\n")) << "at what contrast?";
+  EXPECT_TRUE(refused("units = 10\nmeasure = 'weight'\n"));
+  EXPECT_TRUE(
+      refused("units = 10\nmeasure = 'netd'\n[[limits.fleet]]\nmean = 1\nsd = 1\nunits = 10\n"
+              "measure = 'netd'\n"))
+      << "twice";
 }
 
 TEST(Plan, RefusesABudgetThatIsWrong) {

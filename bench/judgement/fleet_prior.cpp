@@ -1,0 +1,153 @@
+#include "bench/judgement/fleet_prior.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+
+#include "acquisition/core/normal.h"
+#include "bench/judgement/demand_kinds.h"
+#include "bench/judgement/measure_demands.h"
+
+namespace todbench {
+namespace {
+
+/// Variance of true values that are known so well, of a unit yet unseen.
+double predictive_variance(const FleetPrior& prior, double sd) {
+  return sd * sd + (sd * sd + prior.u * prior.u) / prior.units;
+}
+
+/// Of the posterior of a normal prior and a normal measurement.
+double posterior_share_inside(const FleetPrior& prior, const MeasuredValue& measured,
+                              const ToleranceLimits& tolerance) {
+  const double of_fleet = predictive_variance(prior, prior.sd), of_unit = measured.u * measured.u;
+  const double weight = of_fleet / (of_fleet + of_unit);
+  const boost::math::normal posterior(weight * measured.value + (1 - weight) * prior.mean, std::sqrt(weight * of_unit));
+  double outside = 0;
+  if (tolerance.at_least) outside += cdf(posterior, *tolerance.at_least);
+  if (tolerance.at_most) outside += cdf(complement(posterior, *tolerance.at_most));
+  return 1 - outside;
+}
+
+/// A demand as a measured value on the scale of its prior.
+struct Scaled {
+  MeasuredValue measured;
+  ToleranceLimits tolerance, acceptance;
+};
+
+std::optional<Scaled> scaled_demand(const Demand& demand, const LimitsPlan& limits) {
+  const LimitSide side = row_of(demand.kind).side;
+  if (side == LimitSide::none || !demand.result || !demand.limit || !demand.interval.low || !demand.interval.high)
+    return std::nullopt;
+  const bool of_ratio = demand.kind == DemandKind::acuity;
+  if (of_ratio && !(*demand.interval.low > 0 && *demand.result > 0 && *demand.limit > 0)) return std::nullopt;
+  const auto on_scale = [&](double value) { return of_ratio ? std::log(value) : value; };
+  const double value = on_scale(*demand.result), limit = on_scale(*demand.limit);
+  const bool at_least = side == LimitSide::at_least;
+  // The side of the interval that faces the limit decides whether the unit is accepted.
+  const double half = std::abs(value - on_scale(at_least ? *demand.interval.low : *demand.interval.high));
+  if (!(half > 0)) return std::nullopt;
+  const double u = half / normal_z95;
+  double guard_band = limits.rule == ConformityRule::simple ? 0 : half;
+  if (guard_band > 0 && limits.guard_band_risk)
+    guard_band = guard_band_for_risk(*limits.guard_band_risk, {.value = value, .u = u});
+  Scaled out{.measured = {.value = value, .u = u}, .tolerance = {}, .acceptance = {}};
+  (at_least ? out.tolerance.at_least : out.tolerance.at_most) = limit;
+  (at_least ? out.acceptance.at_least : out.acceptance.at_most) = at_least ? limit + guard_band : limit - guard_band;
+  return out;
+}
+
+}  // namespace
+
+Result<FleetPrior> fleet_prior(std::span<const UnitValue> units) {
+  const auto n = static_cast<double>(units.size());
+  if (units.size() < least_fleet_units) {
+    return fail(ErrorCode::invalid_input, fmt::format("{} units say too little of a fleet, expected {} or more",
+                                                      units.size(), least_fleet_units));
+  }
+  double mean = 0, u_squares = 0, squares = 0;
+  for (const UnitValue& unit : units) {
+    if (!std::isfinite(unit.value) || !std::isfinite(unit.u) || !(unit.u > 0))
+      return fail(ErrorCode::invalid_input, "a unit of the fleet has no uncertainty");
+    mean += unit.value / n;
+    u_squares += unit.u * unit.u / n;
+  }
+  for (const UnitValue& unit : units) squares += (unit.value - mean) * (unit.value - mean) / (n - 1);
+  if (!(squares > u_squares)) {
+    return fail(
+        ErrorCode::invalid_input,
+        fmt::format("the units scatter by {:.3g} and are uncertain by {:.3g}: that says nothing of their spread",
+                    std::sqrt(squares), std::sqrt(u_squares)));
+  }
+  return FleetPrior{.mean = mean,
+                    .sd = std::sqrt(squares - u_squares),
+                    .u = std::sqrt(u_squares),
+                    .units = static_cast<int>(units.size())};
+}
+
+SpreadInterval spread_interval(const FleetPrior& prior) {
+  const double freedom = prior.units - 1, of_values = prior.sd * prior.sd + prior.u * prior.u;
+  const boost::math::chi_squared chi(freedom);
+  constexpr double tail = 0.025;
+  const auto of = [&](double quantile_of_chi) {
+    return std::sqrt(std::max(0.0, of_values * freedom / quantile_of_chi - prior.u * prior.u));
+  };
+  return {of(quantile(complement(chi, tail))), of(quantile(chi, tail))};
+}
+
+Result<FleetRisks> fleet_risks(const FleetPrior& prior, const MeasuredValue& measured, const ToleranceLimits& tolerance,
+                               const ToleranceLimits& acceptance) {
+  FleetRisks out;
+  const SpreadInterval spread = spread_interval(prior);
+  for (const double sd : {prior.sd, spread.low, spread.high}) {
+    const auto risks = global_risks({.mean = prior.mean, .sd = std::sqrt(predictive_variance(prior, sd))}, measured.u,
+                                    tolerance, acceptance);
+    if (!risks) return tl::unexpected(risks.error());
+    if (sd == prior.sd) out.consumer_risk = risks->consumer_risk, out.producer_risk = risks->producer_risk;
+    out.consumer_risk_most = std::max(out.consumer_risk_most, risks->consumer_risk);
+    out.producer_risk_most = std::max(out.producer_risk_most, risks->producer_risk);
+  }
+  out.p_conformity = posterior_share_inside(prior, measured, tolerance);
+  return out;
+}
+
+const FleetRow* fleet_of(const LimitsPlan& limits, const Demand& demand) {
+  for (const FleetRow& row : limits.fleets) {
+    if (demand.kind == DemandKind::acuity) {
+      if (row.measure == fleet_acuity && row.delta_t_k && demand.delta_t_k &&
+          same_contrast(*row.delta_t_k, *demand.delta_t_k))
+        return &row;
+    } else if (const auto measure = limited_measure_of(demand.kind); measure && row.measure == to_string(*measure)) {
+      return &row;
+    }
+  }
+  return nullptr;
+}
+
+FleetPrior prior_of(const FleetRow& row) {
+  return {.mean = row.measure == fleet_acuity ? std::log(row.mean) : row.mean,
+          .sd = row.sd,
+          .u = row.u,
+          .units = row.units};
+}
+
+void add_fleet_risks(std::vector<Demand>& demands, const LimitsPlan& limits) {
+  for (Demand& demand : demands) {
+    const FleetRow* row = fleet_of(limits, demand);
+    if (row == nullptr || !demand.p_conformity) continue;
+    const auto scaled = scaled_demand(demand, limits);
+    if (!scaled) continue;
+    const auto risks = fleet_risks(prior_of(*row), scaled->measured, scaled->tolerance, scaled->acceptance);
+    if (!risks) continue;
+    demand.fleet = DemandFleet{.units = row->units,
+                               .p_conformity = risks->p_conformity,
+                               .consumer_risk = risks->consumer_risk,
+                               .producer_risk = risks->producer_risk,
+                               .consumer_risk_most = risks->consumer_risk_most,
+                               .producer_risk_most = risks->producer_risk_most};
+  }
+}
+
+}  // namespace todbench
