@@ -125,7 +125,9 @@ Result<void> AravisSource::refresh() {
   if (!format) return tl::unexpected(format.error());
   format_ = *format;
   if (bytes_swapped_) format_.big_endian = !format_.big_endian;
-  RadiometricScale scale = read_scale(device, family_);
+  // Eight bits are a picture for people, behind a gain control, whatever the counts before it mean.
+  RadiometricScale scale =
+      format_.pixel_format == PixelFormat::mono8 ? RadiometricScale() : read_scale(device, family_);
   if (stated_kelvin_per_count_) {
     scale = RadiometricScale::linear({*stated_kelvin_per_count_, stated_offset_k_.value_or(0)}).value_or(scale);
   }

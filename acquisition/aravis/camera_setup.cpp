@@ -15,8 +15,8 @@
 namespace todbench {
 namespace {
 
-/// Formats that are measured with: one pixel in two bytes. Mono14 stands before Mono16 so that it wins when both carry
-/// 14 bits: only its name states the full scale.
+/// Formats that a camera is set up with: one pixel in two bytes. Mono14 stands before Mono16 so that it wins when both
+/// carry 14 bits: only its name states the full scale.
 constexpr std::array usable_formats{PixelFormat::mono14, PixelFormat::mono16, PixelFormat::mono12, PixelFormat::mono10};
 
 /// Larger than any thermal camera's picture; a camera that states more would have this program reserve memory without
@@ -180,9 +180,11 @@ Result<StreamFormat> read_stream_format(ArvCamera* camera) {
   if (error) return error.failure(ErrorCode::not_found, "reading the image geometry");
   const auto known = pixel_format_of_pfnc(arv_camera_get_pixel_format(camera, error.out()));
   if (error) return error.failure(ErrorCode::not_found, "reading the pixel format");
-  if (!known || std::find(usable_formats.begin(), usable_formats.end(), *known) == usable_formats.end()) {
+  // Eight bits are taken where somebody set them; no camera is set up so.
+  if (!known || (*known != PixelFormat::mono8 &&
+                 std::find(usable_formats.begin(), usable_formats.end(), *known) == usable_formats.end())) {
     return fail(ErrorCode::not_found, "pixel format " + get_feature(device, "PixelFormat").value_or("") +
-                                          " is not an unpacked 10 ... 16 bit monochrome format");
+                                          " is not an unpacked 8 ... 16 bit monochrome format");
   }
   format.pixel_format = *known;
   format.significant_bits = significant_bits(device, *known);
@@ -195,7 +197,8 @@ Result<StreamFormat> read_stream_format(ArvCamera* camera) {
                                           std::to_string(format.payload_bytes) + " bytes: larger than is accepted");
   }
   const auto pixels = static_cast<std::size_t>(format.width) * static_cast<std::size_t>(format.height);
-  if (format.width <= 0 || format.height <= 0 || format.payload_bytes < 2 * pixels) {
+  const auto bytes_per_pixel = static_cast<std::size_t>(facts_of(*known).bytes_per_pixel);
+  if (format.width <= 0 || format.height <= 0 || format.payload_bytes < bytes_per_pixel * pixels) {
     return fail(ErrorCode::not_found, "the camera states an impossible geometry of " + std::to_string(format.width) +
                                           " x " + std::to_string(format.height) + " pixels in " +
                                           std::to_string(format.payload_bytes) + " bytes");

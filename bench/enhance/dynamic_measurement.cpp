@@ -117,6 +117,8 @@ Result<DynamicMeasurement> measure_dynamic(const LoadedPlan& loaded,
   const Plan& plan = loaded.plan();
   if (has_modules(plan, loaded.sensor()))
     return fail(ErrorCode::invalid_input, "a target that moves is not measured behind modules");
+  if (plan.camera.contrast == ContrastUnit::grey_levels)
+    return fail(ErrorCode::invalid_input, "a target that moves is measured in kelvin, not in grey levels");
   const auto accuracy = accuracy_of(plan);
   if (!accuracy) return tl::unexpected(accuracy.error());
   const auto model = std::make_shared<const SensorModel>(

@@ -118,6 +118,12 @@ void run_recorded_one(const std::filesystem::path& session, const LoadedPlan& lo
                       const EnhancementPackage* package, const EnhancementOptions& options, PackageResult& result,
                       const std::stop_token& stop) {
   const Plan& plan = loaded.plan();
+  if (plan.camera.contrast == ContrastUnit::grey_levels) {
+    result.error = Error{ErrorCode::invalid_input,
+                         "frames in grey levels are not shown to packages: their contrast is "
+                         "that of the camera's own gain control"};
+    return;
+  }
   auto recording = open_recorded_bench(session, nullptr);
   if (!recording) {
     result.error = recording.error();

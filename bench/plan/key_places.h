@@ -56,6 +56,9 @@ constexpr const auto& values_of(const ModulePlace&) {
 constexpr const auto& values_of(const PlaceSource&) {
   return all_place_sources;
 }
+constexpr const auto& values_of(const ContrastUnit&) {
+  return all_contrast_units;
+}
 constexpr const auto& values_of(const Effect&) {
   return all_effects;
 }

@@ -27,12 +27,13 @@ namespace todbench {
 
 /// [camera]: the real or emulated camera. Without an id the plan can only be simulated.
 struct CameraPlan {
-  std::string id;                               ///< as `todbench devices` lists it, e.g. "gige:FLIR-48000123"
-  double ifov_mrad = 0;                         ///< of one pixel; required with an id
-  double nuc_interval_s = 0;                    ///< correct the non-uniformity this often; 0: never commanded
-  double nuc_wait_s = 1;                        ///< frames within this time after a correction are not measured
-  std::map<std::string, std::string> settings;  ///< feature -> value, set before the run and read back
-  double reconnect_s = 60;                      ///< how long a lost camera is waited for; 0: not at all
+  std::string id;                                ///< as `todbench devices` lists it, e.g. "gige:FLIR-48000123"
+  double ifov_mrad = 0;                          ///< of one pixel; required with an id
+  double nuc_interval_s = 0;                     ///< correct the non-uniformity this often; 0: never commanded
+  double nuc_wait_s = 1;                         ///< frames within this time after a correction are not measured
+  std::map<std::string, std::string> settings;   ///< feature -> value, set before the run and read back
+  double reconnect_s = 60;                       ///< how long a lost camera is waited for; 0: not at all
+  ContrastUnit contrast = ContrastUnit::kelvin;  ///< of the camera alone; the twin is measured in kelvin
   bool operator==(const CameraPlan&) const = default;
 };
 

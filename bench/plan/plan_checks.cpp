@@ -60,6 +60,17 @@ ValueMistakes check_display_span(const Plan& plan, std::size_t /*row*/) {
   return {};
 }
 
+ValueMistakes check_contrast_unit(const Plan& plan, std::size_t /*row*/) {
+  if (plan.camera.contrast == ContrastUnit::kelvin) return {};
+  const MeasuresPlan& m = plan.measures;
+  ValueMistakes mistakes;
+  if (m.noise || m.transfer || m.triangles || m.mtf || m.ctf)
+    mistakes.push_back({std::nullopt, "grey levels are no kelvin: [measures] of such a camera have no meaning"});
+  if (!plan.modules.empty())
+    mistakes.push_back({std::nullopt, "contrasts in grey levels are not measured behind a [[module]]"});
+  return mistakes;
+}
+
 ValueMistakes check_contrasts(const Plan& plan, std::size_t /*row*/) {
   ValueMistakes mistakes;
   const std::vector<double>& contrasts = plan.target.delta_t_k;

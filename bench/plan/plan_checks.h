@@ -16,6 +16,8 @@ using ValueMistakes = std::vector<ValueMistake>;
 
 /// SCHEME:NAME, or empty.
 [[nodiscard]] ValueMistakes check_camera_id(const Plan& plan, std::size_t row);
+/// Grey levels: no physical measures, which are in kelvin, and no modules behind the camera.
+[[nodiscard]] ValueMistakes check_contrast_unit(const Plan& plan, std::size_t row);
 /// An address of an instrument; needed for kind scpi.
 [[nodiscard]] ValueMistakes check_black_body(const Plan& plan, std::size_t row);
 [[nodiscard]] ValueMistakes check_stage(const Plan& plan, std::size_t row);

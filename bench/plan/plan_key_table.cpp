@@ -88,6 +88,13 @@ PlanSection camera_section() {
            .unit = "s",
            .sentence = "frames within this time after a correction are not measured",
            .place = of(&CameraPlan::nuc_wait_s)},
+          {.name = "contrast",
+           .type = ChoiceKey{names_of(all_contrast_units)},
+           .sentence =
+               "unit of what the camera shows: kelvin of its temperature scale, or grey levels of a camera with "
+               "gain control, whose contrast follows from the large triangles of every frame",
+           .place = of(&CameraPlan::contrast),
+           .check = check_contrast_unit},
           {.name = "settings",
            .type = FreeTableKey{},
            .sentence = "features of the camera and their values, [camera.settings]; set before the run and read back",

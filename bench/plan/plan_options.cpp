@@ -35,6 +35,12 @@ MeasurementOptions measurement_options(const Plan& plan, const std::vector<Targe
   return options;
 }
 
+MeasurementOptions camera_options(const Plan& plan, const std::vector<TargetPlate>& plates) {
+  MeasurementOptions options = measurement_options(plan, plates, plan.camera.ifov_mrad);
+  options.contrast_unit = plan.camera.contrast;
+  return options;
+}
+
 ConstantStimuliOptions stimuli_options(const Plan& plan, const std::vector<TargetPlate>& plates, double ifov_mrad,
                                        Side side) {
   ConstantStimuliOptions options;

@@ -20,6 +20,8 @@ enum class Side {
 /// `ifov_mrad` is that of the camera, or of the sensor for the simulated side. The seed is that of the plan.
 [[nodiscard]] MeasurementOptions measurement_options(const Plan& plan, const std::vector<TargetPlate>& plates,
                                                      double ifov_mrad);
+/// Those of the camera of the plan, with the unit that it shows contrasts in.
+[[nodiscard]] MeasurementOptions camera_options(const Plan& plan, const std::vector<TargetPlate>& plates);
 /// Every plate (by its own name) in every mounting at every contrast; phases as the side has them.
 [[nodiscard]] ConstantStimuliOptions stimuli_options(const Plan& plan, const std::vector<TargetPlate>& plates,
                                                      double ifov_mrad, Side side);

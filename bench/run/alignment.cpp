@@ -11,6 +11,7 @@
 #include "bench/run/observed_source.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "tod/measurement/frame_taker.h"
+#include "tod/measurement/set_up_step.h"
 #include "tod/plate/test_pattern.h"
 #include "tod/registration/patch_windows.h"
 
@@ -183,7 +184,7 @@ Result<void> align_plan(const Plan& plan, const AlignmentListener& listener, std
   if (states.empty()) return fail(ErrorCode::invalid_input, "the plan shows nothing");
   TargetState state = states.front();
   state.shift_mm = {0, 0};
-  const MeasurementOptions options = measurement_options(plan, inputs->plates, plan.camera.ifov_mrad);
+  const MeasurementOptions options = camera_options(plan, inputs->plates);
   auto aligning = prepare(plan, *inputs, options, state);
   if (!aligning) return tl::unexpected(aligning.error());
   if (listener.on_phase) listener.on_phase("aligning " + state.plate + " at " + stated(state.delta_t_k) + " K");
@@ -195,15 +196,7 @@ Result<void> align_plan(const Plan& plan, const AlignmentListener& listener, std
     if (presented.error().code == ErrorCode::interrupted) return {};
     return fail("presenting the target", presented.error());
   }
-  const SourceInfo& info = bench->camera->info();
-  FrameTakerOptions taking{.integrity = options.integrity,
-                           .frames_after_change = options.frames_after_change,
-                           .nuc_wait_s = options.nuc_wait_s,
-                           .max_rejected_share = options.max_rejected_share,
-                           .frame_timeout = options.frame_timeout};
-  taking.integrity.width = info.width;
-  taking.integrity.height = info.height;
-  FrameTaker taker(*bench->camera, taking);
+  FrameTaker taker(*bench->camera, taker_options(options, bench->camera->info()));
   taker.scene_changed(monotonic_ns());
   auto ended = look_until_stopped(taker, *aligning, options, listener, stop);
   bench->camera->stop();

@@ -9,6 +9,7 @@
 #include "bench/run/comparison_forecast.h"
 #include "bench/run/direct_results.h"
 #include "bench/run/experiment_inputs.h"
+#include "bench/run/grey_results.h"
 #include "bench/run/module_chain.h"
 #include "bench/run/observed_source.h"
 #include "bench/run/paired_comparison.h"
@@ -265,7 +266,7 @@ Result<MeasuredRun> run_measured(const Plan& plan, const ExperimentInputs& input
   const ModuleLine log_line = module_log(folder);
   put_modules_behind(bench, modules, log_line);
   const auto observer = observer_of(plan, inputs, log_line);
-  MeasurementOptions options = measurement_options(plan, inputs.plates, plan.camera.ifov_mrad);
+  MeasurementOptions options = camera_options(plan, inputs.plates);
   const SensorModel model(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
   auto response = simulated_responses(model, plan, inputs.plates, options, stop);
   if (!response) return tl::unexpected(response.error());
@@ -377,10 +378,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   if (listener.on_open) listener.on_open(bench.camera->info());
   if (listener.on_frame) bench.camera = observed_source(std::move(bench.camera), listener.on_frame);
   const SourceInfo info = bench.camera->info();
-  if (!info.scale.calibrated()) {
-    return fail(ErrorCode::calibration,
-                "camera " + info.id + " has no temperature scale: contrasts in kelvin cannot be measured");
-  }
+  if (auto possible = check_contrast_of(plan, inputs, info); !possible) return tl::unexpected(possible.error());
   if (auto fits = check_measured_geometry(plan, inputs, {info.width, info.height}); !fits)
     return tl::unexpected(fits.error());
   if (auto fits = check_simulated_geometry(plan, inputs); !fits) return fail("the simulated twin", fits.error());
@@ -426,13 +424,14 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   std::map<double, double> shown;
   for (const auto& point : curve->points) shown[point.set_delta_t_k] = point.delta_t_k;
   give_shape(*curve, *result, plan, inputs, shown, frame, stop);
-  provenance.run = run_record(*result, seconds_since(begin));
   curve->sensor = info.model + " " + info.serial;
   curve->observer = observer_name(plan, inputs);
   for (auto& point : curve->points) {
     point.noise_counts = result->temporal_noise_counts;
     point.lag1_correlation = result->lag1_correlation;
   }
+  if (auto kept = keep_grey_levels(*curve, *result, frame); !kept && !result->ended_by) result->ended_by = kept.error();
+  provenance.run = run_record(*result, seconds_since(begin));
   examine(*curve, fit_options(plan));
   ExperimentOutcome outcome{.folder = folder->path(),
                             .curve = std::move(*curve),

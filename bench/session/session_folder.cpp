@@ -9,6 +9,7 @@
 #include "bench/session/cost_record.h"
 #include "bench/session/ending_reserve.h"
 #include "bench/session/fit_record.h"
+#include "bench/session/grey_levels_csv.h"
 #include "bench/session/signature.h"
 #include "bench/session/uncertainty_record.h"
 #include "bench/text/files.h"
@@ -252,6 +253,10 @@ Result<void> SessionFolder::write_curves(const TodCurve& main, const std::option
 
 Result<void> SessionFolder::write_comparison(const Comparison& comparison) {
   return write_file_atomically(folder_ / "comparison.json", to_page(comparison_record(comparison)));
+}
+
+Result<void> SessionFolder::write_grey_levels(const std::vector<GreyFrame>& frames) {
+  return write_file_atomically(folder_ / "grey-levels.csv", grey_levels_csv(frames));
 }
 
 Result<void> SessionFolder::write_measures(const std::optional<CameraMeasures>& main,

@@ -61,6 +61,8 @@ class SessionFolder {
                                           const std::optional<CurveUncertainty>& uncertainty = {});
   /// comparison.json.
   [[nodiscard]] Result<void> write_comparison(const Comparison& comparison);
+  /// grey-levels.csv: contrast and signal transfer of every frame that was judged.
+  [[nodiscard]] Result<void> write_grey_levels(const std::vector<GreyFrame>& frames);
   /// measures.json.
   [[nodiscard]] Result<void> write_measures(const std::optional<CameraMeasures>& main,
                                             const std::optional<CameraMeasures>& twin);

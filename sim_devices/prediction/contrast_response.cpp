@@ -3,8 +3,8 @@
 namespace todbench {
 
 Result<double> contrast_response(const SensorModel& model, const TargetPlate& plate, double distance_m,
-                                 double min_reference_px, const RegistrationOptions& registration,
-                                 std::stop_token stop) {
+                                 double min_reference_px, const RegistrationOptions& registration, std::stop_token stop,
+                                 LevelEstimate level) {
   // Phases are those of the plate's own triangles, shifted by half a pixel the second time.
   double sum = 0;
   int count = 0;
@@ -19,7 +19,7 @@ Result<double> contrast_response(const SensorModel& model, const TargetPlate& pl
       const cv::Mat1d picture = *model.unit_signal(scene);
       auto found = register_plate(picture, scene.plate, registration);
       if (!found) return fail("simulating the contrast of plate " + plate.name, found.error());
-      auto contrast = effective_contrast(picture, scene.plate, *found, min_reference_px);
+      auto contrast = effective_contrast(picture, scene.plate, *found, min_reference_px, level);
       if (!contrast) return fail("simulating the contrast of plate " + plate.name, contrast.error());
       sum += contrast->value;
       ++count;

@@ -14,6 +14,6 @@ namespace todbench {
 /// effective_contrast(); `interrupted` within one picture of a stop request.
 [[nodiscard]] Result<double> contrast_response(const SensorModel& model, const TargetPlate& plate, double distance_m,
                                                double min_reference_px, const RegistrationOptions& registration,
-                                               std::stop_token stop = {});
+                                               std::stop_token stop = {}, LevelEstimate level = LevelEstimate::median);
 
 }  // namespace todbench

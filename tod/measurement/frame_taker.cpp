@@ -190,6 +190,7 @@ Result<void> FrameTaker::take_while_presenting(const std::function<bool(std::int
 Result<Frame> FrameTaker::from_source(const std::stop_token& stop) {
   if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
   auto frame = source_.next(options_.frame_timeout);
+  if (frame && options_.scale) frame->scale = options_.scale;
   if (frame) return frame;
   if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
   if (frame.error().code == ErrorCode::timeout) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -28,6 +29,7 @@ struct FrameTakerOptions {
   double max_rejected_share = 0.05;
   std::chrono::milliseconds frame_timeout{2000};
   std::function<void(const RejectedFrame&)> on_rejected{};  ///< told of every one; may be empty
+  std::shared_ptr<const RadiometricScale> scale{};          ///< of every frame, in place of its own; null: its own
 };
 
 /// An average of good frames in kelvin, with what their differences say of a pixel's noise.

@@ -8,25 +8,13 @@
 #include <tuple>
 
 #include "tod/measurement/frame_taker.h"
-#include "tod/measurement/geometry.h"
 #include "tod/measurement/prepared_plate.h"
-#include "tod/measurement/saturation_watch.h"
+#include "tod/measurement/set_up_step.h"
 #include "tod/measurement/target_change.h"
 #include "tod/registration/patch_windows.h"
 
 namespace todbench {
 namespace {
-
-/// Below this correlation successive frames understate the noise of one by less than 3 %.
-constexpr double noticeable_correlation = 0.05;
-
-/// Noise of a pixel in one frame. Noise that remembers shows only sqrt(1 - rho) of itself in successive frames.
-double frame_noise_k(const AveragedPicture& picture) {
-  const double rho = picture.lag1_correlation.value_or(0);
-  // Beyond 0.99 it changes so slowly that so few frames do not tell it from drift.
-  if (rho < noticeable_correlation) return picture.temporal_noise_k;
-  return picture.temporal_noise_k / std::sqrt(1 - std::min(rho, 0.99));
-}
 
 class Run {
  public:
@@ -41,17 +29,14 @@ class Run {
         host_(host),
         listener_(listener),
         stop_(std::move(stop)),
-        taker_(source, taker_options(options, listener, source.info())),
+        taker_(source, taker_options(options, source.info(), listener.on_rejected)),
+        step_(options_, source, taker_, [this](const std::string& sentence) { note(sentence); }),
         answers_(options.seed, "observer") {
     options_.registration.expected_scale_px_per_mm = 1 / (options.distance_m * options.ifov_mrad);
     for (const auto& plate : options.plates) plates_.push_back({plate, {}, {}});
   }
 
   Result<MeasurementResult> operator()() {
-    if (!source_.info().scale.calibrated()) {
-      return fail(ErrorCode::calibration,
-                  "camera " + source_.info().id + " has no temperature scale: contrasts in kelvin cannot be measured");
-    }
     const std::stop_callback wake(stop_, [this] { source_.stop(); });
     if (auto started = source_.start(); !started) return tl::unexpected(started.error());
     if (auto corrected = correct_when_due(); !corrected) return tl::unexpected(corrected.error());
@@ -78,6 +63,9 @@ class Run {
     source_.stop();
     if (ended_by && result_.trials.empty()) return tl::unexpected(*ended_by);
     result_.ended_by = ended_by;
+    result_.temporal_noise_k = step_.temporal_noise_k();
+    result_.temporal_noise_counts = step_.noise_counts();
+    result_.lag1_correlation = step_.lag1_correlation();
     result_.frames_used = taker_.used();
     result_.frames_rejected = taker_.rejected();
     result_.frames_lost = taker_.lost();
@@ -87,19 +75,6 @@ class Run {
 
  private:
   using SetUp = std::tuple<std::string, Mounting>;
-
-  static FrameTakerOptions taker_options(const MeasurementOptions& options, const MeasurementListener& listener,
-                                         const SourceInfo& info) {
-    FrameTakerOptions out{.integrity = options.integrity,
-                          .frames_after_change = options.frames_after_change,
-                          .nuc_wait_s = options.nuc_wait_s,
-                          .max_rejected_share = options.max_rejected_share,
-                          .frame_timeout = options.frame_timeout,
-                          .on_rejected = listener.on_rejected};
-    out.integrity.width = info.width;
-    out.integrity.height = info.height;
-    return out;
-  }
 
   void note(const std::string& sentence) {
     result_.notes.push_back(sentence);
@@ -226,7 +201,7 @@ class Run {
     const bool new_set_up = !current_set_up_ || *current_set_up_ != set_up;
     const bool new_contrast = new_set_up || *current_contrast_ != state.delta_t_k;
     if (new_contrast) read_back_noted_ = false;
-    if (!read_back_noted_) compare_with_what_was_set(state);
+    if (!read_back_noted_) read_back_noted_ = step_.compare_with_what_was_set(state, presented_);
     if (new_set_up) {
       if (auto located = locate(plate, mounted_plate, state); !located) return tl::unexpected(located.error());
     }
@@ -235,31 +210,20 @@ class Run {
     }
     const Registration registration = target_.capabilities().sets_shift ? base_.shifted(state.shift_mm) : base_;
     if (new_contrast) {
-      if (auto measured = measure_contrast(mounted_plate, registration, state); !measured)
-        return tl::unexpected(measured.error());
+      auto measured = step_.contrast(mounted_plate, registration, state, presented_, stop_);
+      if (!measured) return tl::unexpected(measured.error());
+      seen_ = *measured;
     }
     current_set_up_ = set_up;
     current_contrast_ = state.delta_t_k;
     return registration;
   }
 
-  /// Once per set-up and contrast.
-  void compare_with_what_was_set(const TargetState& state) {
-    const double deviation_k = presented_.state.delta_t_k - state.delta_t_k;
-    if (options_.max_readback_deviation_k <= 0 || std::abs(deviation_k) <= options_.max_readback_deviation_k) return;
-    read_back_noted_ = true;
-    note(fmt::format(
-        "plate {}, mounting {}: the target says it shows {:.4f} K where {:.4f} K were set ({:+.4f} K, tolerance {:.4f} "
-        "K)",
-        state.plate, to_string(state.mounting), presented_.state.delta_t_k, state.delta_t_k, deviation_k,
-        options_.max_readback_deviation_k));
-  }
-
   void keep_presentation(const TargetState& state, std::int64_t there_ns, bool seen) {
     result_.presentations.push_back({.presentation = presentation_,
                                      .set = state,
                                      .said = presented_,
-                                     .delta_t_k = seen ? std::optional(contrast_k_) : std::nullopt,
+                                     .delta_t_k = seen ? std::optional(seen_.contrast_k) : std::nullopt,
                                      .air_transmittance = options_.air_transmittance,
                                      .host_time_ns = there_ns});
     if (listener_.on_presentation) listener_.on_presentation(result_.presentations.back());
@@ -267,24 +231,20 @@ class Run {
 
   /// Finds the plate of a set-up: by registration the first time, by its shift when it comes back.
   Result<void> locate(PreparedPlate& plate, const TargetPlate& mounted_plate, const TargetState& state) {
-    const std::string where = "plate " + state.plate + " mounted " + std::string(to_string(state.mounting));
-    auto picture = taker_.average(options_.registration_frames, stop_);
+    const auto picture = step_.look(stop_);
     if (!picture) return tl::unexpected(picture.error());
-    if (result_.temporal_noise_k == 0) keep_noise(*picture);
     const cv::Point2d shift_mm = target_.capabilities().sets_shift ? state.shift_mm : cv::Point2d(0, 0);
     const auto known = registered_.find({state.plate, state.mounting});
     if (known != registered_.end()) {
       auto moved = measure_shift(picture->kelvin, mounted_plate, known->second.shifted(shift_mm), options_.registration,
                                  search_px);
-      if (!moved) return fail("finding " + where + " again", moved.error());
+      if (!moved)
+        return fail("finding plate " + state.plate + " mounted " + std::string(to_string(state.mounting)) + " again",
+                    moved.error());
       base_ = known->second.moved(*moved);
     } else {
-      auto registration = register_plate(picture->kelvin, mounted_plate, options_.registration);
-      if (!registration) return fail("registering " + where, registration.error());
-      if ((registration->contrast_sign > 0) != (state.delta_t_k > 0)) {
-        return fail(ErrorCode::calibration,
-                    "the triangles of " + where + " have the opposite polarity of the contrast asked for");
-      }
+      const auto registration = step_.find(*picture, mounted_plate, state);
+      if (!registration) return tl::unexpected(registration.error());
       result_.set_ups.push_back({state.plate, state.mounting, *registration});
       if (listener_.on_set_up) listener_.on_set_up(result_.set_ups.back());
       base_ = registration->shifted(-shift_mm);
@@ -298,22 +258,6 @@ class Run {
     return {};
   }
 
-  /// Of the first frames that showed any noise.
-  void keep_noise(const AveragedPicture& picture) {
-    result_.temporal_noise_k = picture.temporal_noise_k;
-    result_.lag1_correlation = picture.lag1_correlation;
-    const auto per_count = kelvin_per_count(picture);
-    if (per_count && picture.temporal_noise_k > 0)
-      result_.temporal_noise_counts = picture.temporal_noise_k / *per_count / std::max(1, picture.count_step);
-    noise_of_frame_k_ = frame_noise_k(picture);
-  }
-
-  /// Of the scale at the surround.
-  [[nodiscard]] std::optional<double> kelvin_per_count(const AveragedPicture& picture) const {
-    const auto surround = source_.info().scale.counts(cv::mean(picture.kelvin)[0]);
-    return surround ? source_.info().scale.kelvin_per_count(*surround) : std::nullopt;
-  }
-
   /// A hand moved the plate: where is it now?
   Result<void> follow(const TargetPlate& mounted_plate) {
     auto picture = taker_.average(options_.contrast_frames, stop_);
@@ -321,34 +265,6 @@ class Run {
     auto moved = measure_shift(picture->kelvin, mounted_plate, base_, options_.registration, search_px);
     if (!moved) return fail("following the plate", moved.error());
     base_ = base_.moved(*moved);
-    return {};
-  }
-
-  Result<void> measure_contrast(const TargetPlate& mounted_plate, const Registration& registration,
-                                const TargetState& state) {
-    auto picture = taker_.average(options_.contrast_frames, stop_);
-    if (!picture) return tl::unexpected(picture.error());
-    auto contrast = effective_contrast(picture->kelvin, mounted_plate, registration, options_.min_reference_px);
-    if (!contrast) return fail("measuring the effective contrast", contrast.error());
-    const int cut_off = saturation_.learn(*picture, source_.info().scale, mounted_plate, registration, contrast->value);
-    if (cut_off > 0) {
-      note(
-          fmt::format("plate {}, mounting {}: {} pixels of the triangles are at an end of the camera's counts: the "
-                      "contrast of {:+.3f} K that was set is cut off there",
-                      state.plate, to_string(state.mounting), cut_off, state.delta_t_k));
-    }
-    if (!(contrast->value * state.delta_t_k > 0)) {
-      return fail(ErrorCode::calibration,
-                  fmt::format("the target was set to {:+.3f} K but the camera sees {:+.3f} K +- {:.3f} K",
-                              state.delta_t_k, contrast->value, contrast->standard_error));
-    }
-    const auto response = options_.contrast_response.find(state.plate);
-    contrast_k_ = contrast->value / (response == options_.contrast_response.end() ? 1.0 : response->second);
-    const double deviation = contrast_k_ / state.delta_t_k - 1;
-    if (std::abs(deviation) > 0.2 && std::abs(contrast_k_ - state.delta_t_k) > 3 * contrast->standard_error) {
-      note(fmt::format("plate {}, mounting {}: the camera sees {:.3f} K where {:.3f} K were set ({:+.0f} %)",
-                       state.plate, to_string(state.mounting), contrast_k_, state.delta_t_k, 100 * deviation));
-    }
     return {};
   }
 
@@ -362,14 +278,17 @@ class Run {
     for (int k = 0; k < options_.frames_per_presentation; ++k) {
       auto frame = taker_.next(stop_);
       if (!frame) return tl::unexpected(frame.error());
+      const auto unit_per_k = of_a_kelvin(*frame, mounted_plate, registration, state);
+      if (!unit_per_k) return tl::unexpected(unit_per_k.error());
       for (std::size_t i = 0; i < count; ++i) {
         const PlateTriangle& t = mounted_plate.triangles[i];
         const auto window = patch_window(registration.pixel(t.position_mm), plate.observers[i]->window_samples());
         auto kelvin = window_kelvin(*frame, window.pixels);
         if (!kelvin) return tl::unexpected(kelvin.error());
-        Patch patch{.kelvin = *std::move(kelvin), .phase = window.phase, .noise_k = noise_of_frame_k_};
+        if (*unit_per_k != 1) *kelvin /= *unit_per_k;
+        Patch patch{.kelvin = *std::move(kelvin), .phase = window.phase, .noise_k = seen_.noise_k};
         const GradedChoice judged = judge(*plate.observers[i], patch, i, k);
-        const int saturated = saturation_.saturated_pixels(*frame, window.pixels);
+        const int saturated = step_.saturated_pixels(*frame, window.pixels);
         probabilities[i] += judged.answers.probability[static_cast<std::size_t>(t.apex)];
         if (k == 0) {
           Trial trial = first_answer(t, state, *frame, judged.choice, window.phase);
@@ -393,14 +312,25 @@ class Run {
     return {};
   }
 
+  /// What a kelvin is in this frame: 1, or its grey levels, which are kept.
+  Result<double> of_a_kelvin(const Frame& frame, const TargetPlate& mounted_plate, const Registration& registration,
+                             const TargetState& state) {
+    if (options_.contrast_unit == ContrastUnit::kelvin) return 1;
+    auto grey = step_.grey_frame(frame, mounted_plate, registration, state, seen_);
+    if (!grey) return tl::unexpected(grey.error());
+    grey->presentation = presentation_;
+    result_.grey_frames.push_back(*std::move(grey));
+    return result_.grey_frames.back().levels_per_k;
+  }
+
   /// The answer is that to the first frame, drawn as it is where nobody asks for probabilities; every further frame has
   /// a stream of its own below that of the trial.
   [[nodiscard]] GradedChoice judge(const PreparedObserver& observer, const Patch& patch, std::size_t triangle,
                                    int frame) const {
     RandomStream noise = answers_.sub(static_cast<std::uint64_t>(presentation_)).sub(triangle);
-    if (options_.answers == AnswerKind::binary) return {observer.choose(patch, contrast_k_, noise), {}};
+    if (options_.answers == AnswerKind::binary) return {observer.choose(patch, seen_.contrast_k, noise), {}};
     if (frame > 0) noise = noise.sub(further_frames_stream + static_cast<std::uint64_t>(frame));
-    return observer.judge(patch, contrast_k_, noise, MeasurementOptions::graded_draws);
+    return observer.judge(patch, seen_.contrast_k, noise, MeasurementOptions::graded_draws);
   }
 
   [[nodiscard]] Trial first_answer(const PlateTriangle& t, const TargetState& state, const Frame& frame,
@@ -411,7 +341,7 @@ class Run {
     trial.mounting = state.mounting;
     trial.triangle = t.name;
     trial.set_delta_t_k = state.delta_t_k;
-    trial.delta_t_k = contrast_k_;
+    trial.delta_t_k = seen_.contrast_k;
     trial.size_mm = t.size_mm;
     trial.size_mrad = t.size_mm / options_.distance_m;
     trial.truth = t.apex;
@@ -438,15 +368,14 @@ class Run {
   const MeasurementListener& listener_;
   std::stop_token stop_;
   FrameTaker taker_;
-  SaturationWatch saturation_;
+  SetUpStep step_;
   RandomStream answers_;
   std::vector<PreparedPlate> plates_;
   std::map<SetUp, Registration> registered_;  ///< at shift 0
   std::optional<SetUp> current_set_up_;
   std::optional<double> current_contrast_;
   Registration base_;                        ///< of the current set-up, at shift 0
-  double contrast_k_ = 0;                    ///< of the current set-up and set-point
-  double noise_of_frame_k_ = 0;              ///< of a pixel, as the observer suffers it
+  SeenContrast seen_;                        ///< of the current set-up and set-point
   double scale_px_per_mm_ = 0;               ///< of the first registration: one scale for the whole run
   std::optional<std::int64_t> last_nuc_ns_;  ///< when the last one was commanded
   std::int64_t presentation_ = 0;
@@ -461,10 +390,8 @@ class Run {
 Result<MeasurementResult> measure(FrameSource& source, Target& target, Observer& observer, TrialSchedule& schedule,
                                   const MeasurementOptions& options, MeasurementHost& host,
                                   const MeasurementListener& listener, std::stop_token stop) {
-  auto misfits = find_misfits(options, observer, {source.info().width, source.info().height});
-  if (!misfits) return tl::unexpected(misfits.error());
-  if (!misfits->empty())
-    return fail(ErrorCode::invalid_input, "not measurable at this distance: " + sentences(*misfits, misfits->size()));
+  if (auto checked = check_before_measuring(options, observer, source.info()); !checked)
+    return tl::unexpected(checked.error());
   return Run(source, target, observer, schedule, options, host, listener, std::move(stop))();
 }
 

@@ -15,6 +15,7 @@
 #include "acquisition/core/integrity_gate.h"
 #include "hvs/observer/observer.h"
 #include "tod/measurement/frame_taker.h"
+#include "tod/measurement/grey_levels.h"
 #include "tod/measurement/measurement_host.h"
 #include "tod/presentation/presentation.h"
 #include "tod/presentation/target.h"
@@ -31,6 +32,7 @@ struct MeasurementOptions {
   int registration_frames = 32;     ///< averaged at the highest contrast
   int contrast_frames = 16;         ///< averaged for the effective contrast, once per plate, mounting and contrast
   double min_reference_px = 4;      ///< triangles from this size measure the effective contrast
+  ContrastUnit contrast_unit = ContrastUnit::kelvin;  ///< grey levels: the temperature scale of the camera is not used
   int samples_per_pitch = 1;  ///< displayed samples per detector pitch (2: 2x2 microscan); the IFOV is that of a sample
   /// By plate name: what effective_contrast() reads of a contrast of 1 K, blur included, from a simulated picture; 1
   /// where it is not known. Measured contrasts are divided by it.
@@ -101,7 +103,8 @@ struct MeasurementResult {
   std::optional<double> lag1_correlation;       ///< of a pixel's noise in the same frames
   std::vector<std::string> notes;
   std::vector<Interruption> interruptions;
-  std::optional<Error> ended_by;  ///< why it stopped early; the trials so far are valid
+  std::vector<GreyFrame> grey_frames;  ///< those that were judged, where contrasts are in grey levels
+  std::optional<Error> ended_by;       ///< why it stopped early; the trials so far are valid
 };
 
 /// Runs a schedule. Fails only when nothing could be measured (plate not found, uncalibrated camera, sizes that do not

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "tod/measurement/frame_taker.h"
+#include "tod/measurement/set_up_step.h"
 #include "tod/measurement/target_change.h"
 #include "tod/registration/patch_windows.h"
 
@@ -76,7 +77,8 @@ class MovingRun {
         host_(host),
         on_pass_(on_pass),
         stop_(std::move(stop)),
-        taker_(source, taker_options()),
+        taker_(source, taker_options(options.measurement, source.info())),
+        step_(options_.measurement, source, taker_, [this](const std::string& sentence) { note(sentence); }),
         phases_(options.measurement.seed, "moving.phase"),
         answers_(options.measurement.seed, "moving.answers") {
     options_.measurement.registration.expected_scale_px_per_mm =
@@ -95,30 +97,24 @@ class MovingRun {
                                                    : done.error());
     result_.frames_rejected = taker_.rejected();
     result_.frames_lost = taker_.lost();
+    result_.frames_used = taker_.used();
+    result_.temporal_noise_k = step_.temporal_noise_k();
+    if (const std::string faults = describe(taker_.numbering()); !faults.empty()) note(faults);
     return std::move(result_);
   }
 
  private:
   [[nodiscard]] const MeasurementOptions& at_rest() const { return options_.measurement; }
 
-  [[nodiscard]] FrameTakerOptions taker_options() const {
-    FrameTakerOptions out{.integrity = at_rest().integrity,
-                          .frames_after_change = at_rest().frames_after_change,
-                          .nuc_wait_s = at_rest().nuc_wait_s,
-                          .max_rejected_share = at_rest().max_rejected_share,
-                          .frame_timeout = at_rest().frame_timeout};
-    out.integrity.width = source_.info().width;
-    out.integrity.height = source_.info().height;
-    return out;
-  }
+  void note(const std::string& sentence) { result_.notes.push_back(sentence); }
 
-  [[nodiscard]] Result<void> check() const {
+  [[nodiscard]] Result<void> check() {
     const auto refuse = [](const std::string& why) { return fail(ErrorCode::invalid_input, why); };
     if (at_rest().samples_per_pitch != 1)
       return refuse("a target that moves is measured with a camera without microscan and super-resolution");
-    if (!source_.info().scale.calibrated())
-      return fail(ErrorCode::calibration,
-                  "camera " + source_.info().id + " has no temperature scale: contrasts in kelvin cannot be measured");
+    if (at_rest().contrast_unit != ContrastUnit::kelvin)
+      return refuse("a target that moves is measured in kelvin, not in grey levels");
+    if (auto checked = check_before_measuring(at_rest(), observer_, source_.info()); !checked) return checked;
     if (!(result_.frame_rate_hz > 0)) return refuse("camera " + source_.info().id + " does not say its frame rate");
     if (!target_.capabilities().sets_shift || target_.moving() == nullptr)
       return refuse("the target cannot run at constant speed: its stage needs a [position] and a [run]");
@@ -150,34 +146,32 @@ class MovingRun {
     return {};
   }
 
+  [[nodiscard]] static TargetState at(const MovingSetUp& set_up, double delta_t_k, cv::Point2d shift_mm) {
+    return {.plate = set_up.name, .mounting = set_up.mounting, .delta_t_k = delta_t_k, .shift_mm = shift_mm};
+  }
+
   Result<void> present(const MovingSetUp& set_up, double delta_t_k, cv::Point2d shift_mm) {
     if (stop_.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-    const TargetState state{
-        .plate = set_up.name, .mounting = set_up.mounting, .delta_t_k = delta_t_k, .shift_mm = shift_mm};
-    auto change = change_target(target_, taker_, host_, state, stop_);
+    auto change = change_target(target_, taker_, host_, at(set_up, delta_t_k, shift_mm), stop_);
     if (!change) return tl::unexpected(change.error());
     if (!change->presented && !change->given_up) return fail("presenting the target", change->presented.error());
     if (!change->frames) return change->frames;
+    presented_ = *std::move(change->presented);
     const auto there_ns = host_.now_ns(Moment::scene_changed);
     if (!there_ns) return tl::unexpected(there_ns.error());
+    there_ns_ = *there_ns;
     taker_.scene_changed(*there_ns);
     return {};
   }
 
   Result<void> locate(MovingSetUp& set_up, double delta_t_k) {
     if (auto shown = present(set_up, delta_t_k, {0, 0}); !shown) return shown;
-    const auto picture = taker_.average(at_rest().registration_frames, stop_);
+    const auto picture = step_.look(stop_);
     if (!picture) return tl::unexpected(picture.error());
-    auto registration = register_plate(picture->kelvin, set_up.plate, at_rest().registration);
-    if (!registration)
-      return fail("registering plate " + set_up.name + " mounted " + std::string(to_string(set_up.mounting)),
-                  registration.error());
-    if ((registration->contrast_sign > 0) != (delta_t_k > 0))
-      return fail(ErrorCode::calibration,
-                  "the triangles of plate " + set_up.name + " have the opposite polarity of the contrast asked for");
+    const auto registration = step_.find(*picture, set_up.plate, at(set_up, delta_t_k, {0, 0}));
+    if (!registration) return tl::unexpected(registration.error());
     set_up.base = *registration;
     result_.set_ups.push_back({set_up.name, set_up.mounting, *registration});
-    if (result_.temporal_noise_k == 0) result_.temporal_noise_k = picture->temporal_noise_k;
     return {};
   }
 
@@ -200,15 +194,17 @@ class MovingRun {
 
   Result<void> one_contrast(const MovingSetUp& set_up, double delta_t_k) {
     if (auto shown = present(set_up, delta_t_k, {0, 0}); !shown) return shown;
-    const auto picture = taker_.average(at_rest().contrast_frames, stop_);
-    if (!picture) return tl::unexpected(picture.error());
-    const auto contrast = effective_contrast(picture->kelvin, set_up.plate, set_up.base, at_rest().min_reference_px);
-    if (!contrast) return fail("measuring the effective contrast", contrast.error());
-    if (!(contrast->value * delta_t_k > 0))
-      return fail(ErrorCode::calibration, fmt::format("the target was set to {:+.3f} K but the camera sees {:+.3f} K",
-                                                      delta_t_k, contrast->value));
-    const auto response = at_rest().contrast_response.find(set_up.name);
-    const double seen_k = contrast->value / (response == at_rest().contrast_response.end() ? 1.0 : response->second);
+    const TargetState state = at(set_up, delta_t_k, {0, 0});
+    step_.compare_with_what_was_set(state, presented_);
+    const auto contrast = step_.contrast(set_up.plate, set_up.base, state, presented_, stop_);
+    if (!contrast) return tl::unexpected(contrast.error());
+    seen_ = *contrast;
+    result_.presentations.push_back({.presentation = static_cast<std::int64_t>(result_.presentations.size()),
+                                     .set = state,
+                                     .said = presented_,
+                                     .delta_t_k = seen_.contrast_k,
+                                     .air_transmittance = at_rest().air_transmittance,
+                                     .host_time_ns = there_ns_});
     for (int phase = 0; phase < options_.passes; ++phase, ++pairs_) {
       for (const double speed : options_.speeds_mrad_s) {
         MovingPassRecord pass{.pass = static_cast<int>(result_.passes.size()),
@@ -216,7 +212,7 @@ class MovingRun {
                               .plate = set_up.name,
                               .mounting = set_up.mounting,
                               .set_delta_t_k = delta_t_k,
-                              .delta_t_k = seen_k,
+                              .delta_t_k = seen_.contrast_k,
                               .speed_mrad_s = speed,
                               .along_x = phase % 2 == 0 ? 1.0 : -1.0,
                               .lag_s = {},
@@ -365,8 +361,7 @@ class MovingRun {
     for (std::size_t t = 0; t < set_up.plate.triangles.size(); ++t) {
       const PlateTriangle& triangle = set_up.plate.triangles[t];
       const std::size_t size = prepared.size_of[t];
-      SeenSequence seen{
-          .frames = pictures, .places = {}, .contrast_k = pass.delta_t_k, .noise_k = result_.temporal_noise_k};
+      SeenSequence seen{.frames = pictures, .places = {}, .contrast_k = pass.delta_t_k, .noise_k = seen_.noise_k};
       bool inside = true;
       for (const LocatedFrame& frame : frames) {
         seen.places.push_back(begin.pixel(triangle.position_mm) + frame.moved_px);
@@ -414,6 +409,10 @@ class MovingRun {
   const std::function<void(const MovingPassRecord&)>& on_pass_;
   std::stop_token stop_;
   FrameTaker taker_;
+  SetUpStep step_;
+  SeenContrast seen_;          ///< of the current set-up and contrast
+  PresentedTarget presented_;  ///< what the target said last
+  std::int64_t there_ns_ = 0;  ///< and when, on the clock of the host
   RandomStream phases_, answers_;
   MovingMeasurement result_;
   std::map<std::string, PreparedJudge> judges_;  ///< by plate

@@ -43,6 +43,18 @@ double spread(std::vector<double> values) {
   return 1.4826 * median(std::move(values));
 }
 
+/// Mean of the values within `reach` of their median.
+double mean_near_median(const std::vector<double>& values, double reach) {
+  const double middle = median(values);
+  double sum = 0, n = 0;
+  for (const double v : values) {
+    if (std::abs(v - middle) > reach) continue;
+    sum += v;
+    n += 1;
+  }
+  return sum / n;
+}
+
 struct Samples {
   std::vector<double> inside, ring;
 };
@@ -86,7 +98,8 @@ Samples samples(const cv::Mat1d& picture, const std::vector<Polygon>& outlines, 
 }  // namespace
 
 Result<EffectiveContrast> effective_contrast(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
-                                             const Registration& registration, double min_size_px) {
+                                             const Registration& registration, double min_size_px,
+                                             LevelEstimate level) {
   const std::string doing = "measuring the contrast of plate \"" + mounted_plate.name + "\": ";
   if (picture.empty() || !cv::checkRange(picture)) {
     return fail(ErrorCode::invalid_input, doing + "the picture is empty or has values that are not finite");
@@ -110,8 +123,12 @@ Result<EffectiveContrast> effective_contrast(const cv::Mat1d& picture, const Tar
     const double margin = std::min(inner_share * triangle_centroid_to_base * size, inner_most_px);
     const Samples s = samples(picture, outlines, k, margin);
     if (s.ring.empty()) return fail(ErrorCode::calibration, doing + t.name + " has no free surround in the picture");
-    contrasts.push_back(median(s.inside) - median(s.ring));
     const double noise = spread(s.ring);
+    const double between_medians = median(s.inside) - median(s.ring);
+    const double reach = std::max(8 * noise, 0.5 * std::abs(between_medians));
+    contrasts.push_back(level == LevelEstimate::median
+                            ? between_medians
+                            : mean_near_median(s.inside, reach) - mean_near_median(s.ring, reach));
     pixel_error = std::hypot(median_error(s.inside, noise), median_error(s.ring, noise));
   }
   if (contrasts.empty()) {

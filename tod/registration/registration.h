@@ -62,6 +62,13 @@ struct Registration {
                                                 const Registration& registration, const RegistrationOptions& options,
                                                 double search_px);
 
+/// What the level of an area is.
+enum class LevelEstimate {
+  median,  ///< does not care for a bad pixel or one on an edge
+  mean,    ///< for pictures of a few whole levels, between which a median cannot tell; pixels that are off by half the
+           ///< contrast and eight standard deviations of the ring are left out
+};
+
 /// Contrast as the camera shows it, in the unit of the picture, sign included.
 struct EffectiveContrast {
   double value = 0;           ///< mean over the triangles used
@@ -70,14 +77,14 @@ struct EffectiveContrast {
 };
 
 /// Over the triangles of at least `min_size_px`: median of the inside (0.45 of the inscribed radius, at most 1.25 px,
-/// away from the edge) minus median of a ring 3 px wide that begins 1.5 px outside. Medians do not care for a bad pixel
-/// or one on an edge.
+/// away from the edge) minus median of a ring 3 px wide that begins 1.5 px outside; means where `level` says so.
 ///
 /// Blur makes it too small, mostly in the corners: for a total blur of 0.40 px (standard deviation, box included) by
 /// 0.4 % at 4 px, 0.04 % at 5 px and less than 0.01 % from 6 px, each the mean over sampling phases. A caller who knows
 /// the blur divides by the same measure of a simulated picture.
 /// `invalid_input` when no triangle is that large, `calibration` when one leaves the picture.
 [[nodiscard]] Result<EffectiveContrast> effective_contrast(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
-                                                           const Registration& registration, double min_size_px);
+                                                           const Registration& registration, double min_size_px,
+                                                           LevelEstimate level = LevelEstimate::median);
 
 }  // namespace todbench

@@ -23,6 +23,32 @@ cv::Mat1w ramp(cv::Size size, std::uint16_t full_scale) {
 
 }  // namespace
 
+CountRange range_of_means(const cv::Mat1w& counts) {
+  CountRange range{65535, 0};
+  for (int y = 1; y + 1 < counts.rows; ++y) {
+    for (int x = 1; x + 1 < counts.cols; ++x) {
+      int sum = 0;
+      for (int j = -1; j <= 1; ++j) sum += counts(y + j, x - 1) + counts(y + j, x) + counts(y + j, x + 1);
+      range.low = std::min(range.low, sum / 9.0);
+      range.high = std::max(range.high, sum / 9.0);
+    }
+  }
+  return range;
+}
+
+cv::Mat1w gain_controlled(const cv::Mat1w& counts) {
+  constexpr double darkest = 26, brightest = 230, most_gain = 4;
+  const CountRange range = range_of_means(counts);
+  const double gain = std::min(most_gain, (brightest - darkest) / std::max(1e-9, range.high - range.low));
+  const double middle = (range.low + range.high) / 2;
+  cv::Mat1w levels(counts.size());
+  std::transform(counts.begin(), counts.end(), levels.begin(), [&](std::uint16_t count) {
+    const double level = (darkest + brightest) / 2 + gain * (count - middle);
+    return static_cast<std::uint16_t>(std::clamp(std::nearbyint(level), 0.0, 255.0));
+  });
+  return levels;
+}
+
 void PictureEncoder::update_table(const EncoderSettings& settings) {
   if (!table_.empty() && settings == table_settings_) return;
   table_settings_ = settings;
@@ -51,7 +77,9 @@ std::vector<std::uint8_t> PictureEncoder::encode(const cv::Mat1w& counts, const 
     }
     previous_ = sent;
   }
-  if (settings.format == PixelFormat::mono8 && settings.significant_bits > 8) {
+  if (settings.format == PixelFormat::mono8 && settings.gain == GainControl::linear && !settings.test_ramp) {
+    sent = gain_controlled(counts);
+  } else if (settings.format == PixelFormat::mono8 && settings.significant_bits > 8) {
     sent = sent.clone();  // the picture before keeps its bits
     for (auto& count : sent) count = static_cast<std::uint16_t>(count >> (settings.significant_bits - 8));
   }

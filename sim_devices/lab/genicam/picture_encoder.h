@@ -18,11 +18,27 @@ enum class SignalKind {
   tenths,       ///< a tenth of them
 };
 
+/// What a camera makes of its counts on their way to eight bits.
+enum class GainControl {
+  none,    ///< the highest eight bits
+  linear,  ///< range_of_means() to grey levels 26 ... 230, at most four grey levels a count
+};
+
+/// Lowest and highest mean of 3 x 3 counts, not beyond the picture: what a gain control takes for the range of the
+/// scene.
+struct CountRange {
+  double low = 0, high = 0;
+};
+[[nodiscard]] CountRange range_of_means(const cv::Mat1w& counts);
+/// Grey levels of a linear gain control, cut off at 0 and 255.
+[[nodiscard]] cv::Mat1w gain_controlled(const cv::Mat1w& counts);
+
 struct EncoderSettings {
   SignalKind signal = SignalKind::as_exposed;
   double kelvin_per_signal = 0.04;
   unsigned significant_bits = 14;            ///< larger values are cut off, as those that the format does not hold
   PixelFormat format = PixelFormat::mono16;  ///< of mono8 the highest eight of the significant bits
+  GainControl gain = GainControl::none;      ///< of mono8, on the exposure's own counts
   bool test_ramp = false;  ///< pixel x of a row has the count x, modulo the full scale, instead of the picture
   bool averages = false;   ///< with the picture before, as noise reduction does
   bool big_endian = false;

@@ -131,7 +131,7 @@ Features ax5_thermal(const ThermalCameraOptions& o, const ModelRegisters& r) {
       choice("IRTestPattern", r.test_pattern, 0, {{"Off", 0}, {"Ascending_Ramp", 1}}),
       locked_while_streaming(choice("CMOSBitDepth", 0xEA50, 1, {{"bit14bit", 0}, {"bit8bit", 1}})),
       choice("SensorVideoStandard", r.video_standard, nearest_video_standard(o.frame_rate_hz), std::move(standards)),
-      choice("ImageAdjustMethod", 0xEA60, 0, {{"PlateauHistogram", 0}, {"Linear", 1}, {"Manual", 2}}),
+      choice("ImageAdjustMethod", r.image_adjust, 0, {{"PlateauHistogram", 0}, {"Linear", 1}, {"Manual", 2}}),
       temperature("SensorTemperature", r.sensor_temperature, 0.1, 312),
       temperature("HousingTemperature", 0xEA94, 0.01, 2950),
       temperature("DeviceTemperature", 0xEA98, 0.1, 305)};
@@ -170,6 +170,7 @@ ModelDescription ax5(ThermalCameraOptions o) {
   r.temperature_linear_mode = 0xEA08;
   r.temperature_linear_resolution = 0xEA0C;
   r.test_pattern = 0xEA40;
+  r.image_adjust = 0xEA60;
   r.video_standard = 0xEA5C;
   r.sensor_temperature = 0xEA90;
   r.chunk_mode = 0xD400;

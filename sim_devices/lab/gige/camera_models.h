@@ -28,6 +28,7 @@ struct ModelRegisters {
   std::uint32_t temperature_linear_mode = 0, temperature_linear_resolution = 0;  ///< as the Ax5 has them
   std::uint32_t ir_format = 0;                                                   ///< as the A series has it
   std::uint32_t video_standard = 0;                                              ///< Ax5 enumeration
+  std::uint32_t image_adjust = 0;  ///< Ax5 enumeration ImageAdjustMethod: 1 is Linear
   std::uint32_t test_pattern = 0;
   std::uint32_t noise_reduction = 0;
   std::uint32_t nuc_mode = 0, nuc_action = 0, nuc_action_long = 0;

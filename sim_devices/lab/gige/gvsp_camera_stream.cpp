@@ -80,6 +80,7 @@ EncoderSettings GvspCamera::State::encoder_settings() const {
     s.signal = ir_format == 0 ? SignalKind::radiometric : SignalKind::linear;
     s.kelvin_per_signal = ir_format == 2 ? 0.01 : 0.1;
   }
+  s.gain = r.image_adjust != 0 && value(r.image_adjust) == 1 ? GainControl::linear : GainControl::none;
   s.test_ramp = value(r.test_pattern) != 0;
   s.averages = value(r.noise_reduction) != 0;
   s.big_endian =
