@@ -5,9 +5,13 @@
 #include <memory>
 #include <utility>
 
-#include "bench/enhance/dynamic_measurement.h"
+#include "bench/cli/shown_run.h"
+#include "bench/enhance/dynamic_json.h"
+#include "bench/enhance/dynamic_session.h"
+#include "bench/judgement/verdict_record.h"
 #include "bench/plan/descriptions.h"
 #include "bench/session/json_output.h"
+#include "bench/session/session_folder.h"
 #include "bench/text/text.h"
 #include "tod/plate/test_pattern.h"
 #include "tod/psychometric/acuity.h"
@@ -16,35 +20,13 @@ namespace todbench {
 namespace {
 
 struct DynamicArguments {
-  std::string plan, sensor = "sc2000", observer = "hvs-1", accuracy = "normal", package;
+  std::string plan, out, sensor = "sc2000", observer = "hvs-1", accuracy = "normal", package;
+  bool overwrite = false;
   double delta_t_k = 16.9;
   std::vector<double> speeds_mrad_s, sizes_pitch;
   int passes = 48, frames = 8;
   double time_constant_ms = -1, exposure_ms = -1, row_time_us = -1;
 };
-
-Json speeds_json(const std::vector<DynamicAcuity>& found) {
-  Json speeds = Json::array();
-  for (const DynamicAcuity& at : found) {
-    Json points = Json::array();
-    for (const DynamicPoint& point : at.points) {
-      points.push_back({{"observer", to_string(point.observer)},
-                        {"verdict", to_string(point.fit.verdict)},
-                        {"s75_mrad", json_number(point.fit.threshold)},
-                        {"s75_ci95_mrad", json_interval(point.fit.ci95)},
-                        {"acuity_per_mrad", json_number(acuity_per_mrad(point.fit))},
-                        {"ratio_to_static", json_number(point.ratio)},
-                        {"ratio_to_static_ci95", json_interval(point.ratio_ci95)}});
-    }
-    speeds.push_back({{"speed_mrad_s", at.speed_mrad_s},
-                      {"speed_px_per_frame", at.speed_px},
-                      {"smear_px", at.smear_px},
-                      {"exposure_px", at.exposure_px},
-                      {"lag_px", at.lag_px},
-                      {"points", points}});
-  }
-  return speeds;
-}
 
 void add_rows(std::vector<TableRow>& rows, const std::vector<DynamicAcuity>& found, const TableRow& first) {
   for (const DynamicAcuity& at : found) {
@@ -63,58 +45,6 @@ void add_rows(std::vector<TableRow>& rows, const std::vector<DynamicAcuity>& fou
   }
 }
 
-Json passes_json(const std::vector<MovingPassRecord>& passes) {
-  Json all = Json::array();
-  for (const MovingPassRecord& pass : passes) {
-    all.push_back({{"pass", pass.pass},
-                   {"pair", pass.pair},
-                   {"plate", pass.plate},
-                   {"mounting", to_string(pass.mounting)},
-                   {"set_delta_t_k", pass.set_delta_t_k},
-                   {"delta_t_k", pass.delta_t_k},
-                   {"speed_mrad_s", pass.speed_mrad_s},
-                   {"direction", pass.along_x > 0 ? "right" : "left"},
-                   {"said_px_s", pass.said_px_s},
-                   {"measured_px_s", pass.measured_px_s},
-                   {"residual_px", pass.residual_px},
-                   {"lag_ms", pass.lag_s ? Json(1e3 * *pass.lag_s) : Json()},
-                   {"triangles_left_out", pass.left_out},
-                   {"dropped", pass.dropped.empty() ? Json() : Json(pass.dropped)}});
-  }
-  return all;
-}
-
-Json measured_json(const DynamicMeasurement& found, const Plan& plan) {
-  Json contrasts = Json::array();
-  for (const DynamicContrast& at : found.contrasts)
-    contrasts.push_back(
-        {{"set_delta_t_k", at.set_delta_t_k}, {"delta_t_k", at.delta_t_k}, {"speeds", speeds_json(at.speeds)}});
-  Json time_constant;
-  if (const auto& tau = found.time_constant)
-    time_constant = {{"time_constant_ms", tau->time_constant_ms},
-                     {"ci95_ms", json_interval(tau->ci95_ms)},
-                     {"exposure_ms", tau->exposure_ms},
-                     {"offset_px", tau->offset_px},
-                     {"passes", tau->passes}};
-  return {{"camera", found.camera},
-          {"plan", plan.name},
-          {"observer", plan.observer},
-          {"frame_rate_hz", found.measured.frame_rate_hz},
-          {"frames", plan.motion.frames},
-          {"lead_frames", plan.motion.lead_frames},
-          {"passes_per_speed", plan.motion.passes},
-          {"places", to_string(plan.motion.places)},
-          {"direction", "x, both ways in turn"},
-          {"lag", "removed: triangles are judged where the picture shows them"},
-          {"internal_noise", "per decision"},
-          {"seed", plan.seed},
-          {"residual_px", found.residual_px},
-          {"frames_lost", found.measured.frames_lost},
-          {"time_constant", time_constant},
-          {"contrasts", contrasts},
-          {"passes", passes_json(found.measured.passes)}};
-}
-
 int run_dynamic_plan(Console& console, const DynamicArguments& a, const Program& program) {
   auto loaded = read_plan(a.plan);
   if (!loaded) return report_error(console, loaded.error());
@@ -129,9 +59,22 @@ int run_dynamic_plan(Console& console, const DynamicArguments& a, const Program&
   const auto said = [&](const MovingPassRecord& pass) {
     if (!pass.dropped.empty() && !console.json()) console.text(fmt::format("pass {}: {}", pass.pass, pass.dropped));
   };
-  const auto found = measure_dynamic(*loaded, said, program.stop->token());
-  if (!found) return report_error(console, found.error());
-  if (console.json()) console.object(measured_json(*found, plan));
+  const ExperimentOptions options{
+      .folder = a.out.empty() ? std::filesystem::path(session_folder_name(plan.name)) : std::filesystem::path(a.out),
+      .existing = a.overwrite     ? ExistingFolder::overwrite
+                  : a.out.empty() ? ExistingFolder::number
+                                  : ExistingFolder::refuse};
+  const auto session = measure_dynamic_session(*loaded, options, listener_of(console), said, program.stop->token());
+  if (!session) return report_error(console, session.error());
+  const DynamicMeasurement* const found = &session->found;
+  const ExperimentOutcome& outcome = session->outcome;
+  if (console.json()) {
+    Json json = dynamic_measurement_json(*found, plan);
+    json["verdict"] = to_string(outcome.verdict.decision);
+    json["judgement"] = verdict_json(outcome.verdict);
+    json["session"] = outcome.folder.string();
+    console.object(json);
+  }
   std::vector<TableRow> rows;
   for (const DynamicContrast& at : found->contrasts) add_rows(rows, at.speeds, {fmt::format("{:g}", at.set_delta_t_k)});
   console.table(
@@ -141,7 +84,12 @@ int run_dynamic_plan(Console& console, const DynamicArguments& a, const Program&
   if (const auto& tau = found->time_constant)
     console.text(fmt::format("time constant {:.2f} ms, 95 % {}, from {} passes to the right and to the left",
                              tau->time_constant_ms, range(tau->ci95_ms, 2), tau->passes));
-  return 0;
+  console.text("report: " + (outcome.folder / "report.html").string());
+  if (outcome.ended_by) return report_error(console, *outcome.ended_by);
+  // A plan that demands nothing is done when it is measured.
+  if (plan.limits.acuity.empty()) return 0;
+  console.text("verdict of the plate at rest: " + std::string(to_string(outcome.verdict.decision)));
+  return exit_code(outcome.verdict.decision);
 }
 
 Json dynamic_json(const std::vector<DynamicAcuity>& found, const SensorSpec& sensor, const DynamicArguments& a,
@@ -209,6 +157,11 @@ void add_dynamic_command(CLI::App& app, Program& program) {
   auto a = std::make_shared<DynamicArguments>();
   auto* plan =
       command->add_option("plan", a->plan, "name or file: its camera before a plate that moves as [motion] says");
+  auto* out = command->add_option("--out", a->out,
+                                  "session folder of a plan; default: session-TIME-NAME in the current folder");
+  auto* force = command->add_flag("--force", a->overwrite, "overwrite the session in an existing folder");
+  out->needs(plan);
+  force->needs(plan);
   command->add_option("--sensor", a->sensor, "name or file")->capture_default_str();
   command->add_option("--observer", a->observer, "name or file")->capture_default_str();
   command->add_option("--delta-t-k", a->delta_t_k, "contrast in kelvin")
@@ -233,7 +186,7 @@ void add_dynamic_command(CLI::App& app, Program& program) {
       ->capture_default_str()
       ->check(CLI::IsMember({"draft", "normal"}));
   for (CLI::Option* option : command->get_options()) {
-    if (option != plan && option != command->get_help_ptr()) option->excludes(plan);
+    if (option != plan && option != out && option != force && option != command->get_help_ptr()) option->excludes(plan);
   }
   finish_command(*command, program, [a, &program](Console& console) { return run_dynamic(console, *a, program); });
 }

@@ -19,6 +19,7 @@
 #include "bench/cli/command_module.h"
 #include "bench/cli/command_mrtd.h"
 #include "bench/cli/command_picture.h"
+#include "bench/cli/command_scene_dependence.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/exit_codes.h"
 #include "bench/judgement/verdict.h"
@@ -191,6 +192,7 @@ int run(int argc, char** argv) {
   add_module_command(app, program);
   add_enhance_command(app, program);
   add_compare_models_command(app, program);
+  add_scene_dependence_command(app, program);
   add_dynamic_command(app, program);
   add_manual_command(app, program);
   if (argc > 1 && std::string_view(argv[1]) == "complete") {

@@ -111,8 +111,7 @@ std::optional<MeasuredTimeConstant> time_constant_of(const std::vector<MovingPas
   return out;
 }
 
-Result<DynamicMeasurement> measure_dynamic(const LoadedPlan& loaded,
-                                           const std::function<void(const MovingPassRecord&)>& on_pass,
+Result<DynamicMeasurement> measure_dynamic(const LoadedPlan& loaded, const DynamicListener& listener,
                                            std::stop_token stop) {
   const Plan& plan = loaded.plan();
   if (has_modules(plan, loaded.sensor()))
@@ -145,9 +144,18 @@ Result<DynamicMeasurement> measure_dynamic(const LoadedPlan& loaded,
   TemplateObserver observer(loaded.observer(), triangle_alternatives());
   DynamicMeasurement out;
   out.camera = bench.camera->info().id;
+  if (auto possible = check_moving(bench.camera->info(), *bench.target, observer, options); !possible)
+    return tl::unexpected(possible.error());
+  if (listener.on_open) {
+    if (auto begun = listener.on_open(bench); !begun) return tl::unexpected(begun.error());
+  }
   auto measured =
-      measure_moving(*bench.camera, *bench.target, observer, options, *bench.host, on_pass, std::move(stop));
+      measure_moving(*bench.camera, *bench.target, observer, options, *bench.host, listener.on_pass, std::move(stop));
   if (!measured) return tl::unexpected(measured.error());
+  if (listener.on_measured) {
+    if (auto kept = listener.on_measured(*measured); !kept) return tl::unexpected(kept.error());
+  }
+  if (measured->ended_by) return tl::unexpected(*measured->ended_by);
   out.measured = *std::move(measured);
   const FitOptions fit = fit_options(plan);
   for (const double delta_t_k : plan.target.delta_t_k) {

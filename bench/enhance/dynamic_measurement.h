@@ -42,10 +42,17 @@ struct DynamicMeasurement {
   double residual_px = 0;  ///< rms over the passes that moved of the places from the stage's line
 };
 
+/// What a measurement says on its way. Every function may be empty; an error of one ends the run with it.
+struct DynamicListener {
+  std::function<void(const MovingPassRecord&)> on_pass{};
+  std::function<Result<void>(const OpenedBench&)> on_open{};  ///< before anything is measured
+  /// All passes are there, or as many as there were when the run ended early.
+  std::function<Result<void>(const MovingMeasurement&)> on_measured{};
+};
+
 /// With the camera of the plan, or without one with its simulated sensor. Errors: those of open_bench() and
-/// measure_moving(); `invalid_input` for plans with modules.
-[[nodiscard]] Result<DynamicMeasurement> measure_dynamic(const LoadedPlan& loaded,
-                                                         const std::function<void(const MovingPassRecord&)>& on_pass,
+/// measure_moving(), early ends included; `invalid_input` for plans with modules or contrasts in grey levels.
+[[nodiscard]] Result<DynamicMeasurement> measure_dynamic(const LoadedPlan& loaded, const DynamicListener& listener,
                                                          std::stop_token stop);
 
 }  // namespace todbench

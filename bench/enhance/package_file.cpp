@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bench/plan/descriptions.h"
+#include "bench/plan/plan_options.h"
 #include "bench/plan/strict_toml.h"
 #include "bench/run/module_chain.h"
 #include "bench/text/files.h"

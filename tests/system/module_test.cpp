@@ -145,7 +145,7 @@ TEST(DynamicCommand, MeasuresAPlanThatMovesAndRefusesInASentence) {
     return todbench(arguments, {.folder = folder.path()});
   };
 
-  const Ended ended = run({"dynamic", "./moving.toml", "--json"});
+  const Ended ended = run({"dynamic", "./moving.toml", "--out", "moved", "--json"});
 
   ASSERT_EQ(ended.code, 0) << ended.err;
   const Json json = one_object(ended);
@@ -157,12 +157,44 @@ TEST(DynamicCommand, MeasuresAPlanThatMovesAndRefusesInASentence) {
   // A detector without memory: no lag, within a twentieth of a frame.
   EXPECT_NEAR(json["time_constant"]["time_constant_ms"].get<double>(), 0, 1);
   EXPECT_LT(json["residual_px"].get<double>(), 0.1);
+  const auto at = [&](const char* name) { return folder.path() / "moved" / name; };
+  EXPECT_EQ(Json::parse(content_of(at("dynamic.json")))["contrasts"], json["contrasts"]);
+  EXPECT_EQ(Json::parse(content_of(at("provenance.json")))["state"], "complete");
+  // Trials of the plate at rest: twenty triangles in each of four passes a contrast; of all, two speeds, three
+  // observers.
+  EXPECT_EQ(rows_in(at("trials.csv")), 80 * json["contrasts"].size());
+  EXPECT_EQ(rows_in(at("moving-trials.csv")), 6 * 80 * json["contrasts"].size());
+  EXPECT_EQ(run({"verify", "moved"}).code, 0);
+  EXPECT_EQ(run({"report", "moved"}).code, 0);
+  expect_refused(run({"dynamic", "./moving.toml", "--out", "moved"}), 2, "");
+  folder.write("graded.toml", small_plan(1, "[schedule]\nanswers = \"graded\"\n[fit]\nestimator = \"twin-shape\"\n"));
+  expect_refused(run({"dynamic", "./graded.toml", "--out", "graded"}), 2, "graded");
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "graded"));
   expect_refused(run({"dynamic"}), 2, "--speeds-mrad-s");
   expect_refused(run({"dynamic", "./moving.toml", "--speeds-mrad-s", "3"}), 2, "");
   folder.write("fast.toml", small_plan(1, "[motion]\nspeeds_mrad_s = [9000]\n"));
   expect_refused(run({"dynamic", "./fast.toml"}), 2, "pixels a frame");
   folder.write("long.toml", content_of(source_file("sim_devices/sensors/sc2000.toml")) + "exposure_ms = 21\n");
   expect_refused(run({"dynamic", "--speeds-mrad-s", "3", "--sensor", "./long.toml"}), 2, "exposure_ms");
+}
+
+TEST(SceneDependenceCommand, SaysWhetherAHotBarMattersByItsExitCode) {
+  const TemporaryFolder folder;
+  folder.write("plan.toml", small_plan(1));
+  folder.write("equalised.toml", "name = \"equalised\"\n[[stage]]\nkind = \"agc\"\nplateau_counts = 10\n");
+  const auto run = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"scene-dependence", "./plan.toml", "--cycles", "3", "--frames", "4"});
+    return todbench(arguments, {.folder = folder.path()});
+  };
+
+  const Ended linear = run({"--json"});
+  const Ended equalised = run({"--package", "equalised.toml", "--json"});
+
+  EXPECT_EQ(linear.code, 0) << linear.err;
+  EXPECT_EQ(one_object(linear)["verdict"], "independent");
+  EXPECT_EQ(equalised.code, 1) << equalised.err;
+  EXPECT_EQ(one_object(equalised)["verdict"], "depends");
+  expect_refused(todbench({"scene-dependence", "./plan.toml", "--cycles", "2"}, {.folder = folder.path()}), 2, "");
 }
 
 }  // namespace

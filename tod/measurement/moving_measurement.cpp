@@ -87,14 +87,16 @@ class MovingRun {
   }
 
   Result<MovingMeasurement> operator()() {
-    if (auto checked = check(); !checked) return tl::unexpected(checked.error());
+    if (auto checked = check_moving(source_.info(), target_, observer_, options_); !checked)
+      return tl::unexpected(checked.error());
     const std::stop_callback wake(stop_, [this] { source_.stop(); });
     if (auto started = source_.start(); !started) return tl::unexpected(started.error());
     auto done = all_set_ups();
     source_.stop();
-    if (!done)
-      return tl::unexpected(stop_.stop_requested() ? Error{ErrorCode::interrupted, "stopped on request"}
-                                                   : done.error());
+    if (!done) {
+      result_.ended_by = stop_.stop_requested() ? Error{ErrorCode::interrupted, "stopped on request"} : done.error();
+      if (result_.answers.empty()) return tl::unexpected(*result_.ended_by);
+    }
     result_.frames_rejected = taker_.rejected();
     result_.frames_lost = taker_.lost();
     result_.frames_used = taker_.used();
@@ -107,23 +109,6 @@ class MovingRun {
   [[nodiscard]] const MeasurementOptions& at_rest() const { return options_.measurement; }
 
   void note(const std::string& sentence) { result_.notes.push_back(sentence); }
-
-  [[nodiscard]] Result<void> check() {
-    const auto refuse = [](const std::string& why) { return fail(ErrorCode::invalid_input, why); };
-    if (at_rest().samples_per_pitch != 1)
-      return refuse("a target that moves is measured with a camera without microscan and super-resolution");
-    if (at_rest().contrast_unit != ContrastUnit::kelvin)
-      return refuse("a target that moves is measured in kelvin, not in grey levels");
-    if (auto checked = check_before_measuring(at_rest(), observer_, source_.info()); !checked) return checked;
-    if (!(result_.frame_rate_hz > 0)) return refuse("camera " + source_.info().id + " does not say its frame rate");
-    if (!target_.capabilities().sets_shift || target_.moving() == nullptr)
-      return refuse("the target cannot run at constant speed: its stage needs a [position] and a [run]");
-    for (const double speed : options_.speeds_mrad_s) {
-      if (!(speed >= 0 && step_px(speed) <= fastest_px))
-        return refuse(fmt::format("{:g} mrad/s is more than {:g} pixels a frame", speed, fastest_px));
-    }
-    return {};
-  }
 
   [[nodiscard]] double step_px(double speed_mrad_s) const {
     return speed_mrad_s / at_rest().ifov_mrad / result_.frame_rate_hz;
@@ -199,7 +184,7 @@ class MovingRun {
     const auto contrast = step_.contrast(set_up.plate, set_up.base, state, presented_, stop_);
     if (!contrast) return tl::unexpected(contrast.error());
     seen_ = *contrast;
-    result_.presentations.push_back({.presentation = static_cast<std::int64_t>(result_.presentations.size()),
+    result_.presentations.push_back({.presentation = pairs_,
                                      .set = state,
                                      .said = presented_,
                                      .delta_t_k = seen_.contrast_k,
@@ -422,6 +407,24 @@ class MovingRun {
 };
 
 }  // namespace
+
+Result<void> check_moving(const SourceInfo& camera, Target& target, TemplateObserver& observer,
+                          const MovingMeasurementOptions& options) {
+  const auto refuse = [](const std::string& why) { return fail(ErrorCode::invalid_input, why); };
+  const MeasurementOptions& at_rest = options.measurement;
+  if (at_rest.samples_per_pitch != 1)
+    return refuse("a target that moves is measured with a camera without microscan and super-resolution");
+  if (at_rest.contrast_unit != ContrastUnit::kelvin)
+    return refuse("a target that moves is measured in kelvin, not in grey levels");
+  if (!(camera.frame_rate_hz > 0)) return refuse("camera " + camera.id + " does not say its frame rate");
+  if (!target.capabilities().sets_shift || target.moving() == nullptr)
+    return refuse("the target cannot run at constant speed: its stage needs a [position] and a [run]");
+  for (const double speed : options.speeds_mrad_s) {
+    if (!(speed >= 0 && speed / at_rest.ifov_mrad / camera.frame_rate_hz <= fastest_px))
+      return refuse(fmt::format("{:g} mrad/s is more than {:g} pixels a frame", speed, fastest_px));
+  }
+  return check_before_measuring(at_rest, observer, camera);
+}
 
 Result<MovingMeasurement> measure_moving(FrameSource& source, Target& target, TemplateObserver& observer,
                                          const MovingMeasurementOptions& options, MeasurementHost& host,

@@ -59,14 +59,22 @@ struct MovingMeasurement {
   double temporal_noise_k = 0;  ///< per pixel and frame
   std::map<std::string, std::uint64_t> frames_rejected;
   std::uint64_t frames_lost = 0, frames_used = 0;
+  std::optional<Error> ended_by;   ///< why it stopped early; passes and answers so far are valid
   std::vector<std::string> notes;  ///< those of a plate at rest, too: what the target says, contrasts, saturation
   std::vector<Presentation> presentations;  ///< of the contrasts at rest, in the order of the run
 };
 
+/// What measure_moving() refuses before it starts the camera: `invalid_input` (a target that cannot run, speeds beyond
+/// 5 pixels a frame, displayed samples finer than the detectors, contrasts in grey levels, sizes that do not fit),
+/// `calibration` (no temperature scale).
+[[nodiscard]] Result<void> check_moving(const SourceInfo& camera, Target& target, TemplateObserver& observer,
+                                        const MovingMeasurementOptions& options);
+
 /// Set-ups are looked at as in measure(), with its checks. Errors: `invalid_input` (a target that cannot run, speeds
 /// beyond 5 pixels a frame, runs beyond the stage, displayed samples finer than the detectors), those of measure(). A
 /// pass whose frames were lost or whose plate was not found is dropped, and its record says why; when a third of them
-/// and more are, the run ends with `integrity`.
+/// and more are, the run ends with `integrity`. A run that ended early after its first answers returns them with
+/// `ended_by`.
 [[nodiscard]] Result<MovingMeasurement> measure_moving(FrameSource& source, Target& target, TemplateObserver& observer,
                                                        const MovingMeasurementOptions& options, MeasurementHost& host,
                                                        const std::function<void(const MovingPassRecord&)>& on_pass,

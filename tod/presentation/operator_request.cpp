@@ -41,6 +41,11 @@ std::string words(const MoveSlightly& step) {
       step.by_mm.y < 0 ? "up" : "down");
 }
 
+std::string words(const MoveHotBar& step) {
+  return step.in ? "bring the hot bar into the picture, beside the plate and not before it"
+                 : "take the hot bar out of the picture";
+}
+
 }  // namespace
 
 OperatorRequest request_between(const std::optional<TargetState>& last, const TargetState& next) {

@@ -38,7 +38,13 @@ struct MoveSlightly {
   bool operator==(const MoveSlightly&) const = default;
 };
 
-using OperatorStep = std::variant<PutInPlate, Remount, SetContrast, MoveSlightly>;
+/// Something much warmer than the plate, beside it in the picture.
+struct MoveHotBar {
+  bool in = true;
+  bool operator==(const MoveHotBar&) const = default;
+};
+
+using OperatorStep = std::variant<PutInPlate, Remount, SetContrast, MoveSlightly, MoveHotBar>;
 
 /// One request to the operator, to be done in the order of its steps.
 struct OperatorRequest {

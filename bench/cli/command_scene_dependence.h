@@ -1,0 +1,10 @@
+// todbench scene-dependence
+#pragma once
+
+#include "bench/cli/commands.h"
+
+namespace todbench {
+
+void add_scene_dependence_command(CLI::App& app, Program& program);
+
+}  // namespace todbench

@@ -1,0 +1,211 @@
+#include "bench/enhance/dynamic_session.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "bench/enhance/dynamic_json.h"
+#include "bench/plan/plan_options.h"
+#include "bench/run/module_chain.h"
+#include "bench/run/session_frame.h"
+#include "bench/session/csv_fields.h"
+#include "bench/text/csv_table.h"
+#include "bench/text/files.h"
+#include "bench/text/text.h"
+#include "tod/adequacy/adequacy.h"
+#include "tod/psychometric/acuity.h"
+
+namespace todbench {
+namespace {
+
+bool of_the_curve(const MovingAnswer& answer) {
+  return answer.speed_mrad_s == 0 && answer.observer == SequenceObserver::single_frame;
+}
+
+/// Who answered what at which speed; places and times are in the passes of dynamic.json.
+std::string moving_trials_csv(const MovingMeasurement& measured) {
+  constexpr std::array<std::string_view, 12> columns{"pair",      "speed_mrad_s", "observer",      "plate",
+                                                     "mounting",  "triangle",     "set_delta_t_k", "delta_t_k",
+                                                     "size_mrad", "truth",        "answer",        "frame"};
+  std::string text = header_line(columns);
+  for (const MovingAnswer& answer : measured.answers) {
+    const Trial& t = answer.trial;
+    text += std::to_string(t.presentation) + "," + number_text(answer.speed_mrad_s) + "," +
+            std::string(to_string(answer.observer)) + "," + csv_field(t.plate) + "," +
+            std::string(to_string(t.mounting)) + "," + csv_field(t.triangle) + "," + number_text(t.set_delta_t_k) +
+            "," + number_text(t.delta_t_k) + "," + number_text(t.size_mrad) + "," + std::string(to_string(t.truth)) +
+            "," + std::string(to_string(t.answer)) + "," + std::to_string(t.frame) + "\n";
+  }
+  return text;
+}
+
+std::vector<Trial> trials_of_the_curve(const MovingMeasurement& measured) {
+  std::vector<Trial> trials;
+  for (const MovingAnswer& answer : measured.answers) {
+    if (of_the_curve(answer)) trials.push_back(answer.trial);
+  }
+  return trials;
+}
+
+Result<void> write_measured(SessionFolder& folder, const MovingMeasurement& measured, bool simulated) {
+  auto trials = folder.open_trials(SessionCurve::main);
+  if (!trials) return tl::unexpected(trials.error());
+  for (const Trial& trial : trials_of_the_curve(measured)) {
+    if (auto written = trials->append(trial); !written) return written;
+  }
+  if (auto synced = trials->sync(); !synced) return synced;
+  auto targets = folder.open_targets(SessionCurve::main);
+  if (!targets) return tl::unexpected(targets.error());
+  for (Presentation shown : measured.presentations) {
+    if (simulated) shown.host_time_ns.reset();
+    if (auto written = targets->append(shown); !written) return written;
+  }
+  if (auto synced = targets->sync(); !synced) return synced;
+  return write_file_atomically(folder.path() / "moving-trials.csv", moving_trials_csv(measured));
+}
+
+std::string in_text(const std::optional<double>& value) {
+  return value ? fmt::format("{:.3f}", *value) : "unknown";
+}
+std::string in_text(const Interval& interval) {
+  return in_text(interval.low) + " to " + in_text(interval.high);
+}
+
+/// What moved, in the notes of the report.
+std::vector<std::string> sentences(const DynamicMeasurement& found) {
+  std::vector<std::string> out;
+  for (const DynamicContrast& contrast : found.contrasts) {
+    for (const DynamicAcuity& at : contrast.speeds) {
+      for (const DynamicPoint& point : at.points) {
+        if (at.speed_mrad_s == 0 && point.observer == SequenceObserver::single_frame) continue;
+        const std::string ratio = at.speed_mrad_s == 0 ? "" : ", " + in_text(point.ratio) + " of that at rest";
+        out.push_back(fmt::format("{:+.3f} K at {:g} mrad/s ({:.2g} pixels a frame), {}: acuity {} /mrad, 95 % {}{}",
+                                  contrast.set_delta_t_k, at.speed_mrad_s, at.speed_px, to_string(point.observer),
+                                  in_text(acuity_per_mrad(point.fit)), in_text(acuity_interval(point.fit.ci95)),
+                                  ratio));
+      }
+    }
+  }
+  if (const auto& tau = found.time_constant)
+    out.push_back(fmt::format("time constant {:.2f} ms, 95 % {}, from {} passes to the right and to the left",
+                              tau->time_constant_ms, in_text(tau->ci95_ms), tau->passes));
+  return out;
+}
+
+/// A measurement on its way into a folder.
+class DynamicRun {
+ public:
+  DynamicRun(const LoadedPlan& loaded, const ExperimentOptions& options, const ExperimentListener& listener)
+      : loaded_(loaded), options_(options), listener_(listener) {}
+
+  Result<DynamicSession> operator()(const std::function<void(const MovingPassRecord&)>& on_pass, std::stop_token stop) {
+    const Plan& plan = loaded_.plan();
+    auto found = measure_dynamic(loaded_,
+                                 {.on_pass = on_pass,
+                                  .on_open = [this](const OpenedBench& bench) { return begin(bench); },
+                                  .on_measured = [this](const MovingMeasurement& m) { return keep(m); }},
+                                 std::move(stop));
+    if (!found && !folder_) return tl::unexpected(found.error());
+    const SessionFrame frame{*folder_, listener_};
+    if (!found) return abandon(frame, plan, provenance_, found.error());
+    const std::vector<Trial> trials = trials_of_the_curve(found->measured);
+    auto curve = tod_curve(trials, fit_options(plan));
+    if (!curve) return abandon(frame, plan, provenance_, curve.error());
+    curve->sensor = found->camera;
+    curve->observer = loaded_.observer().name + ", single frames of a plate at rest";
+    examine(*curve, fit_options(plan));
+    for (const std::string& sentence : sentences(*found)) {
+      note(*folder_, listener_, sentence);
+      provenance_.run->notes.push_back(sentence);
+    }
+    const auto written =
+        write_file_atomically(folder_->path() / "dynamic.json", to_page(dynamic_measurement_json(*found, plan)));
+    ExperimentOutcome outcome{.folder = folder_->path(),
+                              .curve = *std::move(curve),
+                              .twin = std::nullopt,
+                              .comparison = std::nullopt,
+                              .verdict = {},
+                              .effects = provenance_.effects,
+                              .figures = figures_of(*provenance_.run),
+                              .ended_by = written ? std::nullopt : std::optional(written.error())};
+    outcome.presentations = found->measured.presentations;
+    auto ended = concluded(std::move(outcome), plan, frame, provenance_);
+    return DynamicSession{*std::move(found), std::move(ended)};
+  }
+
+ private:
+  Result<void> begin(const OpenedBench& bench) {
+    const Plan& plan = loaded_.plan();
+    simulated_ = bench.simulated;
+    provenance_ = begin_provenance(plan, plan.camera.id.empty() ? Side::simulated : Side::measured);
+    provenance_.effects = full_plan(loaded_.sensor(), plan.simulation.skip, plan.simulation.force, any_motion);
+    if (!plan.camera.id.empty()) provenance_.camera = camera_record(bench.camera->info());
+    provenance_.target = plan.camera.id.empty() ? "simulated scene" : bench.target->capabilities().description;
+    auto folder = begin_session(loaded_, options_, provenance_);
+    if (!folder) return tl::unexpected(folder.error());
+    folder_.emplace(*std::move(folder));
+    if (listener_.on_session) listener_.on_session(folder_->path());
+    for (const auto& warning : bench.camera->info().warnings) note(*folder_, listener_, warning);
+    phase(*folder_, listener_, "measuring before a target that moves");
+    return {};
+  }
+
+  Result<void> keep(const MovingMeasurement& measured) {
+    MeasurementResult result;
+    result.set_ups = measured.set_ups;
+    result.frames_used = measured.frames_used;
+    result.frames_rejected = measured.frames_rejected;
+    result.frames_lost = measured.frames_lost;
+    result.temporal_noise_k = measured.temporal_noise_k;
+    result.notes = measured.notes;
+    result.ended_by = measured.ended_by;
+    provenance_.run =
+        run_record(result, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count());
+    for (const std::string& sentence : measured.notes) note(*folder_, listener_, sentence);
+    return write_measured(*folder_, measured, simulated_);
+  }
+
+  const LoadedPlan& loaded_;
+  const ExperimentOptions& options_;
+  const ExperimentListener& listener_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::optional<SessionFolder> folder_;
+  Provenance provenance_;
+  bool simulated_ = false;
+};
+
+}  // namespace
+
+Result<void> check_dynamic_plan(const Plan& plan, const SensorSpec& sensor) {
+  const MeasuresPlan& m = plan.measures;
+  const std::pair<bool, const char*> refused[] = {
+      {has_modules(plan, sensor), "[[module]]"},
+      {plan.camera.contrast == ContrastUnit::grey_levels, "contrasts in grey levels ([camera] contrast)"},
+      {plan.camera.nuc_interval_s > 0, "corrections on command ([camera] nuc_interval_s)"},
+      {plan.schedule.kind == ScheduleKind::adaptive, "an adaptive schedule ([schedule] kind)"},
+      {plan.schedule.answers == AnswerKind::graded, "graded answers ([schedule] answers)"},
+      {plan.fit.estimator == FitEstimator::twin_shape, "the function of the twin ([fit] estimator)"},
+      {plan.measurement.record_frames, "recorded frames ([measurement] record_frames)"},
+      {m.noise || m.transfer || m.triangles || m.mtf || m.ctf, "physical measures ([measures])"},
+      {plan.limits.equivalence_margin_percent.has_value(),
+       "agreement with a twin ([limits] equivalence_margin_percent)"}};
+  std::string names;
+  for (const auto& [asked, name] : refused) {
+    if (asked) names += (names.empty() ? "" : ", ") + std::string(name);
+  }
+  if (names.empty()) return {};
+  return fail(ErrorCode::invalid_input, "a target that moves is measured without " + names);
+}
+
+Result<DynamicSession> measure_dynamic_session(const LoadedPlan& loaded, const ExperimentOptions& options,
+                                               const ExperimentListener& listener,
+                                               const std::function<void(const MovingPassRecord&)>& on_pass,
+                                               std::stop_token stop) {
+  if (auto possible = check_dynamic_plan(loaded.plan(), loaded.sensor()); !possible)
+    return tl::unexpected(possible.error());
+  return DynamicRun(loaded, options, listener)(on_pass, std::move(stop));
+}
+
+}  // namespace todbench
