@@ -19,7 +19,7 @@ constexpr std::array<std::string_view, 20> known_files{
     "trials_human.csv", "shown_human.csv",      "log.txt",          "provenance.json",
     "report.html",      "session.toml",         "targets.csv",      "targets_simulated.csv",
     "trials.csv",       "trials_simulated.csv", "uncertainty.json", "verdict.json"};
-constexpr std::array<std::string_view, 2> known_folders{"inputs", "frames"};
+constexpr std::array<std::string_view, 3> known_folders{"inputs", "frames", "pictures"};
 constexpr std::string_view schema = "todbench-manifest-1";
 
 constexpr std::array<std::string_view, 3> report_pages{"report.csv", "report.html", "report.pdf"};

@@ -61,7 +61,7 @@ class SessionFolder {
                                           const std::optional<CurveUncertainty>& uncertainty = {});
   /// comparison.json.
   [[nodiscard]] Result<void> write_comparison(const Comparison& comparison);
-  /// measures.json.
+  /// measures.json, and its pictures in pictures/.
   [[nodiscard]] Result<void> write_measures(const std::optional<CameraMeasures>& main,
                                             const std::optional<CameraMeasures>& twin);
   /// verdict.json.
