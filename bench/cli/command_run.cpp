@@ -20,6 +20,7 @@
 #include "bench/run/replay.h"
 #include "bench/run/terminal_operator.h"
 #include "bench/serve/live_run.h"
+#include "bench/session/measure_pictures.h"
 #include "bench/session/measures_record.h"
 #include "bench/session/provenance.h"
 #include "bench/session/uncertainty_record.h"
@@ -118,8 +119,10 @@ void print_verdict(const Console& console, const ExperimentOutcome& outcome) {
 
 /// Physical measures, where the plan asks for them.
 void add_measures(Json& json, const ExperimentOutcome& outcome) {
-  if (outcome.measures || outcome.twin_measures)
-    json["measures"] = measures_json(outcome.measures, outcome.twin_measures);
+  if (!outcome.measures && !outcome.twin_measures) return;
+  Json measures = measures_json(outcome.measures, outcome.twin_measures);
+  static_cast<void>(take_pictures(measures));  // they are in the session
+  json["measures"] = std::move(measures);
 }
 
 void print_measures(const Console& console, const ExperimentOutcome& outcome) {

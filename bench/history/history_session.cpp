@@ -109,8 +109,12 @@ Result<void> add_measures(HistorySession& session, const std::filesystem::path& 
   for (const Json& line : (*json)["main"]["quantities"]) {
     const auto value = number_at(line, "value");
     if (!value || !line.contains("ci95") || !line["ci95"].is_array() || line["ci95"].size() != 2) continue;
-    if (!line["ci95"][0].is_number() || !line["ci95"][1].is_number()) continue;
-    const double u = (line["ci95"][1].get<double>() - line["ci95"][0].get<double>()) / (2 * normal_z95);
+    // What the bench adds is measured anew each time, such as the distance of an IFOV.
+    const bool expanded = line.contains("expanded_ci95") && line["expanded_ci95"].is_array() &&
+                          line["expanded_ci95"].size() == line["ci95"].size();
+    const Json& interval = expanded ? line["expanded_ci95"] : line["ci95"];
+    if (!interval[0].is_number() || !interval[1].is_number()) continue;
+    const double u = (interval[1].get<double>() - interval[0].get<double>()) / (2 * normal_z95);
     if (u > 0) session.values.push_back({text_at(line, "measure"), "", text_at(line, "unit"), "linear", *value, u});
   }
   return {};

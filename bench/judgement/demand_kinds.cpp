@@ -356,6 +356,8 @@ const auto& table() {
       measure_row(DemandKind::ifov_y_at_least),
       measure_row(DemandKind::ifov_y_at_most),
       measure_row(DemandKind::distortion),
+      measure_row(DemandKind::drift_rate),
+      measure_row(DemandKind::drift_pattern_rate),
       zone_row(DemandKind::zone_bad_pixels),
       zone_row(DemandKind::zone_substituted_pixels),
       zone_row(DemandKind::zone_clusters),

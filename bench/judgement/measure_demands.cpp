@@ -61,6 +61,10 @@ constexpr std::array measure_demands{
                   "IFOV along y at most "},
     MeasureDemand{DemandKind::distortion, LimitedMeasure::distortion, LimitSide::at_most, "distortion", "%",
                   "distortion at the corner, of either sign, at most "},
+    MeasureDemand{DemandKind::drift_rate, LimitedMeasure::drift_rate, LimitSide::at_most, "drift_rate", "K/min",
+                  "drift of the mean after a correction, of either sign, at most "},
+    MeasureDemand{DemandKind::drift_pattern_rate, LimitedMeasure::drift_pattern_rate, LimitSide::at_most,
+                  "drift_pattern_rate", "K/min", "growth of the spatial noise after a correction at most "},
 };
 
 const MeasureDemand& demand_of(DemandKind kind) {
@@ -116,7 +120,7 @@ Demand judged(const MeasureDemand& asked, double limit, const Evidence& evidence
   }
   demand.result = measured->value;
   demand.interval = measured->ci95;
-  if (asked.measure == LimitedMeasure::distortion) {
+  if (asked.measure == LimitedMeasure::distortion || asked.measure == LimitedMeasure::drift_rate) {
     demand.result = std::abs(*measured->value);
     demand.interval = of_either_sign(measured->ci95);
   }
@@ -210,6 +214,10 @@ DemandKindRow measure_row(DemandKind kind) {
       return row<DemandKind::ifov_y_at_most>();
     case DemandKind::distortion:
       return row<DemandKind::distortion>();
+    case DemandKind::drift_rate:
+      return row<DemandKind::drift_rate>();
+    case DemandKind::drift_pattern_rate:
+      return row<DemandKind::drift_pattern_rate>();
     case DemandKind::acuity:
     case DemandKind::identified:
     case DemandKind::equivalence:

@@ -73,6 +73,10 @@ std::string_view to_string(LimitedMeasure measure) {
       return "ifov_y";
     case LimitedMeasure::distortion:
       return "distortion";
+    case LimitedMeasure::drift_rate:
+      return "drift_rate";
+    case LimitedMeasure::drift_pattern_rate:
+      return "drift_pattern_rate";
   }
   return "";
 }

@@ -138,6 +138,8 @@ enum class DemandKind {
   ifov_y_at_least,
   ifov_y_at_most,
   distortion,
+  drift_rate,
+  drift_pattern_rate,
   // Pixels of a zone, [[limits.zone]].
   zone_bad_pixels,
   zone_substituted_pixels,
@@ -170,14 +172,29 @@ enum class LimitedMeasure {
   ctf_y,
   ifov_x,
   ifov_y,
-  distortion,  ///< at the corner, of either sign
+  distortion,          ///< at the corner, of either sign
+  drift_rate,          ///< of the mean, of either sign
+  drift_pattern_rate,  ///< of the spatial noise
 };
-inline constexpr std::array limited_measures{
-    LimitedMeasure::netd,      LimitedMeasure::temporal_noise, LimitedMeasure::noise_t,  LimitedMeasure::noise_v,
-    LimitedMeasure::noise_h,   LimitedMeasure::noise_tv,       LimitedMeasure::noise_th, LimitedMeasure::noise_vh,
-    LimitedMeasure::noise_tvh, LimitedMeasure::transfer_slope, LimitedMeasure::mtf_x,    LimitedMeasure::mtf_y,
-    LimitedMeasure::ctf_x,     LimitedMeasure::ctf_y,          LimitedMeasure::ifov_x,   LimitedMeasure::ifov_y,
-    LimitedMeasure::distortion};
+inline constexpr std::array limited_measures{LimitedMeasure::netd,
+                                             LimitedMeasure::temporal_noise,
+                                             LimitedMeasure::noise_t,
+                                             LimitedMeasure::noise_v,
+                                             LimitedMeasure::noise_h,
+                                             LimitedMeasure::noise_tv,
+                                             LimitedMeasure::noise_th,
+                                             LimitedMeasure::noise_vh,
+                                             LimitedMeasure::noise_tvh,
+                                             LimitedMeasure::transfer_slope,
+                                             LimitedMeasure::mtf_x,
+                                             LimitedMeasure::mtf_y,
+                                             LimitedMeasure::ctf_x,
+                                             LimitedMeasure::ctf_y,
+                                             LimitedMeasure::ifov_x,
+                                             LimitedMeasure::ifov_y,
+                                             LimitedMeasure::distortion,
+                                             LimitedMeasure::drift_rate,
+                                             LimitedMeasure::drift_pattern_rate};
 [[nodiscard]] std::string_view to_string(LimitedMeasure measure);
 /// An MTF or a CTF.
 [[nodiscard]] bool is_modulation(LimitedMeasure measure);
@@ -277,6 +294,8 @@ struct MeasuresPlan {
   double pixels_blinking = 3;     ///< change of level above so many medians of it
   bool transfer = false;          ///< contrast seen over contrast shown
   std::vector<double> transfer_steps_k{-4, -2, -1, 1, 2, 4};
+  bool drift = false;                     ///< growth of mean and spatial noise after a correction
+  double drift_s = 20;                    ///< watched
   bool geometry = false;                  ///< IFOV and distortion, from the places of the triangles
   bool triangles = false;                 ///< pictures of the smallest ones at every contrast
   bool mtf = false;                       ///< along both axes, from the edges of a plate of its own

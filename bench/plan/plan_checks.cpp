@@ -198,7 +198,8 @@ ValueMistakes check_limited_measure(const Plan& plan, std::size_t row) {
   const bool mtf = measure == LimitedMeasure::mtf_x || measure == LimitedMeasure::mtf_y;
   const bool ctf = measure == LimitedMeasure::ctf_x || measure == LimitedMeasure::ctf_y;
   const bool geometry = is_ifov(measure) || measure == LimitedMeasure::distortion;
-  const bool noise = !mtf && !ctf && !geometry && measure != LimitedMeasure::transfer_slope;
+  const bool drift = measure == LimitedMeasure::drift_rate || measure == LimitedMeasure::drift_pattern_rate;
+  const bool noise = !mtf && !ctf && !geometry && !drift && measure != LimitedMeasure::transfer_slope;
   const bool transfer = measure == LimitedMeasure::transfer_slope || measure == LimitedMeasure::netd;
   ValueMistakes mistakes;
   if (noise && !plan.measures.noise)
@@ -216,6 +217,9 @@ ValueMistakes check_limited_measure(const Plan& plan, std::size_t row) {
   if (geometry && !plan.measures.geometry)
     mistakes.push_back(
         {std::nullopt, "a limit on " + std::string(to_string(measure)) + " needs geometry = true in [measures]"});
+  if (drift && !plan.measures.drift)
+    mistakes.push_back(
+        {std::nullopt, "a limit on " + std::string(to_string(measure)) + " needs drift = true in [measures]"});
   for (std::size_t other = 0; other < row; ++other) {
     if (plan.limits.measures[other].measure == measure)
       mistakes.push_back({std::nullopt, "a second row for " + std::string(to_string(measure))});

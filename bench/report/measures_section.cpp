@@ -7,16 +7,18 @@
 
 #include "bench/report/ctf_figures.h"
 #include "bench/report/drawing.h"
+#include "bench/report/drift_figures.h"
 #include "bench/report/geometry_figure.h"
 #include "bench/report/number_format.h"
 #include "bench/report/pixel_figures.h"
 #include "bench/report/plot.h"
 #include "bench/report/report_pieces.h"
+#include "bench/report/transfer_figures.h"
 
 namespace todbench {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 43> names{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 47> names{{
     {"transfer_slope", "Temperature scale: contrast seen over contrast shown"},
     {"transfer_offset", "Temperature scale: offset"},
     {"transfer_nonlinearity", "Temperature scale: nonlinearity"},
@@ -35,6 +37,10 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 43> names{{
     {"lag1_correlation", "Correlation of a pixel in successive frames"},
     {"noise_counts", "Temporal noise in steps of the counts"},
     {"shading_range", "Shading over the plate, taken out"},
+    {"drift_rate", "Drift of the mean after a correction"},
+    {"drift_time_constant", "Drift of the mean: time constant"},
+    {"drift_pattern_rate", "Growth of the spatial noise after a correction"},
+    {"drift_pattern_time_constant", "Growth of the spatial noise: time constant"},
     {"noise_t", "3-D noise t: whole frames"},
     {"noise_v", "3-D noise v: fixed rows"},
     {"noise_h", "3-D noise h: fixed columns"},
@@ -241,8 +247,11 @@ std::optional<Section> measures_section(const ReportData& data) {
       conditions.push_back(line.conditions);
   }
   if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
+  if (auto figures = transfer_figures(*data.measures, data.camera.has_value()))
+    section.blocks.emplace_back(*std::move(figures));
   if (auto figures = mtf_figures(*data.measures, data.camera.has_value()))
     section.blocks.emplace_back(*std::move(figures));
+  if (auto figures = drift_figures(*data.measures)) section.blocks.emplace_back(*std::move(figures));
   if (auto figures = geometry_figures(*data.measures, data.camera.has_value()))
     section.blocks.emplace_back(*std::move(figures));
   if (auto figures = ctf_figures(*data.measures, data.camera.has_value()))

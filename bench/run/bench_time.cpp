@@ -45,8 +45,8 @@ class Walk {
   /// What [measures] asks for behind the trials, as measure_camera() goes through it.
   void measure(const TargetState& last, const std::string& first_plate) {
     const MeasuresPlan& measures = plan_.measures;
-    if (!measures.noise && !measures.transfer && !measures.geometry && !measures.triangles && !measures.mtf &&
-        !measures.ctf)
+    if (!measures.noise && !measures.transfer && !measures.geometry && !measures.drift && !measures.triangles &&
+        !measures.mtf && !measures.ctf)
       return;
     const TargetPlan& target = plan_.target;
     const auto change = [&](double seconds, int frames) {
@@ -62,6 +62,10 @@ class Walk {
         change(target.contrast_change_s, plan_.measurement.contrast_frames);
     }
     if (measures.noise) change(target.contrast_change_s, measures.noise_frames);
+    if (measures.drift) {
+      change(target.contrast_change_s, 0);
+      time_.changes_s += plan_.camera.nuc_wait_s + measures.drift_s;
+    }
     if (measures.triangles) {
       for (std::size_t i = 0; i < target.delta_t_k.size(); ++i)
         change(target.contrast_change_s, plan_.measurement.contrast_frames);

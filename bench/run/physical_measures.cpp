@@ -88,7 +88,8 @@ std::optional<double> closed_form_netd_k(const SensorSpec& spec, const SensorPla
 
 bool measures_asked(const Plan& plan) {
   const MeasuresPlan& measures = plan.measures;
-  return measures.noise || measures.transfer || measures.geometry || measures.triangles || measures.mtf || measures.ctf;
+  return measures.noise || measures.transfer || measures.geometry || measures.drift || measures.triangles ||
+         measures.mtf || measures.ctf;
 }
 
 Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan, const MeasurementOptions& options,
@@ -100,6 +101,7 @@ Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan, const 
                                  {.noise = plan.measures.noise,
                                   .noise_frames = plan.measures.noise_frames,
                                   .pixels = pixel_options(plan),
+                                  .drift_s = plan.measures.drift ? std::optional(plan.measures.drift_s) : std::nullopt,
                                   .geometry = plan.measures.geometry,
                                   .transfer = plan.measures.transfer,
                                   .transfer_steps_k = plan.measures.transfer_steps_k,
@@ -147,7 +149,8 @@ void compare_picture(CameraMeasures& measures, const LoadedPlan& loaded, const E
 
 Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loaded, const ExperimentInputs& inputs,
                                                          const SessionFrame& frame, std::stop_token stop) {
-  const Plan& plan = loaded.plan();
+  Plan plan = loaded.plan();
+  plan.measures.drift = false;  // nothing is corrected in it
   if (!measures_asked(plan)) return std::nullopt;
   const auto model = whole_sensor(loaded, inputs);
   MeasurementOptions options = simulated_options(plan, inputs);

@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, 23> known_files{
     "report.html",      "session.toml",         "targets.csv",      "targets_simulated.csv",
     "trials.csv",       "trials_simulated.csv", "uncertainty.json", "verdict.json",
     "grey-levels.csv",  "moving-trials.csv",    "dynamic.json"};
-constexpr std::array<std::string_view, 2> known_folders{"inputs", "frames"};
+constexpr std::array<std::string_view, 3> known_folders{"inputs", "frames", "pictures"};
 constexpr std::string_view schema = "todbench-manifest-1";
 
 constexpr std::array<std::string_view, 3> report_pages{"report.csv", "report.html", "report.pdf"};

@@ -14,8 +14,8 @@ namespace todbench {
 
 inline constexpr std::string_view manifest_name = "manifest.json";
 
-/// Files of a session, relative to its folder, sorted: the known ones on top and everything in inputs/ and frames/.
-/// Foreign files beside them are left out. Without manifest.json itself.
+/// Files of a session, relative to its folder, sorted: the known ones on top and everything in inputs/, frames/ and
+/// pictures/. Foreign files beside them are left out. Without manifest.json itself.
 [[nodiscard]] std::vector<std::string> session_files(const std::filesystem::path& folder);
 /// A path that session_files() would name: somebody reads such a file.
 [[nodiscard]] bool is_session_file(std::string_view path);

@@ -8,7 +8,9 @@
 #include <cmath>
 
 #include "bench/session/ctf_record.h"
+#include "bench/session/drift_record.h"
 #include "bench/session/geometry_record.h"
+#include "bench/session/transfer_record.h"
 #include "bench/text/base64.h"
 #include "bench/text/json_reader.h"
 #include "tod/measures/pixel_noise.h"
@@ -108,6 +110,7 @@ void add_transfer(MeasureLines& out, const TransferMeasure& transfer) {
                        conditions});
   out.lines.push_back({"transfer_offset", "K", line.offset, {}, conditions});
   out.lines.push_back({"transfer_nonlinearity", "%", line.nonlinearity_percent, {}, conditions});
+  out.transfer = TransferCurve{transfer.steps, line.slope, line.offset};
 }
 
 /// "mtf_x" of the most central rectangle, "mtf_x (NAME)" of any other.
@@ -201,25 +204,6 @@ Json noise_json(const NoiseMeasure& noise) {
           {"shading_sd_k", json_number(noise.shading_sd_k)},
           {"variances_k2", variances},
           {"intervals_k2", intervals}};
-}
-
-Json transfer_json(const TransferMeasure& transfer) {
-  Json steps = Json::array();
-  for (const TransferStep& step : transfer.steps) {
-    steps.push_back({{"set_delta_t_k", step.set_delta_t_k},
-                     {"said_delta_t_k", json_number(step.said_delta_t_k)},
-                     {"seen_delta_t_k", json_number(step.seen_delta_t_k)},
-                     {"seen_u_k", json_number(step.seen_u_k)}});
-  }
-  return {{"frames_each", transfer.frames_each},
-          {"steps", steps},
-          {"slope", json_number(transfer.line.slope)},
-          {"slope_u", json_number(transfer.line.slope_u)},
-          {"offset_k", json_number(transfer.line.offset)},
-          {"chi2", json_number(transfer.line.chi2)},
-          {"degrees_of_freedom", transfer.line.degrees_of_freedom},
-          {"p", json_number(transfer.line.p)},
-          {"nonlinearity_percent", json_number(transfer.line.nonlinearity_percent)}};
 }
 
 Json list_json(const std::vector<double>& values) {
@@ -335,6 +319,7 @@ Json side_json(const std::optional<CameraMeasures>& measures) {
           {"noise", measures->noise ? noise_json(*measures->noise) : Json()},
           {"transfer", measures->transfer ? transfer_json(*measures->transfer) : Json()},
           {"geometry", measures->geometry ? geometry_json(*measures->geometry) : Json()},
+          {"drift", measures->drift ? drift_json(*measures->drift) : Json()},
           {"pixels", measures->pixels ? pixels_json(*measures->pixels) : Json()},
           {"mtf", measures->mtf ? mtf_json(*measures->mtf) : Json()},
           {"ctf", measures->ctf ? ctf_json(*measures->ctf) : Json()},
@@ -376,6 +361,10 @@ std::optional<MeasureLines> side_from(const JsonReader& side) {
   if (!mtf.is_null()) found.mtf = mtf_from(mtf);
   const JsonReader ctf = side.at_if_there("ctf");
   if (!ctf.is_null()) found.ctf = ctf_from(ctf);
+  const JsonReader transfer = side.at_if_there("transfer");
+  if (!transfer.is_null()) found.transfer = transfer_from(transfer);
+  const JsonReader drift = side.at_if_there("drift");
+  if (!drift.is_null()) found.drift = drift_from(drift);
   const JsonReader geometry = side.at_if_there("geometry");
   if (!geometry.is_null()) found.geometry = geometry_from(geometry);
   const JsonReader picture = side.at_if_there("picture");
@@ -392,6 +381,7 @@ MeasureLines measure_lines(const CameraMeasures& measures) {
   if (measures.transfer) add_transfer(found, *measures.transfer);
   if (measures.geometry) add_geometry_lines(found, *measures.geometry);
   if (measures.noise) add_noise(found, measures);
+  if (measures.drift) add_drift_lines(found, *measures.drift);
   if (measures.pixels) add_pixels(found, *measures.pixels);
   if (measures.mtf) add_mtf(found, *measures.mtf);
   if (measures.ctf) add_ctf_lines(found, *measures.ctf);
@@ -423,6 +413,8 @@ Result<SessionMeasures> measures_from(const Json& record) {
     return fail(ErrorCode::invalid_input, "'ctf.groups': expected frequencies and a pitch above 0");
   if (!geometry_drawable(measures.main) || !geometry_drawable(measures.twin))
     return fail(ErrorCode::invalid_input, "'geometry.picture_px': expected numbers above 0");
+  if (!drift_drawable(measures.main) || !drift_drawable(measures.twin))
+    return fail(ErrorCode::invalid_input, "'drift': expected lists of one length");
   return measures;
 }
 

@@ -36,6 +36,12 @@ struct CtfGroups {
   std::vector<BarsCtf> groups;
 };
 
+/// Signal transfer, for figures.
+struct TransferCurve {
+  std::vector<TransferStep> steps;
+  double slope = 0, offset_k = 0;
+};
+
 /// Where the triangles lie beside the fitted lens, for figures.
 struct GeometryMap {
   double width = 0, height = 0;  ///< of the picture, in pixels
@@ -57,7 +63,9 @@ struct MeasureLines {
   std::vector<MeasureLine> lines;
   std::optional<MtfCurves> mtf{};
   std::optional<CtfGroups> ctf{};
+  std::optional<TransferCurve> transfer{};
   std::optional<GeometryMap> geometry{};
+  std::optional<DriftLaw> drift{};
   std::optional<PlatePanels> picture{};
   std::vector<PixelMap> maps{};
   std::vector<std::string> reasons;
@@ -73,8 +81,8 @@ struct SessionMeasures {
   std::optional<MeasureLines> twin;
 };
 
-/// {"main": {"quantities": [...], "noise": {...}, "transfer": {...}, "geometry": {...}, "pixels": {...}, "mtf": {...},
-/// "ctf": {...}, "maps": [...], "picture": {...}, "reasons": [...]}, "twin": the same or null}
+/// {"main": {"quantities": [...], "noise": {...}, "transfer": {...}, "geometry": {...}, "drift": {...}, "pixels":
+/// {...}, "mtf": {...}, "ctf": {...}, "maps": [...], "picture": {...}, "reasons": [...]}, "twin": the same or null}
 [[nodiscard]] Json measures_json(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin);
 /// `invalid_input`, naming the key, for a record that is not complete or of other types.
 [[nodiscard]] Result<SessionMeasures> measures_from(const Json& record);

@@ -10,6 +10,7 @@
 #include "bench/session/ending_reserve.h"
 #include "bench/session/fit_record.h"
 #include "bench/session/grey_levels_csv.h"
+#include "bench/session/measure_pictures.h"
 #include "bench/session/signature.h"
 #include "bench/session/uncertainty_record.h"
 #include "bench/text/files.h"
@@ -119,6 +120,19 @@ Result<std::optional<T>> read_record(const std::filesystem::path& file, Result<T
   Result<T> record = from(*json);
   if (!record) return fail(file.string(), record.error());
   return *std::move(record);
+}
+
+/// measures.json with its pictures.
+Result<std::optional<SessionMeasures>> read_measures(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "measures.json";
+  if (!is_there(file)) return std::nullopt;
+  const Result<Json> record = read_json(file);
+  if (!record) return tl::unexpected(record.error());
+  const Result<Json> whole = with_pictures(*record, folder);
+  if (!whole) return fail(file.string(), whole.error());
+  auto measures = measures_from(*whole);
+  if (!measures) return fail(file.string(), measures.error());
+  return *std::move(measures);
 }
 
 Result<void> read_curves(const std::filesystem::path& file, Session& session) {
@@ -261,7 +275,18 @@ Result<void> SessionFolder::write_grey_levels(const std::vector<GreyFrame>& fram
 
 Result<void> SessionFolder::write_measures(const std::optional<CameraMeasures>& main,
                                            const std::optional<CameraMeasures>& twin) {
-  return write_file_atomically(folder_ / "measures.json", to_page(measures_json(main, twin)));
+  Json record = measures_json(main, twin);
+  const std::vector<MeasurePicture> pictures = take_pictures(record);
+  if (!pictures.empty()) {
+    std::error_code problem;
+    std::filesystem::create_directories(folder_ / pictures_folder, problem);
+    if (problem)
+      return fail(ErrorCode::io, (folder_ / pictures_folder).string() + ": cannot be created: " + problem.message());
+  }
+  for (const MeasurePicture& picture : pictures) {
+    if (auto written = write_file_atomically(folder_ / picture.file, picture.png); !written) return written;
+  }
+  return write_file_atomically(folder_ / "measures.json", to_page(record));
 }
 
 Result<void> SessionFolder::write_verdict(const Verdict& verdict) {
@@ -328,7 +353,7 @@ Result<Session> read_session(const std::filesystem::path& folder) {
   auto comparison = read_record(folder / "comparison.json", comparison_from);
   if (!comparison) return tl::unexpected(comparison.error());
   session.comparison = *std::move(comparison);
-  auto measures = read_record(folder / "measures.json", measures_from);
+  auto measures = read_measures(folder);
   if (!measures) return tl::unexpected(measures.error());
   session.measures = *std::move(measures);
   auto uncertainty = read_record(folder / "uncertainty.json", uncertainty_from);

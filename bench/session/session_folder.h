@@ -63,7 +63,7 @@ class SessionFolder {
   [[nodiscard]] Result<void> write_comparison(const Comparison& comparison);
   /// grey-levels.csv: contrast and signal transfer of every frame that was judged.
   [[nodiscard]] Result<void> write_grey_levels(const std::vector<GreyFrame>& frames);
-  /// measures.json.
+  /// measures.json, and its pictures in pictures/.
   [[nodiscard]] Result<void> write_measures(const std::optional<CameraMeasures>& main,
                                             const std::optional<CameraMeasures>& twin);
   /// verdict.json.

@@ -82,6 +82,13 @@ class Run {
       measures.pixels = std::move(pixels_);
       if (!pixel_reason_.empty()) measures.reasons.push_back(pixel_reason_);
     }
+    if (options_.drift_s) {
+      auto drift = follow_drift();
+      if (drift)
+        measures.drift = *std::move(drift);
+      else if (auto kept = keep("drift", drift.error()); !kept)
+        return tl::unexpected(kept.error());
+    }
     for (const double contrast_k : options_.triangles_k) {
       auto strip = show_triangles(contrast_k);
       if (strip)
@@ -278,18 +285,27 @@ class Run {
     return cv::Rect(x0, y0, x1 - x0, y1 - y0);
   }
 
-  /// Lets a camera that is told when to correct itself do so before the cube.
-  Result<void> correct() {
-    if (options_.measurement.nuc_interval_s <= 0) return {};
+  /// Lets a camera that is told when to correct itself do so; whether it was.
+  Result<bool> correct() {
+    if (options_.measurement.nuc_interval_s <= 0) return false;
     if (auto corrected = taker_.correct_nonuniformity(); !corrected) {
-      // A camera that takes no command corrects itself; what it tells of that is seen below.
-      if (corrected.error().code == ErrorCode::invalid_input) return {};
-      return corrected;
+      // A camera that takes no command corrects itself; what it tells of that is seen in its frames.
+      if (corrected.error().code == ErrorCode::invalid_input) return false;
+      return tl::unexpected(corrected.error());
     }
     const auto corrected_ns = host_.now_ns(Moment::corrected);
     if (!corrected_ns) return tl::unexpected(corrected_ns.error());
     taker_.corrected(*corrected_ns);
-    return {};
+    return true;
+  }
+
+  Result<DriftMeasure> follow_drift() {
+    const auto where = field();
+    if (!where) return tl::unexpected(where.error());
+    if (auto shown = show(0); !shown) return tl::unexpected(shown.error());
+    const auto commanded = correct();
+    if (!commanded) return tl::unexpected(commanded.error());
+    return measure_drift(taker_, *where, {.drift_s = *options_.drift_s, .commanded = *commanded}, stop_);
   }
 
   struct Cube {

@@ -9,6 +9,7 @@
 
 #include "acquisition/core/frame_source.h"
 #include "tod/camera_measures/bars_measure.h"
+#include "tod/camera_measures/drift_measure.h"
 #include "tod/camera_measures/edge_measure.h"
 #include "tod/camera_measures/pixel_measure.h"
 #include "tod/camera_measures/plate_geometry.h"
@@ -23,6 +24,7 @@ struct CameraMeasuresOptions {
   bool noise = false;                      ///< temporal noise, NETD and 3-D noise, at a contrast of 0
   int noise_frames = 64;                   ///< of the cube, at least 5
   std::optional<PixelOptions> pixels{};    ///< bad and substituted pixels in the cube of the noise; nothing: none
+  std::optional<double> drift_s{};         ///< watched after a correction, at a contrast of 0; nothing: no drift
   bool geometry = false;                   ///< IFOV and distortion, from the picture that shows where the plate is
   bool transfer = false;                   ///< signal transfer from the steps below
   std::vector<double> transfer_steps_k;    ///< contrasts that are shown, three or more
@@ -133,6 +135,7 @@ struct CameraMeasures {
   std::optional<PixelMeasure> pixels{};
   std::optional<TransferMeasure> transfer{};
   std::optional<GeometryMeasure> geometry{};
+  std::optional<DriftMeasure> drift{};
   std::optional<MtfMeasure> mtf{};
   std::optional<CtfMeasure> ctf{};
   std::vector<TriangleStrip> triangles{};  ///< by contrast

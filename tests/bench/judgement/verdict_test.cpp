@@ -305,6 +305,8 @@ TEST(DemandKinds, EveryKindHasOneRowWithANameAndAUnit) {
                                                "ifov_y_at_least",
                                                "ifov_y_at_most",
                                                "distortion",
+                                               "drift_rate",
+                                               "drift_pattern_rate",
                                                "zone_bad_pixels",
                                                "zone_substituted_pixels",
                                                "zone_clusters",

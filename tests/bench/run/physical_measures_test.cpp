@@ -13,10 +13,12 @@
 #include "bench/run/plate_picture.h"
 #include "bench/run/replay.h"
 #include "bench/run/report_data.h"
+#include "bench/session/measure_pictures.h"
 #include "bench/session/measures_record.h"
 #include "bench/session/open_session.h"
 #include "bench/text/base64.h"
 #include "bench/text/files.h"
+#include "bench/text/text.h"
 #include "sim_devices/sensor/pixel_faults.h"
 #include "tests/bench/run/bars_coverage.h"
 #include "tests/bench/run/edge_coverage.h"
@@ -133,6 +135,7 @@ TEST(PhysicalMeasures, StandBesideTheTwinInTheReportAndAreNotRepeatedByAReplay) 
   const std::string page = render_report(*data);
   EXPECT_THAT(page, HasSubstr("Physical measures"));
   EXPECT_THAT(page, HasSubstr("3-D noise tvh"));
+  EXPECT_THAT(page, HasSubstr("transfer-residuals"));
   EXPECT_THAT(page, HasSubstr("href=\"data:image/png;base64,iVBOR"));
   const auto replayed = replay_session(folder.path() / "session", {.folder = folder.path() / "again"}, {}, {}, {});
   ASSERT_TRUE(replayed) << replayed.error().message;
@@ -160,6 +163,60 @@ TEST(PhysicalMeasures, AreNotThereWhereNoneIsAskedForAndHaveAReasonWhereTheyCann
   EXPECT_FALSE(lost->measures->transfer);
   ASSERT_EQ(lost->measures->reasons.size(), 1u);
   EXPECT_THAT(lost->measures->reasons[0], HasSubstr("finding the plate"));
+}
+
+/// measures.json of a session, with another text in place of the first one found.
+void edit_measures(const std::filesystem::path& session, const std::string& from, const std::string& to) {
+  std::string text = *read_text_file(session / "measures.json");
+  const auto at = text.find(from);
+  ASSERT_NE(at, std::string::npos) << from;
+  ASSERT_TRUE(write_file_atomically(session / "measures.json", text.replace(at, from.size(), to)));
+}
+
+TEST(PhysicalMeasures, KeepTheirPicturesInFilesOfTheSession) {
+  const TemporaryFolder folder;
+  Plan plan = measures_plan();
+  plan.measures.transfer = false;
+  const auto path = folder.path() / "session";
+  const auto outcome = simulate_plan(plan, {.folder = path}, {}, {});
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  const std::string text = *read_text_file(path / "measures.json");
+  EXPECT_LT(text.size(), 20'000u);
+  const Json json = Json::parse(text);
+  EXPECT_EQ(json["main"]["picture"]["seen_png"], "pictures/main-plate-seen.png");
+  EXPECT_EQ(json["main"]["maps"][0]["png"], "pictures/main-temporal_noise.png");
+  const auto check = check_manifest(path);
+  ASSERT_TRUE(check);
+  EXPECT_TRUE(check->intact());
+  EXPECT_THAT(*read_text_file(path / "manifest.json"), HasSubstr("pictures/main-fixed_pattern.png"));
+  const auto whole = open_session(path, {});
+  ASSERT_TRUE(whole) << whole.error().message;
+  EXPECT_EQ(from_base64(whole->measures->main->picture->seen), *read_text_file(path / "pictures/main-plate-seen.png"));
+  // A session of an older program has the pictures in the record.
+  Json old = json;
+  for (const char* side : {"seen", "expected", "difference"}) {
+    const std::string key = std::string(side) + "_png";
+    old["main"]["picture"][key] = base64(*read_text_file(path / ("pictures/main-plate-" + std::string(side) + ".png")));
+  }
+  for (Json& map : old["main"]["maps"]) map["png"] = base64(*read_text_file(path / map["png"].get<std::string>()));
+  const auto as_it_was = with_pictures(old, folder.path() / "nowhere");
+  ASSERT_TRUE(as_it_was);
+  EXPECT_EQ(*as_it_was, old);
+  EXPECT_EQ(*with_pictures(json, path), old);
+
+  // What was changed is read only when that is accepted; a picture that is missing costs no number.
+  std::filesystem::remove(path / "pictures/main-temporal_noise.png");
+  EXPECT_FALSE(open_session(path, {}));
+  const auto without = open_session(path, {.accept_changed = true});
+  ASSERT_TRUE(without) << without.error().message;
+  EXPECT_EQ(without->measures->main->maps.size(), whole->measures->main->maps.size() - 1);
+  EXPECT_EQ(without->measures->main->lines.size(), whole->measures->main->lines.size());
+  EXPECT_EQ(without->measures->main->reasons.size(), 1u);
+  edit_measures(path, "pictures/main-fixed_pattern.png", "../manifest.json.png");
+  EXPECT_FALSE(open_session(path, {.accept_changed = true}));
+  edit_measures(path, "../manifest.json.png", "pictures/main-fixed_pattern.png");
+  ASSERT_TRUE(write_file_atomically(path / "pictures/main-fixed_pattern.png", "<script>"));
+  EXPECT_FALSE(open_session(path, {.accept_changed = true}));
 }
 
 Plan geometry_plan() {
@@ -223,6 +280,129 @@ TEST(PhysicalMeasures, FindTheIfovOfTheSensorAndJudgeItWithTheDistance) {
   EXPECT_EQ(decided(DemandKind::distortion).decision, VerdictKind::pass);
   EXPECT_EQ(decided(DemandKind::distortion).interval.low, 0);
   EXPECT_THAT(render_report(*report_data(*session, "session")), HasSubstr("geometry-main"));
+}
+
+/// A camera that drifts after each correction, with a clock of its own: 20 frames a second. It takes commands, or
+/// corrects itself and tells of it.
+class DriftingCamera : public FrameSource {
+ public:
+  DriftingCamera(FrameSource& camera, bool commanded) : camera_(camera), commanded_(commanded) {
+    pattern_ = cv::Mat1f(camera.info().height, camera.info().width);
+    std::vector<float> draws(pattern_.total());
+    RandomStream(5, "test.drifting").fill_normal(draws);
+    std::copy(draws.begin(), draws.end(), pattern_.begin());
+  }
+  static constexpr double level_k_per_s = 0.02, pattern_k_per_s = 0.004, frame_s = 0.05;
+
+  const SourceInfo& info() const override { return camera_.info(); }
+  Result<void> start() override { return camera_.start(); }
+  Result<Frame> next(std::chrono::milliseconds timeout) override {
+    auto frame = camera_.next(timeout);
+    if (!frame) return frame;
+    constexpr std::int64_t own_every = 150;
+    if (!commanded_ && ++taken_ % own_every == 0) corrected_at_ = taken_;
+    if (commanded_) ++taken_;
+    const double since_s = frame_s * static_cast<double>(taken_ - corrected_at_);
+    frame->host_time_ns = start_ns_ + static_cast<std::int64_t>(1e9 * frame_s * static_cast<double>(taken_));
+    frame->correction = CorrectionState::idle;
+    frame->since_correction_s = since_s;
+    const double per_count = *info().scale.kelvin_per_count(1000);
+    cv::Mat1d counts;
+    frame->counts.convertTo(counts, CV_64F);
+    cv::Mat1d pattern;
+    pattern_.convertTo(pattern, CV_64F, pattern_k_per_s * since_s / per_count, level_k_per_s * since_s / per_count);
+    cv::Mat1w drifted;
+    cv::Mat1d(counts + pattern).convertTo(drifted, CV_16U);
+    frame->counts = drifted;
+    return frame;
+  }
+  void stop() override { camera_.stop(); }
+  Result<std::string> get(const std::string& feature) override { return camera_.get(feature); }
+  Result<void> set(const std::string& feature, const std::string& value) override {
+    return camera_.set(feature, value);
+  }
+  Result<void> correct_nonuniformity() override {
+    if (!commanded_) return fail(ErrorCode::invalid_input, "no such command");
+    corrected_at_ = taken_;
+    return {};
+  }
+
+ private:
+  FrameSource& camera_;
+  bool commanded_;
+  cv::Mat1f pattern_;
+  std::int64_t taken_ = 0, corrected_at_ = 0;
+  /// Ahead of the host's clock, so that no frame is older than a change of the target.
+  std::int64_t start_ns_ = std::chrono::steady_clock::now().time_since_epoch().count() + 3'600'000'000'000;
+};
+
+CameraMeasuresOptions drift_options(const SensorSpec& sensor, const TargetPlate& plate, double drift_s) {
+  CameraMeasuresOptions options;
+  options.drift_s = drift_s;
+  options.transfer_steps_k = {16.9};
+  options.measurement.ifov_mrad = sensor.ifov_mrad();
+  options.measurement.distance_m = 2;
+  options.measurement.plates = {plate};
+  options.measurement.registration_frames = 4;
+  return options;
+}
+
+TEST(PhysicalMeasures, FindTheDriftOfACameraThatIsCorrectedOrCorrectsItself) {
+  const SensorSpec sensor = *load_sensor("sc2000");
+  const auto model = std::make_shared<const SensorModel>(sensor, full_plan(sensor, {}, {}), Accuracy::draft(), 1);
+  const TargetPlate plate = *load_plate("tcat-a");
+  for (const bool commanded : {true, false}) {
+    OpenedBench bench = simulated_bench(model, {plate}, 2, {});
+    DriftingCamera camera(*bench.camera, commanded);
+    CameraMeasuresOptions options = drift_options(sensor, plate, commanded ? 6 : 20);
+    options.measurement.nuc_interval_s = 100, options.measurement.nuc_wait_s = 0.2;
+
+    const auto measures = measure_camera(camera, *bench.target, options, *bench.host, {});
+
+    ASSERT_TRUE(measures) << measures.error().message;
+    EXPECT_THAT(measures->reasons, ::testing::IsEmpty());
+    ASSERT_TRUE(measures->drift);
+    const DriftMeasure& drift = *measures->drift;
+    EXPECT_EQ(drift.ended_by_correction, !commanded);
+    EXPECT_GE(drift.groups, commanded ? 19 : 8);
+    EXPECT_NEAR(drift.first_s, 0.3, 0.5);
+    EXPECT_EQ(drift.law.level.shape, DriftShape::linear);
+    EXPECT_EQ(drift.law.pattern.shape, DriftShape::linear);
+    const double watched_s = drift.law.time_s.back() - drift.law.time_s.front();
+    const auto off = [&](const DriftFit& fit, double rate) {
+      const double half = 0.5 * (fit.change_ci95.high.value() - fit.change_ci95.low.value());
+      return std::abs(fit.change_k - rate * watched_s) / half;
+    };
+    // Two half-widths are four standard uncertainties.
+    EXPECT_LT(off(drift.law.level, DriftingCamera::level_k_per_s), 2);
+    EXPECT_LT(off(drift.law.pattern, DriftingCamera::pattern_k_per_s), 2);
+    EXPECT_GT(drift.law.level.change_ci95.low.value(), 0.9 * DriftingCamera::level_k_per_s * watched_s);
+    EXPECT_GT(drift.law.pattern.change_ci95.low.value(), 0.9 * DriftingCamera::pattern_k_per_s * watched_s);
+    const Json written = measures_json(*measures, std::nullopt);
+    const auto record = measures_from(written);
+    ASSERT_TRUE(record) << record.error().message;
+    EXPECT_EQ(record->main->drift->pattern.seen_k, drift.law.pattern.seen_k);
+    EXPECT_NEAR(line_of(record->main, "drift_rate")->value.value(), 60 * DriftingCamera::level_k_per_s, 0.1);
+    Json cut = written;
+    cut["main"]["drift"]["level"]["seen_k"].erase(0);
+    EXPECT_FALSE(measures_from(cut));
+  }
+}
+
+TEST(PhysicalMeasures, HaveAReasonWhereNoCorrectionComes) {
+  const SensorSpec sensor = *load_sensor("sc2000");
+  const auto model = std::make_shared<const SensorModel>(sensor, full_plan(sensor, {}, {}), Accuracy::draft(), 1);
+  const TargetPlate plate = *load_plate("tcat-a");
+  OpenedBench bench = simulated_bench(model, {plate}, 2, {});
+  DriftingCamera camera(*bench.camera, true);
+  CameraMeasuresOptions options = drift_options(sensor, plate, 2);
+
+  const auto measures = measure_camera(camera, *bench.target, options, *bench.host, {});
+
+  ASSERT_TRUE(measures) << measures.error().message;
+  EXPECT_FALSE(measures->drift);
+  ASSERT_EQ(measures->reasons.size(), 1u);
+  EXPECT_THAT(measures->reasons[0], HasSubstr("drift"));
 }
 
 Plan mtf_plan() {

@@ -1,0 +1,14 @@
+// Mean and spatial noise of a camera over the time since its correction.
+#pragma once
+
+#include <optional>
+
+#include "bench/report/document.h"
+#include "bench/session/measures_record.h"
+
+namespace todbench {
+
+/// Nothing where no drift was measured.
+[[nodiscard]] std::optional<FigurePairs> drift_figures(const SessionMeasures& measures);
+
+}  // namespace todbench

@@ -1,0 +1,120 @@
+#include "tod/camera_measures/drift_measure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace todbench {
+namespace {
+
+/// A watch that the next correction cuts off after a fifth still has eight of these groups.
+constexpr int short_groups = 40;
+constexpr std::size_t most_short_groups = 24;  // more are joined in pairs
+
+/// Sums up frames by the time since the correction.
+class DriftGroups {
+ public:
+  explicit DriftGroups(double group_s) : group_s_(group_s) {}
+
+  void add(double since_s, const cv::Mat1d& kelvin) {
+    if (!first_s_) first_s_ = since_s;
+    const int at = static_cast<int>((since_s - *first_s_) / group_s_);
+    if (at != open_at_ || groups_.empty()) {
+      open_at_ = at;
+      groups_.push_back({.time_s = 0, .frames = 0, .mean_k = cv::Mat1d::zeros(kelvin.size())});
+    }
+    DriftGroup& group = groups_.back();
+    group.time_s += since_s, group.mean_k += kelvin, ++group.frames;
+  }
+  /// Means of the groups that have at least half as many frames as the fullest: the last one may be cut off.
+  [[nodiscard]] std::vector<DriftGroup> finished() && {
+    int most = 0;
+    for (const DriftGroup& group : groups_) most = std::max(most, group.frames);
+    std::erase_if(groups_, [&](const DriftGroup& group) { return 2 * group.frames < most; });
+    if (groups_.size() > most_short_groups) join_pairs();
+    for (DriftGroup& group : groups_) group.time_s /= group.frames, group.mean_k /= group.frames;
+    return std::move(groups_);
+  }
+
+ private:
+  void join_pairs() {
+    std::vector<DriftGroup> pairs;
+    for (std::size_t k = 0; k + 1 < groups_.size(); k += 2) {
+      DriftGroup pair = groups_[k];
+      const DriftGroup& next = groups_[k + 1];
+      pair.time_s += next.time_s, pair.mean_k += next.mean_k, pair.frames += next.frames;
+      pairs.push_back(std::move(pair));
+    }
+    groups_ = std::move(pairs);
+  }
+
+  double group_s_;
+  std::optional<double> first_s_;
+  int open_at_ = 0;
+  std::vector<DriftGroup> groups_;
+};
+
+double host_s(const Frame& frame) {
+  return static_cast<double>(frame.host_time_ns) * 1e-9;
+}
+
+/// The first frame after a correction that the camera made by itself.
+Result<Frame> after_own_correction(FrameTaker& taker, double wait_s, const std::stop_token& stop) {
+  std::optional<double> began_s;
+  double last_s = -1;
+  for (;;) {
+    auto frame = taker.next(stop);
+    if (!frame) return frame;
+    const double since_s = taker.since_nuc_s(*frame);
+    // One that is known from the first frame on may be long ago.
+    if (began_s && since_s >= 0 && (last_s < 0 || since_s < last_s)) return frame;
+    if (!began_s) began_s = host_s(*frame);
+    last_s = since_s;
+    if (host_s(*frame) - *began_s > wait_s) {
+      return fail(ErrorCode::integrity, fmt::format("no correction was commanded, told or seen within {:g} s", wait_s));
+    }
+  }
+}
+
+}  // namespace
+
+Result<DriftMeasure> measure_drift(FrameTaker& taker, const cv::Rect& field, const DriftOptions& options,
+                                   const std::stop_token& stop) {
+  auto frame = options.commanded ? taker.next(stop) : after_own_correction(taker, options.drift_s, stop);
+  if (!frame) return tl::unexpected(frame.error());
+  const double first_s = taker.since_nuc_s(*frame);
+  if (first_s < 0) return fail(ErrorCode::integrity, "the time of the camera's correction is not known");
+  DriftGroups groups(options.drift_s / short_groups);
+  DriftMeasure measure;
+  double last_s = first_s;
+  for (;;) {
+    const auto kelvin = window_kelvin(*frame, field);
+    if (!kelvin) return tl::unexpected(kelvin.error());
+    groups.add(last_s, *kelvin);
+    frame = taker.next(stop);
+    if (!frame) return tl::unexpected(frame.error());
+    const double since_s = taker.since_nuc_s(*frame);
+    measure.ended_by_correction = since_s < last_s;
+    if (measure.ended_by_correction || since_s - first_s >= options.drift_s) break;
+    last_s = since_s;
+  }
+  const std::vector<DriftGroup> means = std::move(groups).finished();
+  if (means.size() < least_drift_groups) {
+    return fail(ErrorCode::integrity,
+                fmt::format("{} groups of frames within {:.1f} s after a correction are too few for a law of drift",
+                            means.size(), last_s));
+  }
+  auto law = drift_law(means);
+  if (!law) return tl::unexpected(law.error());
+  measure.groups = static_cast<int>(means.size());
+  measure.frames_each = std::min_element(means.begin(), means.end(), [](const DriftGroup& a, const DriftGroup& b) {
+                          return a.frames < b.frames;
+                        })->frames;
+  measure.first_s = means.front().time_s, measure.last_s = means.back().time_s;
+  measure.law = *std::move(law);
+  return measure;
+}
+
+}  // namespace todbench
