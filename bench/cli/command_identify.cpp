@@ -17,7 +17,7 @@ struct IdentifyArguments {
   std::string set;
   ChainOptions chain;
   std::vector<double> ranges_m;
-  double m75 = 5.1;
+  double m75 = 5.1, cn2 = 0;
   int decisions = 2000;
   bool plan = false;
   std::string templates = "camera", cues = "all";
@@ -31,6 +31,12 @@ Result<IdentificationStudyTask> identification_task(const IdentifyArguments& a, 
   if (!chain) return tl::unexpected(chain.error());
   task.set = *std::move(set);
   task.sensor = std::move(chain->sensor);
+  if (a.cn2 > 0) {
+    SensorSpec behind = task.sensor;
+    behind.turbulence_cn2_m_minus_2_3 = task.cn2_m_minus_2_3 = a.cn2;
+    behind.turbulence_path_m = a.ranges_m.back();
+    if (auto valid = validate(behind); !valid) return fail("--cn2", valid.error());
+  }
   task.observer = std::move(chain->observer);
   task.air = std::move(chain->air);
   task.accuracy = chain->accuracy;
@@ -68,6 +74,8 @@ Json identification_json(const IdentificationStudyTask& task, const Identificati
                          const IdentificationStudy& study) {
   Json ranges = Json::array(), names = Json::array(), tod = Json::array();
   for (const auto& target : task.set.targets) names.push_back(target.name);
+  Json turbulence;
+  if (task.cn2_m_minus_2_3 > 0) turbulence = {{"cn2_m_minus_2_3", task.cn2_m_minus_2_3}};
   for (const auto& point : study.points) {
     ranges.push_back({{"range_m", json_number(point.range_m)},
                       {"transmittance", json_number(point.transmittance)},
@@ -96,6 +104,7 @@ Json identification_json(const IdentificationStudyTask& task, const Identificati
           {"templates", task.knowledge == TemplateKnowledge::ideal ? "ideal" : "camera"},
           {"cues", task.cues == TargetCues::shape ? "shape" : "all"},
           {"atmosphere", {{"name", task.air.name}, {"source", task.air.source}}},
+          {"turbulence", turbulence},
           {"planned", effort_json(effort)},
           {"targets", names},
           {"azimuths_deg", task.set.azimuths_deg},
@@ -189,6 +198,11 @@ void add_identify_command(CLI::App& app, Program& program) {
       ->add_option("--cues", a->cues, "what differs between targets: all, or shape (one size, one temperature a view)")
       ->check(CLI::IsMember({"all", "shape"}))
       ->capture_default_str();
+  command
+      ->add_option("--cn2", a->cn2,
+                   "structure parameter of the turbulence along the path of every range in m^(-2/3); default: that of "
+                   "the sensor, 0")
+      ->check(number_in(0, 1e-11));
   command->add_flag("--plan", a->plan, "say what it would take, and end");
   command->add_option("--m75", a->m75, "of the range that the TOD curve predicts")
       ->check(number_in(1e-6, 1e6))

@@ -4,9 +4,12 @@
 #include <QComboBox>
 #include <QElapsedTimer>
 #include <QEventLoop>
+#include <QPushButton>
+#include <QSpinBox>
 #include <QTimer>
 #include <cstdio>
 #include <functional>
+#include <utility>
 
 #include "bench/gui/views/page_check.h"
 
@@ -60,6 +63,27 @@ bool answer_as_a_person(MainWindow& window, const std::filesystem::path& folder)
   return good;
 }
 
+/// A person before targets and before bars, with a picture of each in the middle of it.
+bool ask_of_targets_and_bars(MainWindow& window, const std::filesystem::path& folder) {
+  bool good = true;
+  window.show_view(View::human);
+  auto* question = window.findChild<QComboBox*>("humanQuestion");
+  auto* each = window.findChild<QSpinBox*>("humanPerSize");
+  each->setValue(2);
+  for (const auto& [index, name] : {std::pair(1, "human-targets"), std::pair(2, "human-bars")}) {
+    question->setCurrentIndex(index);
+    window.findChild<QPushButton*>("beginHuman")->click();
+    const PersonPresenter& person = window.person();
+    if (!person.experiment()) return false;
+    for (std::size_t i = 0; i < person.experiment()->trials().size(); ++i) {
+      if (i == 8) good &= save(window, folder, name);
+      window.person().answer(person.experiment()->trials()[i].truth);
+    }
+  }
+  question->setCurrentIndex(0);
+  return good;
+}
+
 int said(bool good) {
   if (!good) std::fprintf(stderr, "todbench-gui: not every page is as it has to be\n");
   return good ? 0 : 7;
@@ -78,6 +102,7 @@ int take_session_screenshots(MainWindow& window, const std::filesystem::path& fo
   window.show_view(View::plan);
   good &= wait_until([&] { return window.plan().expected_known() && !window.plan().prices().empty(); });
   good &= save(window, folder, "plan");
+  good &= ask_of_targets_and_bars(window, folder);
   window.open_path(session);
   window.show_view(View::report);
   good &= wait_until([&] { return window.sessions().current() && !window.sessions().sessions().empty(); });

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/studies/turbulent_ranges.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "tod/plate/test_pattern.h"
@@ -36,22 +37,6 @@ std::vector<double> not_increasing(const std::vector<double>& values) {
   return out;
 }
 
-/// The range of 75 %; beyond either end of the ranges: nothing, with the side.
-struct Crossing {
-  std::optional<double> range_m;
-  bool beyond_last = false;
-};
-Crossing crossing_of(const std::vector<double>& ranges_m, const std::vector<double>& proportions) {
-  const auto p = not_increasing(proportions);
-  if (p.front() < wanted) return {};
-  for (std::size_t i = 0; i + 1 < p.size(); ++i) {
-    if (p[i + 1] >= wanted) continue;
-    const double share = (p[i] - wanted) / (p[i] - p[i + 1]);
-    return {ranges_m[i] * std::pow(ranges_m[i + 1] / ranges_m[i], share), false};
-  }
-  return {std::nullopt, true};
-}
-
 SetCriterion range_of_75_percent(const IdentificationStudyTask& task, const std::vector<IdentificationPoint>& points) {
   const auto proportions = [&](const std::vector<std::size_t>& draws) {
     std::vector<double> out;
@@ -65,15 +50,15 @@ SetCriterion range_of_75_percent(const IdentificationStudyTask& task, const std:
   std::vector<std::size_t> draws(points.front().by_draw.size());
   for (std::size_t d = 0; d < draws.size(); ++d) draws[d] = d;
   SetCriterion out;
-  out.value = crossing_of(task.ranges_m, proportions(draws)).range_m;
+  out.value = crossing_of_75_percent(task.ranges_m, proportions(draws)).at;
   // Draws are what is independent: targets, sides and ranges share them.
   std::vector<double> found;
   const RandomStream numbers(task.seed, "identification.resample");
   for (std::uint64_t r = 0; r < resamples; ++r) {
     std::vector<std::size_t> drawn;
     for (std::uint64_t d = 0; d < draws.size(); ++d) drawn.push_back(numbers.sub(r).below(draws.size(), d));
-    const Crossing crossing = crossing_of(task.ranges_m, proportions(drawn));
-    found.push_back(crossing.range_m ? *crossing.range_m : crossing.beyond_last ? 1e300 : 0);
+    const Crossing75 crossing = crossing_of_75_percent(task.ranges_m, proportions(drawn));
+    found.push_back(crossing.at ? *crossing.at : crossing.beyond_last ? 1e300 : 0);
   }
   std::sort(found.begin(), found.end());
   const auto side = [&](std::size_t at) -> std::optional<double> {
@@ -88,11 +73,13 @@ SetCriterion range_of_75_percent(const IdentificationStudyTask& task, const std:
 Result<std::vector<TodThreshold>> tod_curve_for(const IdentificationStudyTask& task, double dt_k, double least_tau,
                                                 std::vector<std::string>& notes) {
   TemplateObserver observer(task.observer, triangle_alternatives());
-  const SensorPlan plan = full_plan(task.sensor, {}, {});
+  SensorSpec sensor = task.sensor;
+  if (task.cn2_m_minus_2_3 > 0) sensor.turbulence_cn2_m_minus_2_3 = 0;  // its paths come later
+  const SensorPlan plan = full_plan(sensor, {}, {});
   const double least = dt_k * least_tau / 1.1;
   std::vector<TodThreshold> curve;
   for (const double contrast_k : {least, std::sqrt(least * 1.1 * dt_k), 1.1 * dt_k}) {
-    const auto points = direct_estimate(task.sensor, plan, observer, {contrast_k},
+    const auto points = direct_estimate(sensor, plan, observer, {contrast_k},
                                         {.accuracy = task.accuracy, .seed = task.seed, .stop = task.stop});
     if (!points) {
       if (points.error().code == ErrorCode::interrupted) return tl::unexpected(points.error());
@@ -106,15 +93,37 @@ Result<std::vector<TodThreshold>> tod_curve_for(const IdentificationStudyTask& t
   return curve;
 }
 
-/// M of the set at a range.
+/// M of the set at a range, by the curve behind the turbulence of that path where there is one.
 std::optional<double> m_at(const IdentificationStudyTask& task, const IdentificationStudy& study,
-                           std::optional<double> range_m) {
+                           const std::optional<TurbulentSources>& turbulent, std::optional<double> range_m) {
   if (!range_m || study.tod.empty()) return std::nullopt;
   const auto tau = task.air.air.at(*range_m);
   if (!tau) return std::nullopt;
-  const auto acuity = interpolated_acuity_per_mrad(study.tod, study.dt_rss_k * *tau);
+  const auto curve = turbulent ? turbulent->thresholds_at(study.tod, *range_m) : study.tod;
+  if (curve.empty()) return std::nullopt;
+  const auto acuity = interpolated_acuity_per_mrad(curve, study.dt_rss_k * *tau);
   if (!acuity) return std::nullopt;
   return 1e3 * study.size_m / *range_m * *acuity;
+}
+
+/// The sensor before the turbulence of a range.
+SensorSpec turbulent_sensor(const IdentificationStudyTask& task, double range_m) {
+  SensorSpec spec = task.sensor;
+  if (task.cn2_m_minus_2_3 > 0) {
+    spec.turbulence_cn2_m_minus_2_3 = task.cn2_m_minus_2_3;
+    spec.turbulence_path_m = range_m;
+  }
+  return spec;
+}
+
+/// The curve of the study at the paths of the experiment and of the range that it predicts without turbulence.
+Result<TurbulentSources> behind_turbulence(const IdentificationStudyTask& task, const IdentificationStudy& study,
+                                           const RangeTask& question) {
+  const auto still = predict_range(study.tod, question);
+  if (!still) return tl::unexpected(still.error());
+  const double longest_m = std::max(task.ranges_m.back(), 2.2 * still->r75_ci95_m.high.value_or(0));
+  return TurbulentSources::of({.thresholds = study.tod, .sensor = task.sensor}, task.observer, task.cn2_m_minus_2_3,
+                              longest_m);
 }
 
 Result<void> check_ranges(const IdentificationStudyTask& task) {
@@ -133,11 +142,23 @@ Result<void> check_ranges(const IdentificationStudyTask& task) {
 
 }  // namespace
 
+Crossing75 crossing_of_75_percent(const std::vector<double>& at, const std::vector<double>& proportions) {
+  const auto p = not_increasing(proportions);
+  if (p.front() < wanted) return {};
+  for (std::size_t i = 0; i + 1 < p.size(); ++i) {
+    if (p[i + 1] >= wanted) continue;
+    const double share = (p[i] - wanted) / (p[i] - p[i + 1]);
+    return {at[i] * std::pow(at[i + 1] / at[i], share), false};
+  }
+  return {std::nullopt, true};
+}
+
 Result<IdentificationTask> experiment_of(const IdentificationStudyTask& task) {
   if (auto fine = check_ranges(task); !fine) return tl::unexpected(fine.error());
   IdentificationTask experiment;
   experiment.sensor = task.sensor;
-  experiment.plan = full_plan(task.sensor, {}, {});
+  experiment.plan = full_plan(turbulent_sensor(task, task.ranges_m.front()), {}, {});
+  experiment.cn2_m_minus_2_3 = task.cn2_m_minus_2_3;
   experiment.observer = task.observer;
   experiment.accuracy = task.accuracy;
   experiment.knowledge = task.knowledge;
@@ -180,12 +201,20 @@ Result<IdentificationStudy> study_identification(const IdentificationStudyTask& 
   if (!curve) return tl::unexpected(curve.error());
   study.tod = *std::move(curve);
   if (study.tod.empty()) return study;
-  study.m75 = {m_at(task, study, study.r75_m.value),
-               {m_at(task, study, study.r75_m.ci95.high), m_at(task, study, study.r75_m.ci95.low)}};
+  const RangeTask question{.size_m = study.size_m, .delta_t_k = study.dt_rss_k, .m75 = task.m75, .air = task.air.air};
+  std::optional<TurbulentSources> turbulent;
+  if (task.cn2_m_minus_2_3 > 0) {
+    auto behind = behind_turbulence(task, study, question);
+    if (!behind) return tl::unexpected(behind.error());
+    turbulent = *std::move(behind);
+  }
+  study.m75 = {
+      m_at(task, study, turbulent, study.r75_m.value),
+      {m_at(task, study, turbulent, study.r75_m.ci95.high), m_at(task, study, turbulent, study.r75_m.ci95.low)}};
   const auto v50 = [](std::optional<double> m) { return m ? std::optional(*m / m75_from_v50(1)) : std::nullopt; };
   study.v50 = {v50(study.m75.value), {v50(study.m75.ci95.low), v50(study.m75.ci95.high)}};
-  auto predicted = predict_range(
-      study.tod, {.size_m = study.size_m, .delta_t_k = study.dt_rss_k, .m75 = task.m75, .air = task.air.air});
+  auto predicted =
+      turbulent ? turbulent_prediction(*turbulent, study.tod, question) : predict_range(study.tod, question);
   if (!predicted) return tl::unexpected(predicted.error());
   study.predicted = *std::move(predicted);
   return study;

@@ -20,8 +20,9 @@ struct IdentificationStudyTask {
   std::vector<double> ranges_m;  ///< at least two, increasing
   TemplateKnowledge knowledge = TemplateKnowledge::behind_camera;
   TargetCues cues = TargetCues::all;
-  int decisions = 2000;  ///< for every target at every range
-  double m75 = 5.1;      ///< of the range that is predicted
+  int decisions = 2000;        ///< for every target at every range
+  double m75 = 5.1;            ///< of the range that is predicted
+  double cn2_m_minus_2_3 = 0;  ///< of turbulence along the path of each range; 0: as the sensor has it
   std::uint64_t seed = 1;
   std::stop_token stop{};
 };
@@ -31,6 +32,14 @@ struct SetCriterion {
   std::optional<double> value;
   Interval ci95;
 };
+
+/// Where proportions over something that rises pass 75 %, made monotone (pool adjacent violators), linear in its
+/// logarithm; nothing beyond either end.
+struct Crossing75 {
+  std::optional<double> at;
+  bool beyond_last = false;  ///< at least 75 % everywhere
+};
+[[nodiscard]] Crossing75 crossing_of_75_percent(const std::vector<double>& at, const std::vector<double>& proportions);
 
 struct IdentificationStudy {
   std::vector<IdentificationPoint> points;

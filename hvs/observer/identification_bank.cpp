@@ -125,6 +125,13 @@ float largest_sum(const float* signal, const float* first, float first_scale, co
 
 }  // namespace
 
+int identification_window_samples(const TemplateObserverSpec& spec, std::span<const AlternativeAspects> alternatives,
+                                  int samples_per_pitch) {
+  const double reach = reach_of(alternatives);
+  const double half_pitch = std::ceil(1.1 * reach / samples_per_pitch + spec.window_margin_pitch - 1e-9);
+  return 2 * static_cast<int>(half_pitch) * samples_per_pitch;
+}
+
 Result<IdentificationBank> IdentificationBank::build(const TemplateObserverSpec& spec,
                                                      std::span<const AlternativeAspects> alternatives,
                                                      int samples_per_pitch, const std::optional<KnownCamera>& camera) {
@@ -134,9 +141,8 @@ Result<IdentificationBank> IdentificationBank::build(const TemplateObserverSpec&
   const double reach = reach_of(alternatives);
   IdentificationBank bank;
   bank.places_ = 2 * search + 1;
-  const double half_pitch = std::ceil(1.1 * reach / samples_per_pitch + spec.window_margin_pitch - 1e-9);
-  const int half = static_cast<int>(half_pitch) * samples_per_pitch;
-  bank.window_ = 2 * half;
+  bank.window_ = identification_window_samples(spec, alternatives, samples_per_pitch);
+  const int half = bank.window_ / 2;
   const std::vector<int> nodes = node_places(bank.places_);
   bank.weights_ = lagrange_weights(bank.places_, nodes);
   bank.first_aspect_.push_back(0);

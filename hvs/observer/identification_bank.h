@@ -23,6 +23,11 @@ struct KnownCamera {
   double band_per_sample = 3;
 };
 
+/// Side of the window in which the alternatives are looked for, in samples, even.
+[[nodiscard]] int identification_window_samples(const TemplateObserverSpec& spec,
+                                                std::span<const AlternativeAspects> alternatives,
+                                                int samples_per_pitch);
+
 /// The template observer generalised from triangles: as there a template is the ideal picture behind display and blur
 /// of the eye, without its mean and of unit norm, at every place of the search; an alternative's score is the largest
 /// over its sides and places.

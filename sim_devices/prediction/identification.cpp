@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "hvs/observer/identification_bank.h"
+#include "sim_devices/prediction/seen_window.h"
 #include "sim_devices/prediction/window_noise.h"
 #include "sim_devices/sensor/effect_display.h"
 #include "sim_devices/sensor/effect_quantisation.h"
@@ -95,17 +96,37 @@ Result<SeenTargets> seen_targets(const IdentificationTask& task) {
   return out;
 }
 
+/// Each draw meets a view in one of the phases; views begin with different ones.
+std::size_t first_draw_of(std::size_t phase, std::size_t target, std::size_t aspect) {
+  return (phase + target + 5 * aspect) % phases;
+}
+
+/// Of a target's origin from the middle of the window, in samples.
+cv::Point2d view_offset(std::size_t phase) {
+  const auto offset = [](std::size_t k) { return (static_cast<double>(k) + 0.5) / phases_on_axis - 0.5; };
+  return {offset(phase % phases_on_axis), offset(phase / phases_on_axis)};
+}
+
+double samples_per_metre(const SensorSpec& spec, const IdentificationRange& range) {
+  return 1e3 / (range.range_m * spec.ifov_mrad()) * spec.samples_per_pitch();
+}
+
+std::vector<AlternativeAspects> in_samples(const SeenTargets& targets, double samples_per_metre) {
+  std::vector<AlternativeAspects> alternatives;
+  for (const auto& target : targets) {
+    auto& own = alternatives.emplace_back();
+    for (const auto& aspect : target) own.push_back(placed(aspect.edges_m, samples_per_metre, 0, {0, 0}));
+  }
+  return alternatives;
+}
+
 /// The observer before the camera at one range.
 class RangeTrial {
  public:
   static Result<RangeTrial> create(const IdentificationTask& task, const SeenTargets& targets,
                                    IdentificationRange range, const SceneImager& imager) {
     RangeTrial trial(task, range, imager);
-    std::vector<AlternativeAspects> alternatives;
-    for (const auto& target : targets) {
-      auto& own = alternatives.emplace_back();
-      for (const auto& aspect : target) own.push_back(placed(aspect.edges_m, trial.samples_per_metre_, 0, {0, 0}));
-    }
+    std::vector<AlternativeAspects> alternatives = in_samples(targets, trial.samples_per_metre_);
     auto bank =
         IdentificationBank::build(task.observer, alternatives, trial.spec_.samples_per_pitch(), trial.known_camera());
     if (!bank) return tl::unexpected(bank.error());
@@ -129,8 +150,7 @@ class RangeTrial {
         for (std::size_t phase = 0; phase < phases; ++phase) {
           if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
           const auto signal = bank_->project(patch(alternatives_[t][a], phase));
-          // Each draw meets this view in one phase; views begin with different ones.
-          for (std::size_t d = (phase + t + 5 * a) % phases; d < draws; d += phases) {
+          for (std::size_t d = first_draw_of(phase, t, a); d < draws; d += phases) {
             const std::size_t answer = bank_->best(signal, sensor_noise_[d], 1.0F, white_[d], own_noise(contrast_k));
             ++point.answers[t][answer];
             if (answer == t) point.by_draw[d] += 1 / shown;
@@ -145,11 +165,9 @@ class RangeTrial {
   RangeTrial(const IdentificationTask& task, IdentificationRange range, const SceneImager& imager)
       : task_(task),
         range_(range),
-        imager_(imager),
-        spec_(as_planned(task.sensor, task.plan)),
-        samples_per_metre_(1e3 / (range.range_m * spec_.ifov_mrad()) * spec_.samples_per_pitch()) {
-    if (has_display(spec_)) taps_ = taps_of([this](double f) { return display_response(spec_, f); });
-  }
+        spec_(sensor_at(task, range.range_m)),
+        window_(spec_, imager),
+        samples_per_metre_(samples_per_metre(spec_, range)) {}
 
   /// Of the camera with its display; nothing where the observer knows nothing of it. Cut at 3 cycles per pitch, which
   /// leaves out 0.3 % of the contrast at an edge.
@@ -172,14 +190,7 @@ class RangeTrial {
   }
 
   [[nodiscard]] cv::Mat1f patch(const std::vector<StepEdge>& edges, std::size_t phase) const {
-    const int margin = static_cast<int>(taps_.size()) / 2, side = bank_->window_samples() + 2 * margin;
-    const auto offset = [](std::size_t k) { return (static_cast<double>(k) + 0.5) / phases_on_axis - 0.5; };
-    const cv::Point2d middle((side - 1) / 2.0 + offset(phase % phases_on_axis),
-                             (side - 1) / 2.0 + offset(phase / phases_on_axis));
-    cv::Mat1f seen;
-    imager_.image(placed(edges, 1, 0, middle), {side, side}).convertTo(seen, CV_32F, range_.transmittance);
-    if (!taps_.empty()) seen = filtered(seen, taps_);
-    return centred(seen(cv::Rect(margin, margin, bank_->window_samples(), bank_->window_samples())));
+    return centred(window_.picture(edges, bank_->window_samples(), view_offset(phase), range_.transmittance));
   }
 
   /// Of the observer, in kelvin per sample: its own, and what it sees of the sensor's beyond what there is.
@@ -202,16 +213,24 @@ class RangeTrial {
 
   const IdentificationTask& task_;
   IdentificationRange range_;
-  const SceneImager& imager_;
   SensorSpec spec_;
+  SeenWindow window_;
   double samples_per_metre_;
-  std::vector<double> taps_;
   std::optional<IdentificationBank> bank_;
   std::vector<AlternativeAspects> alternatives_;
   std::vector<std::vector<float>> sensor_noise_, white_;  ///< by draw
 };
 
 }  // namespace
+
+SensorSpec sensor_at(const IdentificationTask& task, double range_m) {
+  SensorSpec spec = task.sensor;
+  if (task.cn2_m_minus_2_3 > 0) {
+    spec.turbulence_cn2_m_minus_2_3 = task.cn2_m_minus_2_3;
+    spec.turbulence_path_m = range_m;
+  }
+  return as_planned(spec, task.plan);
+}
 
 Result<IdentificationEffort> planned_effort(const IdentificationTask& task) {
   const auto targets = seen_targets(task);
@@ -272,7 +291,9 @@ Result<std::vector<IdentificationPoint>> identify(const IdentificationTask& task
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
     for (std::size_t i = next++; i < found.size(); i = next++) {
-      auto trial = RangeTrial::create(task, *targets, task.ranges[i], imager);
+      std::optional<SceneImager> own;
+      if (task.cn2_m_minus_2_3 > 0) own.emplace(sensor_at(task, task.ranges[i].range_m), task.plan, task.accuracy);
+      auto trial = RangeTrial::create(task, *targets, task.ranges[i], own ? *own : imager);
       if (trial) {
         found[i] = trial->run(*targets);
       } else {
@@ -293,6 +314,50 @@ Result<std::vector<IdentificationPoint>> identify(const IdentificationTask& task
     points.push_back(*std::move(point));
   }
   return points;
+}
+
+/// One range: everything but the observer.
+struct IdentificationFrames::Range {
+  Range(const IdentificationTask& task, const SeenTargets& targets, const IdentificationRange& range)
+      : spec(sensor_at(task, range.range_m)),
+        imager(spec, task.plan, task.accuracy),
+        window(spec, imager),
+        transmittance(range.transmittance),
+        alternatives(in_samples(targets, samples_per_metre(spec, range))),
+        side(identification_window_samples(task.observer, alternatives, spec.samples_per_pitch())),
+        noise(spec, task.plan, task.accuracy, side, task.seed) {}
+  SensorSpec spec;
+  SceneImager imager;
+  SeenWindow window;
+  double transmittance;
+  std::vector<AlternativeAspects> alternatives;
+  int side;
+  WindowNoise noise;
+};
+
+Result<IdentificationFrames> IdentificationFrames::of(const IdentificationTask& task) {
+  const auto targets = seen_targets(task);
+  if (!targets) return tl::unexpected(targets.error());
+  IdentificationFrames frames;
+  for (const auto& range : task.ranges) frames.ranges_.push_back(std::make_shared<const Range>(task, *targets, range));
+  for (const auto& target : *targets) {
+    auto& own = frames.contrasts_k_.emplace_back();
+    for (const auto& aspect : target) own.push_back(aspect.dt_rss_k);
+  }
+  return frames;
+}
+
+cv::Mat1f IdentificationFrames::frame_k(std::size_t range, std::size_t target, std::size_t aspect,
+                                        std::uint64_t draw) const {
+  const Range& at = *ranges_[range];
+  std::size_t phase = 0;
+  while (first_draw_of(phase, target, aspect) != draw % phases) ++phase;
+  return at.window.picture(at.alternatives[target][aspect], at.side, view_offset(phase), at.transmittance) +
+         at.noise.sensor_k(draw);
+}
+
+double IdentificationFrames::contrast_k(std::size_t range, std::size_t target, std::size_t aspect) const {
+  return contrasts_k_[target][aspect] * ranges_[range]->transmittance;
 }
 
 }  // namespace todbench

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <opencv2/core.hpp>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -46,9 +48,15 @@ struct IdentificationTask {
   TemplateKnowledge knowledge = TemplateKnowledge::behind_camera;
   TargetCues cues = TargetCues::all;
   int decisions = 2000;  ///< for every target at every range, in all aspects together
+  /// Turbulence along the path of each range, in place of that of the sensor; 0: as the sensor has it. The plan
+  /// simulates it. An observer who knows the targets behind the camera knows them behind the air, too.
+  double cn2_m_minus_2_3 = 0;
   std::uint64_t seed = 1;
   std::stop_token stop{};
 };
+
+/// The sensor of the task at a range, as the plan has it.
+[[nodiscard]] SensorSpec sensor_at(const IdentificationTask& task, double range_m);
 
 struct IdentificationPoint {
   double range_m = 0, transmittance = 1;
@@ -76,5 +84,23 @@ struct IdentificationEffort {
 /// side, one without contrast, counts that are too coarse for the noise, targets too large for the observer;
 /// `interrupted`.
 [[nodiscard]] Result<std::vector<IdentificationPoint>> identify(const IdentificationTask& task);
+
+/// What the camera of the experiment shows: the pictures of identify(), for another observer. Immutable, thread-safe.
+class IdentificationFrames {
+ public:
+  /// Errors: those of identify() that targets are refused with.
+  [[nodiscard]] static Result<IdentificationFrames> of(const IdentificationTask& task);
+  /// Kelvin above the background on the display, with the noise of this draw and the sampling phase in which the draw
+  /// meets this view: identify() of the same task takes the same. All frames of a range have one size.
+  [[nodiscard]] cv::Mat1f frame_k(std::size_t range, std::size_t target, std::size_t aspect, std::uint64_t draw) const;
+  /// dT_RSS behind the air.
+  [[nodiscard]] double contrast_k(std::size_t range, std::size_t target, std::size_t aspect) const;
+
+ private:
+  struct Range;
+  IdentificationFrames() = default;
+  std::vector<std::shared_ptr<const Range>> ranges_;
+  std::vector<std::vector<double>> contrasts_k_;  ///< [target][aspect], before the air
+};
 
 }  // namespace todbench

@@ -12,8 +12,8 @@
 #include "hvs/observer/identification_bank.h"
 #include "sim_devices/prediction/bar_pattern.h"
 #include "sim_devices/prediction/bar_profile.h"
+#include "sim_devices/prediction/seen_window.h"
 #include "sim_devices/prediction/window_noise.h"
-#include "sim_devices/sensor/effect_display.h"
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/scene_image.h"
 #include "sim_devices/sensor/transfer_functions.h"
@@ -115,6 +115,24 @@ PassedContrast passed_contrast(const std::vector<double>& contrasts_k, const std
   return {};
 }
 
+/// Of the pattern's middle from that of the window, in samples, across the bars.
+double offset_across(std::size_t phase) {
+  return (static_cast<double>(phase % phases_across) + 0.5) / phases_across - 0.5;
+}
+
+/// The same in the picture.
+cv::Point2d bar_offset(std::size_t phase, BarAxis axis) {
+  const std::size_t row = phase / phases_across;
+  const double along = (static_cast<double>(row) + 0.5) / phases_along - 0.5;
+  return axis == BarAxis::vertical ? cv::Point2d(along, offset_across(phase))
+                                   : cv::Point2d(offset_across(phase), along);
+}
+
+std::vector<StepEdge> bar_edges_in_samples(const SensorSpec& spec, BarPattern pattern, double frequency_per_pitch,
+                                           BarAxis axis) {
+  return placed(bar_edges(pattern, frequency_per_pitch, axis), spec.samples_per_pitch(), 0, {0, 0});
+}
+
 /// One frequency before the observer.
 class BarTrial {
  public:
@@ -177,23 +195,12 @@ class BarTrial {
   };
 
   BarTrial(const VirtualMrtdTask& task, const SensorSpec& spec, double frequency_per_pitch)
-      : task_(task), spec_(spec), frequency_per_pitch_(frequency_per_pitch) {
-    if (has_display(spec_)) taps_ = taps_of([this](double f) { return display_response(spec_, f); });
-  }
+      : task_(task), spec_(spec), frequency_per_pitch_(frequency_per_pitch) {}
 
   [[nodiscard]] std::vector<StepEdge> edges(BarPattern pattern) const {
-    return placed(bar_edges(pattern, frequency_per_pitch_, task_.axis), spec_.samples_per_pitch(), 0, {0, 0});
+    return bar_edges_in_samples(spec_, pattern, frequency_per_pitch_, task_.axis);
   }
   [[nodiscard]] double frequency_per_sample() const { return frequency_per_pitch_ / spec_.samples_per_pitch(); }
-
-  /// Of the pattern's middle from that of the window, in samples: across the bars, and along them.
-  [[nodiscard]] static double offset_across(std::size_t phase) {
-    return (static_cast<double>(phase % phases_across) + 0.5) / phases_across - 0.5;
-  }
-  [[nodiscard]] static double offset_along(std::size_t phase) {
-    const std::size_t row = phase / phases_across;
-    return (static_cast<double>(row) + 0.5) / phases_along - 0.5;
-  }
 
   [[nodiscard]] Seen of(cv::Mat1f window) const {
     Seen out;
@@ -208,15 +215,8 @@ class BarTrial {
   }
 
   [[nodiscard]] Seen seen(const SceneImager& imager, BarPattern pattern, std::size_t phase) const {
-    const int margin = static_cast<int>(taps_.size()) / 2, window = bank_->window_samples();
-    const int side = window + 2 * margin;
-    const double centre = (side - 1) / 2.0;
-    cv::Point2d middle(centre + offset_across(phase), centre + offset_along(phase));
-    if (task_.axis == BarAxis::vertical) std::swap(middle.x, middle.y);
-    cv::Mat1f picture;
-    imager.image(placed(edges(pattern), 1, 0, middle), {side, side}).convertTo(picture, CV_32F);
-    if (!taps_.empty()) picture = filtered(picture, taps_);
-    return of(picture(cv::Rect(margin, margin, window, window)));
+    const SeenWindow window(spec_, imager);
+    return of(window.picture(edges(pattern), bank_->window_samples(), bar_offset(phase, task_.axis), 1));
   }
 
   Result<void> draw_noise() {
@@ -287,7 +287,6 @@ class BarTrial {
   const VirtualMrtdTask& task_;
   SensorSpec spec_;
   double frequency_per_pitch_;
-  std::vector<double> taps_;
   std::optional<IdentificationBank> bank_;
   std::vector<Seen> four_, other_;    ///< by phase
   std::vector<Seen> sensor_, white_;  ///< by draw
@@ -363,6 +362,53 @@ Result<std::vector<VirtualMrtdPoint>> virtual_mrtd(const VirtualMrtdTask& task) 
     if (auto measured = trial->measure(points.back()); !measured) return tl::unexpected(measured.error());
   }
   return points;
+}
+
+/// Everything of a frequency but the observer.
+struct BarFrames::Frequency {
+  Frequency(const VirtualMrtdTask& task, const SensorSpec& sensor, double frequency_per_mrad)
+      : spec(sensor),
+        imager(spec, task.plan, task.accuracy),
+        window(spec, imager),
+        axis(task.axis),
+        frequency_per_pitch(frequency_per_mrad * spec.ifov_mrad()),
+        side(identification_window_samples(
+            task.observer,
+            std::vector<AlternativeAspects>{
+                {bar_edges_in_samples(spec, BarPattern::four_bars, frequency_per_pitch, axis)},
+                {bar_edges_in_samples(spec, BarPattern::five_bars, frequency_per_pitch, axis)}},
+            spec.samples_per_pitch())),
+        noise(spec, task.plan, task.accuracy, side, task.seed),
+        known(point_before_trials(task, spec, frequency_per_mrad)) {}
+  SensorSpec spec;
+  SceneImager imager;
+  SeenWindow window;
+  BarAxis axis;
+  double frequency_per_pitch;
+  int side;
+  WindowNoise noise;
+  VirtualMrtdPoint known;
+};
+
+Result<BarFrames> BarFrames::of(const VirtualMrtdTask& task) {
+  const SensorSpec spec = as_planned(task.sensor, task.plan);
+  if (auto fine = check_bars(task, spec); !fine) return tl::unexpected(fine.error());
+  BarFrames frames;
+  for (const double frequency : task.frequencies_per_mrad)
+    frames.frequencies_.push_back(std::make_shared<const Frequency>(task, spec, frequency));
+  return frames;
+}
+
+cv::Mat1f BarFrames::frame_k(std::size_t frequency, BarPattern pattern, double contrast_k, std::size_t phase,
+                             std::uint64_t draw) const {
+  const Frequency& at = *frequencies_[frequency];
+  return at.window.picture(bar_edges_in_samples(at.spec, pattern, at.frequency_per_pitch, at.axis), at.side,
+                           bar_offset(phase % bar_phases, at.axis), contrast_k) +
+         at.noise.sensor_k(draw);
+}
+
+double BarFrames::ideal_k(std::size_t frequency) const {
+  return frequencies_[frequency]->known.ideal_k;
 }
 
 }  // namespace todbench

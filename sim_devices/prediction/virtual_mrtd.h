@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <stop_token>
 #include <string_view>
@@ -9,6 +11,7 @@
 
 #include "acquisition/core/accuracy.h"
 #include "hvs/observer/template_observer.h"
+#include "sim_devices/prediction/bar_pattern.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"
 #include "tod/range/mrtd_formula.h"
@@ -55,5 +58,24 @@ struct VirtualMrtdPoint {
 /// draws. `invalid_input`: no frequency above 0, a pattern that has under four or over 400 samples on a side, no noise
 /// at all, counts coarser than the noise; `interrupted`.
 [[nodiscard]] Result<std::vector<VirtualMrtdPoint>> virtual_mrtd(const VirtualMrtdTask& task);
+
+/// What the camera of the task shows of bars: the pictures of virtual_mrtd(), for another observer. Immutable,
+/// thread-safe.
+class BarFrames {
+ public:
+  /// Errors: those of virtual_mrtd() about the task.
+  [[nodiscard]] static Result<BarFrames> of(const VirtualMrtdTask& task);
+  /// Kelvin above the surround on the display, with the noise of this draw, in one of 8 x 2 phases. All frames of a
+  /// frequency have one size.
+  [[nodiscard]] cv::Mat1f frame_k(std::size_t frequency, BarPattern pattern, double contrast_k, std::size_t phase,
+                                  std::uint64_t draw) const;
+  /// As VirtualMrtdPoint::ideal_k.
+  [[nodiscard]] double ideal_k(std::size_t frequency) const;
+
+ private:
+  struct Frequency;
+  BarFrames() = default;
+  std::vector<std::shared_ptr<const Frequency>> frequencies_;
+};
 
 }  // namespace todbench

@@ -1,40 +1,112 @@
 #include "bench/gui/views/human_view.h"
 
 #include <QCheckBox>
+#include <QComboBox>
 #include <QFormLayout>
 #include <QHBoxLayout>
 #include <QKeyEvent>
+#include <QLineEdit>
 #include <QSpinBox>
+#include <algorithm>
+#include <utility>
 
 #include "bench/gui/presenters/human_presenter.h"
 #include "bench/gui/presenters/measure_presenter.h"
+#include "bench/gui/presenters/person_presenter.h"
+#include "bench/gui/views/alternatives_panel.h"
 #include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/picture_view.h"
+#include "bench/plan/resources.h"
 #include "bench/report/number_format.h"
 #include "bench/report/tod_figures.h"
 
 namespace todbench {
+namespace {
 
-HumanView::HumanView(Workbench& bench, HumanPresenter& presenter, MeasurePresenter& measured, QWidget* parent)
-    : QWidget(parent), bench_(bench), presenter_(presenter), measured_(measured) {
+/// Questions of the page, in the order of the list.
+constexpr int of_triangles = 0, of_set = 1, of_bars = 2;
+
+/// "400, 800"; nothing where something is no number.
+std::optional<std::vector<double>> numbers_of(const QString& text) {
+  std::vector<double> numbers;
+  for (const QString& part : text.split(',', Qt::SkipEmptyParts)) {
+    bool good = false;
+    numbers.push_back(part.trimmed().toDouble(&good));
+    if (!good) return std::nullopt;
+  }
+  return numbers;
+}
+
+/// What the answers say, and where they are.
+QString result_of_a_person(const PersonPresenter& person) {
+  const PersonExperiment& experiment = *person.experiment();
+  const PersonResult result = person_result(experiment, person.answers());
+  QString rows;
+  for (std::size_t c = 0; c < result.conditions.size(); ++c) {
+    const PersonShare& share = result.conditions[c];
+    if (share.shown == 0 || experiment.task() == PersonTask::bars) continue;
+    rows += QString("<tr><td>%1 m&nbsp;</td><td>%2</td></tr>")
+                .arg(experiment.conditions()[c].range_m)
+                .arg(QString::fromStdString(with_interval(static_cast<double>(share.right) / share.shown, share.ci95)));
+  }
+  for (std::size_t f = 0; f < result.thresholds_k.size(); ++f) {
+    const auto& of = experiment.conditions();
+    const auto at = std::find_if(of.begin(), of.end(), [&](const PersonCondition& one) { return one.place == f; });
+    const SetCriterion& found = result.thresholds_k[f];
+    rows += QString("<tr><td>%1 /mrad&nbsp;</td><td>%2</td></tr>")
+                .arg(at->frequency_per_mrad, 0, 'g', 3)
+                .arg(found.value ? QString::fromStdString(with_interval(found.value, found.ci95)) + " K" : "none");
+  }
+  const bool set = experiment.task() == PersonTask::identify;
+  QString text = "<table cellspacing=4><tr><th>" + QString(set ? "Range" : "Frequency") + "</th><th>" +
+                 QString(set ? "right" : "75 %") + "</th></tr>" + rows + "</table>";
+  if (set && result.r75_m.value)
+    text += "<p>75 % at " + QString::fromStdString(with_interval(result.r75_m.value, result.r75_m.ci95)) + " m</p>";
+  const QString where = QString::fromStdString(person.folder().filename().string());
+  return text + "<p>" + (person.problem().isEmpty() ? "Kept in " + where.toHtmlEscaped() : person.problem()) + "</p>";
+}
+
+}  // namespace
+
+HumanView::HumanView(Workbench& bench, HumanPresenter& presenter, PersonPresenter& person, MeasurePresenter& measured,
+                     QWidget* parent)
+    : QWidget(parent), bench_(bench), presenter_(presenter), person_(person), measured_(measured) {
   setFocusPolicy(Qt::StrongFocus);
   auto* layout = new QHBoxLayout(this);
+  auto* seen = new QVBoxLayout;
   picture_ = new PictureView;
   picture_->setObjectName("humanPicture");
   picture_->setFocusPolicy(Qt::NoFocus);
   // The grey of the surround of every patch: the eye adapts to one luminance.
   picture_->set_surround(QColor(128, 128, 128));
   picture_->setToolTip({});
-  layout->addWidget(picture_, 1);
+  seen->addWidget(picture_, 1);
+  alternatives_ = new AlternativesPanel;
+  seen->addWidget(alternatives_, 0, Qt::AlignHCenter);
+  layout->addLayout(seen, 1);
+  layout->addWidget(side_panel());
+  connect(question_, &QComboBox::currentIndexChanged, this, &HumanView::show_question);
+  connect(limited_, &QCheckBox::toggled, shown_ms_, &QWidget::setEnabled);
+  connect(begin_, &QPushButton::clicked, this, &HumanView::begin);
+  connect(abort_, &QPushButton::clicked, &presenter_, &HumanPresenter::abort);
+  connect(abort_, &QPushButton::clicked, &person_, &PersonPresenter::abort);
+  connect(alternatives_, &AlternativesPanel::chosen, &person_,
+          [this](int alternative) { person_.answer(static_cast<std::size_t>(alternative)); });
+  connect(&presenter_, &HumanPresenter::updated, this, &HumanView::show_state);
+  connect(&person_, &PersonPresenter::updated, this, &HumanView::show_state);
+  connect(&measured_, &MeasurePresenter::state_changed, this, &HumanView::show_state);
+  show_question();
+}
+
+QWidget* HumanView::side_panel() {
   auto* panel = new QWidget;
   panel->setFixedWidth(290);
   auto* side = new QVBoxLayout(panel);
   side->setContentsMargins(0, 0, 0, 0);
-  side->addWidget(title_label("Which way does it point?"));
-  side->addWidget(
-      hint_label("Answer with the arrow keys. There is no feedback; guess when you do not see it. You judge "
-                 "the camera's own frames, and do not see what the model answered."));
-  auto* form = new QFormLayout;
+  side->addWidget(title_ = title_label({}));
+  side->addWidget(hint_ = hint_label());
+  auto* form = form_ = new QFormLayout;
+  add_questions(*form);
   per_size_ = new QSpinBox;
   per_size_->setObjectName("humanPerSize");
   per_size_->setRange(1, 200);
@@ -46,7 +118,7 @@ HumanView::HumanView(Workbench& bench, HumanPresenter& presenter, MeasurePresent
   shown_ms_->setSuffix(" ms");
   shown_ms_->setAccessibleName("Time that a patch is shown");
   shown_ms_->setEnabled(false);
-  form->addRow("Patches per size", per_size_);
+  form->addRow("Number of each", per_size_);
   form->addRow(limited_, shown_ms_);
   side->addLayout(form);
   begin_ = primary_button("Begin", "beginHuman");
@@ -65,16 +137,62 @@ HumanView::HumanView(Workbench& bench, HumanPresenter& presenter, MeasurePresent
   result_->setTextFormat(Qt::RichText);
   side->addWidget(result_);
   side->addStretch();
-  layout->addWidget(panel);
-  connect(limited_, &QCheckBox::toggled, shown_ms_, &QWidget::setEnabled);
-  connect(begin_, &QPushButton::clicked, this, &HumanView::begin);
-  connect(abort_, &QPushButton::clicked, &presenter_, &HumanPresenter::abort);
-  connect(&presenter_, &HumanPresenter::updated, this, &HumanView::show_state);
-  connect(&measured_, &MeasurePresenter::state_changed, this, &HumanView::show_state);
+  return panel;
+}
+
+void HumanView::add_questions(QFormLayout& form) {
+  question_ = new QComboBox;
+  question_->setObjectName("humanQuestion");
+  question_->addItems({"Triangles of the run", "Targets of a set", "Four or five bars"});
+  set_ = new QComboBox;
+  set_->setObjectName("humanSet");
+  for (const auto& name : resource_names(ResourceKind::target_set)) set_->addItem(QString::fromStdString(name));
+  set_->setCurrentText("small-craft");
+  ranges_ = new QLineEdit("400, 800, 1600");
+  ranges_->setObjectName("humanRanges");
+  frequencies_ = new QLineEdit("0.3, 0.6, 0.9");
+  frequencies_->setObjectName("humanFrequencies");
+  axis_ = new QComboBox;
+  axis_->setObjectName("humanAxis");
+  axis_->addItems({"horizontal", "vertical"});
+  form.addRow("Question", question_);
+  form.addRow("Set", set_);
+  form.addRow("Ranges (m)", ranges_);
+  form.addRow("Of Nyquist", frequencies_);
+  form.addRow("Axis", axis_);
+}
+
+bool HumanView::triangles() const {
+  return question_->currentIndex() == of_triangles;
+}
+
+void HumanView::show_question() {
+  const int question = question_->currentIndex();
+  form_->setRowVisible(set_, question == of_set);
+  form_->setRowVisible(ranges_, question == of_set);
+  form_->setRowVisible(frequencies_, question == of_bars);
+  form_->setRowVisible(axis_, question == of_bars);
+  title_->setText(question == of_set    ? "Which one is it?"
+                  : question == of_bars ? "Which has four bars?"
+                                        : "Which way does it point?");
+  const QString keys = question == of_set    ? "Answer with the keys of the icons, or click them."
+                       : question == of_bars ? "Answer with the left and right arrow keys, or click."
+                                             : "Answer with the arrow keys.";
+  hint_->setText(keys + " There is no feedback; guess when you do not see it. " +
+                 (triangles() ? "You judge the camera's own frames, and do not see what the model answered."
+                              : "You judge frames of the simulated sensor of the plan, those that the model "
+                                "observer judges."));
+  per_size_->setToolTip(question == of_set    ? "frames of every target at every range"
+                        : question == of_bars ? "questions at every contrast and frequency"
+                                              : "patches of every contrast and size");
   show_state();
 }
 
 void HumanView::begin() {
+  if (!triangles()) {
+    begin_person();
+    return;
+  }
   HumanOptions options;
   options.per_size = per_size_->value();
   if (limited_->isChecked()) options.shown_ms = shown_ms_->value();
@@ -84,7 +202,41 @@ void HumanView::begin() {
   setFocus();
 }
 
+void HumanView::begin_person() {
+  PersonQuestion question{.task = question_->currentIndex() == of_set ? PersonTask::identify : PersonTask::bars,
+                          .sensor = bench_.plan().simulation.sensor,
+                          .set = set_->currentText().toStdString(),
+                          .axis = axis_->currentIndex() == 0 ? BarAxis::horizontal : BarAxis::vertical,
+                          .each = per_size_->value(),
+                          .seed = bench_.plan().seed};
+  const auto ranges = numbers_of(ranges_->text()), frequencies = numbers_of(frequencies_->text());
+  if (!ranges || !frequencies) {
+    emit bench_.trouble("Ranges and frequencies are numbers with commas between them.");
+    return;
+  }
+  question.ranges_m = *ranges;
+  question.of_nyquist = *frequencies;
+  auto experiment = person_experiment(question);
+  if (!experiment) {
+    emit bench_.trouble(QString::fromStdString(experiment.error().message));
+    return;
+  }
+  alternatives_->set_alternatives(*experiment);
+  person_.begin(*std::move(experiment), bench_.sessions_folder(),
+                limited_->isChecked() ? std::optional(shown_ms_->value()) : std::nullopt);
+  setFocus();
+}
+
 void HumanView::keyPressEvent(QKeyEvent* event) {
+  if (!triangles()) {
+    const int alternative = alternatives_->of_key(event->key());
+    if (alternative < 0) {
+      QWidget::keyPressEvent(event);
+      return;
+    }
+    person_.answer(static_cast<std::size_t>(alternative));
+    return;
+  }
   switch (event->key()) {
     case Qt::Key_Up:
       presenter_.answer(Apex::up);
@@ -104,6 +256,38 @@ void HumanView::keyPressEvent(QKeyEvent* event) {
 }
 
 void HumanView::show_state() {
+  const auto running = [](HumanState state) { return state == HumanState::showing || state == HumanState::hidden; };
+  question_->setEnabled(!running(presenter_.state()) && !running(person_.state()));
+  alternatives_->setVisible(!triangles() && running(person_.state()));
+  if (triangles())
+    show_triangles();
+  else
+    show_person();
+}
+
+void HumanView::show_person() {
+  const HumanState state = person_.state();
+  const bool running = state == HumanState::showing || state == HumanState::hidden;
+  begin_->setEnabled(!running);
+  abort_->setEnabled(running);
+  picture_->set_placeholder(state == HumanState::hidden ? "Which one was it?"
+                            : running                   ? ""
+                                                        : "Begin when you sit well.");
+  picture_->set_image(state == HumanState::showing ? person_.picture() : QImage());
+  picture_->set_zoom(1);
+  const auto& experiment = person_.experiment();
+  progress_->setText(running ? QString("%1 of %2").arg(person_.answers().size()).arg(experiment->trials().size())
+                             : QString());
+  const bool of_this =
+      experiment && (experiment->task() == PersonTask::identify) == (question_->currentIndex() == of_set);
+  if (state != HumanState::finished || !of_this) {
+    result_->setText({});
+    return;
+  }
+  result_->setText(result_of_a_person(person_));
+}
+
+void HumanView::show_triangles() {
   const HumanState state = presenter_.state();
   const bool running = state == HumanState::showing || state == HumanState::hidden;
   const bool ready = measured_.state() == RunState::idle && measured_.outcome() && !measured_.trials().empty();

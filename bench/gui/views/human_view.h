@@ -1,17 +1,22 @@
-// Human observer: one patch, four keys.
+// Human observer: one patch and four keys, or a frame and its alternatives as icons.
 #pragma once
 
 #include <QWidget>
 
 class QCheckBox;
+class QComboBox;
+class QFormLayout;
 class QLabel;
+class QLineEdit;
 class QPushButton;
 class QSpinBox;
 
 namespace todbench {
 
+class AlternativesPanel;
 class HumanPresenter;
 class MeasurePresenter;
+class PersonPresenter;
 class PictureView;
 class Workbench;
 
@@ -19,19 +24,33 @@ class HumanView final : public QWidget {
   Q_OBJECT
 
  public:
-  HumanView(Workbench& bench, HumanPresenter& presenter, MeasurePresenter& measured, QWidget* parent = nullptr);
+  HumanView(Workbench& bench, HumanPresenter& presenter, PersonPresenter& person, MeasurePresenter& measured,
+            QWidget* parent = nullptr);
 
  protected:
   void keyPressEvent(QKeyEvent* event) override;
 
  private:
+  [[nodiscard]] QWidget* side_panel();
+  void add_questions(QFormLayout& form);
+  [[nodiscard]] bool triangles() const;
   void begin();
+  void begin_person();
+  void show_question();
   void show_state();
+  void show_triangles();
+  void show_person();
 
   Workbench& bench_;
   HumanPresenter& presenter_;
+  PersonPresenter& person_;
   MeasurePresenter& measured_;
+  QFormLayout* form_ = nullptr;
   PictureView* picture_;
+  AlternativesPanel* alternatives_;
+  QComboBox *question_, *set_, *axis_;
+  QLineEdit *ranges_, *frequencies_;
+  QLabel *title_, *hint_;
   QSpinBox *per_size_, *shown_ms_;
   QCheckBox* limited_;
   QPushButton *begin_, *abort_;

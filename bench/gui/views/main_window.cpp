@@ -125,7 +125,7 @@ void MainWindow::make_views() {
   plan_view_ = new PlanView(plan_);
   views_->addWidget(plan_view_);
   views_->addWidget(new MeasureView(bench_, measure_));
-  views_->addWidget(new HumanView(bench_, human_, measure_));
+  views_->addWidget(new HumanView(bench_, human_, person_, measure_));
   views_->addWidget(new ChainView(chain_));
   auto* report = new ReportView(sessions_);
   connect(report, &ReportView::again, this, [this] { show_view(View::measure); });

@@ -11,6 +11,7 @@
 #include "bench/gui/presenters/human_presenter.h"
 #include "bench/gui/presenters/look_presenter.h"
 #include "bench/gui/presenters/measure_presenter.h"
+#include "bench/gui/presenters/person_presenter.h"
 #include "bench/gui/presenters/plan_presenter.h"
 #include "bench/gui/presenters/session_presenter.h"
 #include "bench/gui/presenters/workbench.h"
@@ -56,6 +57,7 @@ class MainWindow final : public QMainWindow {
   [[nodiscard]] PlanPresenter& plan() { return plan_; }
   [[nodiscard]] MeasurePresenter& measure() { return measure_; }
   [[nodiscard]] HumanPresenter& human() { return human_; }
+  [[nodiscard]] PersonPresenter& person() { return person_; }
   [[nodiscard]] ChainPresenter& chain() { return chain_; }
   [[nodiscard]] SessionPresenter& sessions() { return sessions_; }
   [[nodiscard]] HistoryPresenter& history() { return history_; }
@@ -85,6 +87,7 @@ class MainWindow final : public QMainWindow {
   PlanPresenter plan_;
   MeasurePresenter measure_;
   HumanPresenter human_;
+  PersonPresenter person_;
   ChainPresenter chain_;
   SessionPresenter sessions_;
   HistoryPresenter history_;

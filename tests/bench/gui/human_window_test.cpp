@@ -1,7 +1,10 @@
 // A person at the window, by synthetic keys.
+#include <QComboBox>
 #include <QLabel>
+#include <QLineEdit>
 #include <QSpinBox>
 #include <QStackedWidget>
+#include <QToolButton>
 
 #include "bench/gui/views/human_view.h"
 #include "bench/gui/views/picture_view.h"
@@ -159,6 +162,81 @@ TEST(HumanObserver, HidesThePatchWhenItsTimeIsOverAndStillTakesTheAnswer) {
   window->human().answer(Apex::left);
 
   EXPECT_EQ(window->human().done(), 1u);
+}
+
+/// Chooses the question of the page, and gives the answers of a robot.
+void ask(ShownWindow& window, int question, const char* field, const QString& values) {
+  window->show_view(View::human);
+  window.part<QComboBox>("humanQuestion").setCurrentIndex(question);
+  window.part<QLineEdit>(field).setText(values);
+  window.part<QSpinBox>("humanPerSize").setValue(1);
+}
+
+TEST(HumanObserver, TellsTheTargetsOfASetApartByTheirIcons) {
+  ShownWindow window("sim:sc2000", 1);
+  ask(window, 1, "humanRanges", "300, 900");
+
+  window.click("beginHuman");
+
+  const auto& experiment = window->person().experiment();
+  ASSERT_TRUE(experiment);
+  ASSERT_EQ(experiment->trials().size(), 24u);
+  HumanView* view = window->findChild<HumanView*>();
+  std::vector<std::size_t> given;
+  for (std::size_t i = 0; i < 24; ++i) {
+    EXPECT_FALSE(window.part<PictureView>("humanPicture").image().isNull());
+    const std::size_t answer = experiment->trials()[i].truth;
+    // By turns with the mouse and with the key that stands below the icon.
+    if (i % 2 == 0)
+      QTest::mouseClick(&window.part<QToolButton>(("alternative" + std::to_string(answer)).c_str()), Qt::LeftButton);
+    else
+      QTest::keyClick(view, answer < 9 ? Qt::Key(Qt::Key_1 + answer) : Qt::Key(Qt::Key_A + answer - 9));
+    given.push_back(answer);
+  }
+
+  EXPECT_EQ(window->person().state(), HumanState::finished);
+  ASSERT_EQ(window->person().answers().size(), 24u);
+  for (std::size_t i = 0; i < 24; ++i) EXPECT_EQ(window->person().answers()[i].answer, given[i]);
+  EXPECT_EQ(window->person().problem().toStdString(), "");
+  EXPECT_TRUE(std::filesystem::exists(window->person().folder() / "person.json"));
+  EXPECT_TRUE(std::filesystem::exists(window->person().folder() / "answers.csv"));
+  EXPECT_FALSE(window.part<QWidget>("alternatives").isVisible());
+}
+
+TEST(HumanObserver, SaysWhichIntervalHasFourBars) {
+  ShownWindow window("sim:sc2000", 1);
+  ask(window, 2, "humanFrequencies", "0.4");
+  window.click("beginHuman");
+  ASSERT_TRUE(window->person().experiment());
+  ASSERT_EQ(window->person().experiment()->trials().size(), 6u);
+  HumanView* view = window->findChild<HumanView*>();
+
+  for (std::size_t i = 0; i < 6; ++i) QTest::keyClick(view, i % 3 == 0 ? Qt::Key_Left : Qt::Key_Right);
+
+  EXPECT_EQ(window->person().state(), HumanState::finished);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(window->person().answers()[i].answer, i % 3 == 0 ? 0u : 1u);
+  EXPECT_TRUE(std::filesystem::exists(window->person().folder() / "person.json"));
+}
+
+TEST(HumanObserver, KeepsTheAnswersOfOneWhoEndsEarlyAndRefusesWhatIsNoRange) {
+  ShownWindow window("sim:sc2000", 1);
+  QString trouble;
+  QObject::connect(&window->bench(), &Workbench::trouble, [&](const QString& sentence) { trouble = sentence; });
+  ask(window, 1, "humanRanges", "near, far");
+  window.click("beginHuman");
+  EXPECT_FALSE(trouble.isEmpty());
+  EXPECT_FALSE(window->person().experiment());
+  ask(window, 1, "humanRanges", "300, 900");
+  window.click("beginHuman");
+  QTest::keyClick(window->findChild<HumanView*>(), Qt::Key_3);
+  QTest::keyClick(window->findChild<HumanView*>(), Qt::Key_Z);  // no alternative
+
+  window.click("endHuman");
+
+  EXPECT_EQ(window->person().state(), HumanState::finished);
+  ASSERT_EQ(window->person().answers().size(), 1u);
+  EXPECT_EQ(window->person().answers()[0].answer, 2u);
+  EXPECT_TRUE(std::filesystem::exists(window->person().folder() / "person.json"));
 }
 
 TEST(HumanObserver, HasNothingToJudgeBeforeAMeasurement) {

@@ -140,6 +140,62 @@ FieldScene rectangle_scene(cv::Size2d size_m) {
 
 // Without noise what is shown has the largest score. Ideal templates take blur for shape: of half a pitch and more,
 // a narrow rectangle then looks like a wider one.
+/// Turbulence of the path of each range: as a sensor that has it on that path, and worse than still air.
+TEST(Identification, ThroughTurbulenceIsThatOfTheSensorBehindTheSamePath) {
+  IdentificationTask task = two_mirror_images();
+  task.decisions = 800;
+  task.targets = {{"up", {triangle_scene(Apex::up, 10)}}, {"down", {triangle_scene(Apex::down, 10)}}};
+  task.ranges = {{2500, 1}, {3500, 1}};
+  const auto still = identify(task);
+  task.cn2_m_minus_2_3 = 1e-11;
+  SensorSpec behind = task.sensor;
+  behind.turbulence_cn2_m_minus_2_3 = 1e-11;
+  task.plan = full_plan(behind, {}, {});
+  const auto found = identify(task);
+  ASSERT_TRUE(still && found);
+  IdentificationTask alone = task;
+  alone.cn2_m_minus_2_3 = 0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    alone.sensor.turbulence_cn2_m_minus_2_3 = 1e-11;
+    alone.sensor.turbulence_path_m = task.ranges[i].range_m;
+    alone.ranges = {task.ranges[i]};
+    const auto expected = identify(alone);
+    ASSERT_TRUE(expected);
+    EXPECT_EQ((*found)[i].answers, expected->front().answers) << i;
+  }
+  // The same draws: what turbulence takes has no noise of its own.
+  EXPECT_LT((*found)[1].proportion(), (*still)[1].proportion());
+}
+
+/// Judged one by one as the model does, the frames for a person have the answers of the experiment.
+TEST(Identification, ShowsAPersonTheFramesOfTheModel) {
+  IdentificationTask task = two_mirror_images();
+  task.decisions = 64;
+  task.observer.internal_noise = 0;
+  task.ranges = {{350, 0.9}};
+  const auto expected = identify(task);
+  const auto frames = IdentificationFrames::of(task);
+  ASSERT_TRUE(expected && frames);
+  const double samples_per_metre = 1e3 / (350 * task.sensor.ifov_mrad());
+  std::vector<AlternativeAspects> alternatives;
+  for (const Apex apex : {Apex::up, Apex::down}) alternatives.push_back({edges_of(triangle(samples_per_metre, apex))});
+  const auto bank = IdentificationBank::build(task.observer, alternatives, 1);
+  ASSERT_TRUE(bank);
+  const std::vector<float> nothing(bank->scores(), 0.0F);
+  std::vector answers(2, std::vector(2, 0));
+  for (std::size_t target = 0; target < 2; ++target) {
+    for (std::uint64_t draw = 0; draw < 64; ++draw) {
+      cv::Mat1f frame = frames->frame_k(0, target, 0, draw);
+      ASSERT_EQ(frame.rows, bank->window_samples());
+      frame -= cv::mean(frame)[0];
+      ++answers[target][bank->best(bank->project(frame), nothing, 0, nothing, 0)];
+    }
+  }
+  EXPECT_EQ(answers, expected->front().answers);
+  EXPECT_GT(answers[0][1] + answers[1][0], 0) << "some are wrong, or nothing is compared";
+  EXPECT_NEAR(frames->contrast_k(0, 0, 0), 0.9 * 0.3, 0.003);
+}
+
 TEST(Identification, OfAKnownCameraErrsByNoiseOnly) {
   IdentificationTask task = two_mirror_images();
   task.sensor.netd_k = 1e-4;

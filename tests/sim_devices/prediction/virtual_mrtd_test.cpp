@@ -181,6 +181,29 @@ TEST(VirtualMrtd, OfLinesAcrossDependsOnTheAxis) {
   EXPECT_GT(*horizontal->front().threshold_k, 2 * *vertical->front().threshold_k);
 }
 
+/// Contrast times the pattern, and the noise of the draw.
+TEST(VirtualMrtd, ShowsAPersonItsBarsAndItsNoise) {
+  VirtualMrtdTask task;
+  task.sensor = test::sc2000();
+  task.plan = full_plan(task.sensor, {}, {});
+  task.accuracy = Accuracy::draft();
+  task.frequencies_per_mrad = {0.15, 0.3};
+  const auto frames = BarFrames::of(task);
+  ASSERT_TRUE(frames) << frames.error().message;
+  const auto frame = [&](BarPattern pattern, double contrast_k, std::uint64_t draw) {
+    return frames->frame_k(0, pattern, contrast_k, 5, draw);
+  };
+  const cv::Mat1f noise = frame(BarPattern::four_bars, 0, 3), one = frame(BarPattern::four_bars, 1, 3) - noise;
+  const cv::Mat1f two = frame(BarPattern::four_bars, 2, 3) - noise;
+  EXPECT_LT(cv::norm(two, 2 * one, cv::NORM_INF), 1e-5);
+  EXPECT_GT(cv::norm(one, cv::NORM_INF), 0.3);
+  EXPECT_GT(cv::norm(frame(BarPattern::five_bars, 1, 3) - noise, one, cv::NORM_INF), 0.3);
+  EXPECT_GT(cv::norm(noise, frame(BarPattern::four_bars, 0, 4), cv::NORM_INF), task.sensor.netd_k);
+  EXPECT_GT(frames->frame_k(0, BarPattern::four_bars, 1, 0, 0).cols,
+            frames->frame_k(1, BarPattern::four_bars, 1, 0, 0).cols);
+  EXPECT_GT(frames->ideal_k(1), frames->ideal_k(0));
+}
+
 TEST(VirtualMrtd, RefusesWhatHasNone) {
   VirtualMrtdTask silent = sc2000_bars({0.4});
   silent.sensor.netd_k = silent.sensor.row_noise_k = silent.sensor.column_noise_k = 0;

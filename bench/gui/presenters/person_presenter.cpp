@@ -1,0 +1,137 @@
+#include "bench/gui/presenters/person_presenter.h"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+#include <string_view>
+#include <utility>
+
+#include "bench/gui/presenters/colour_map.h"
+#include "bench/plan/descriptions.h"
+#include "bench/plan/scene_descriptions.h"
+#include "bench/session/session_folder.h"
+#include "bench/text/files.h"
+
+namespace todbench {
+namespace {
+
+/// Room above three rows of icons on the smallest page.
+constexpr int widest_px = 800, highest_px = 360;
+
+/// Enlarged by bicubic interpolation, by a whole factor that leaves it on the screen.
+QImage picture_of(const cv::Mat1f& kelvin, const GreyScale& grey, int magnification) {
+  const int factor = std::max(1, std::min({magnification, widest_px / kelvin.cols, highest_px / kelvin.rows}));
+  cv::Mat1d fine;
+  cv::resize(cv::Mat1d(kelvin), fine, {}, factor, factor, cv::INTER_CUBIC);
+  return to_image(fine, {grey.black_k, grey.white_k}, ColourMap::white_hot);
+}
+
+/// "person-20260131T123456Z-identify", with a number behind it where there is one of this second.
+std::filesystem::path new_folder(const std::filesystem::path& sessions, PersonTask task) {
+  constexpr std::string_view before = "session";
+  const std::string name = "person" + session_folder_name(std::string(to_string(task))).substr(before.size());
+  std::filesystem::path folder = sessions / name;
+  for (int number = 2; is_there(folder); ++number) folder = sessions / (name + "-" + std::to_string(number));
+  return folder;
+}
+
+}  // namespace
+
+QImage icon_image(const cv::Mat1d& icon) {
+  return to_image(icon, {0, 1}, ColourMap::white_hot);
+}
+
+Result<PersonExperiment> person_experiment(const PersonQuestion& question) {
+  auto sensor = load_sensor(question.sensor);
+  if (!sensor) return tl::unexpected(sensor.error());
+  if (question.task == PersonTask::bars) {
+    VirtualMrtdTask task;
+    task.sensor = *std::move(sensor);
+    task.plan = full_plan(task.sensor, {}, {});
+    task.accuracy = Accuracy::normal();
+    task.axis = question.axis;
+    task.seed = question.seed;
+    const double nyquist = 0.5 * task.sensor.samples_per_pitch() / task.sensor.ifov_mrad();
+    for (const double share : question.of_nyquist) task.frequencies_per_mrad.push_back(share * nyquist);
+    return PersonExperiment::of_bars(task, question.each);
+  }
+  auto set = load_target_set(question.set);
+  if (!set) return tl::unexpected(set.error());
+  IdentificationStudyTask task;
+  task.set = *std::move(set);
+  task.sensor = *std::move(sensor);
+  task.accuracy = Accuracy::normal();
+  task.ranges_m = question.ranges_m;
+  task.seed = question.seed;
+  return PersonExperiment::of_set(task, question.each);
+}
+
+PersonPresenter::PersonPresenter(QObject* parent) : QObject(parent) {
+  hide_.setSingleShot(true);
+  connect(&hide_, &QTimer::timeout, this, [this] {
+    if (state_ != HumanState::showing) return;
+    state_ = HumanState::hidden;
+    emit updated();
+  });
+}
+
+void PersonPresenter::begin(PersonExperiment experiment, const std::filesystem::path& sessions,
+                            std::optional<int> shown_ms, int magnification) {
+  hide_.stop();
+  experiment_ = std::move(experiment);
+  sessions_ = sessions;
+  shown_ms_ = shown_ms;
+  magnification_ = magnification;
+  folder_.clear();
+  answers_.clear();
+  problem_.clear();
+  show_next();
+}
+
+void PersonPresenter::show_next() {
+  if (answers_.size() == experiment_->trials().size()) {
+    finish();
+    return;
+  }
+  const PersonTrial& trial = experiment_->trials()[answers_.size()];
+  picture_ = picture_of(experiment_->picture_k(trial), experiment_->grey(trial), magnification_);
+  state_ = HumanState::showing;
+  since_shown_.start();
+  if (shown_ms_) hide_.start(*shown_ms_);
+  emit updated();
+}
+
+void PersonPresenter::answer(std::size_t alternative) {
+  if (state_ != HumanState::showing && state_ != HumanState::hidden) return;
+  if (alternative >= experiment_->alternatives().size()) return;
+  hide_.stop();
+  answers_.push_back({.answer = alternative,
+                      .response_s = static_cast<double>(since_shown_.nsecsElapsed()) * 1e-9,
+                      .limit_ms = shown_ms_});
+  show_next();
+}
+
+void PersonPresenter::abort() {
+  if (state_ != HumanState::showing && state_ != HumanState::hidden) return;
+  hide_.stop();
+  if (!answers_.empty()) {
+    finish();
+    return;
+  }
+  state_ = HumanState::idle;
+  picture_ = {};
+  emit updated();
+}
+
+void PersonPresenter::finish() {
+  picture_ = {};
+  state_ = HumanState::finished;
+  const auto folder = new_folder(sessions_, experiment_->task());
+  const bool complete = answers_.size() == experiment_->trials().size();
+  if (auto written = write_person(folder, *experiment_, answers_, complete); !written)
+    problem_ = QString::fromStdString(written.error().message);
+  else
+    folder_ = folder;
+  emit updated();
+}
+
+}  // namespace todbench

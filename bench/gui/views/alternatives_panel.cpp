@@ -1,0 +1,67 @@
+#include "bench/gui/views/alternatives_panel.h"
+
+#include <QGridLayout>
+#include <QIcon>
+#include <QPixmap>
+#include <QToolButton>
+
+#include "bench/gui/presenters/person_presenter.h"
+
+namespace todbench {
+namespace {
+
+constexpr int columns = 8;
+
+/// Shown before the name: "1" to "9", then "a", "b", ...
+QString key_of(int alternative) {
+  return alternative < 9 ? QString::number(alternative + 1) : QString(QChar('a' + alternative - 9));
+}
+
+}  // namespace
+
+AlternativesPanel::AlternativesPanel(QWidget* parent) : QWidget(parent), grid_(new QGridLayout(this)) {
+  setObjectName("alternatives");
+  grid_->setContentsMargins(0, 0, 0, 0);
+  grid_->setSpacing(4);
+}
+
+void AlternativesPanel::set_alternatives(const PersonExperiment& experiment) {
+  clear();
+  const auto count = static_cast<int>(experiment.alternatives().size());
+  for (int i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    auto* button = new QToolButton;
+    button->setObjectName("alternative" + QString::number(i));
+    const QImage icon = icon_image(experiment.icons()[at]);
+    button->setIcon(QIcon(QPixmap::fromImage(icon)));
+    button->setIconSize(count > 16 ? icon.size() * 3 / 4 : icon.size());
+    const QString name = QString::fromStdString(experiment.alternatives()[at]);
+    button->setText(count == 2 ? name : key_of(i) + "  " + name);
+    button->setToolTip(name);
+    button->setToolButtonStyle(Qt::ToolButtonTextUnderIcon);
+    button->setFocusPolicy(Qt::NoFocus);  // the keys are those of the page
+    connect(button, &QToolButton::clicked, this, [this, i] { emit chosen(i); });
+    grid_->addWidget(button, i / columns, i % columns, Qt::AlignCenter);
+    buttons_.push_back(button);
+  }
+}
+
+void AlternativesPanel::clear() {
+  for (QToolButton* button : buttons_) {
+    grid_->removeWidget(button);
+    button->hide();
+    button->deleteLater();  // the click that answered the last question may come from it
+  }
+  buttons_.clear();
+}
+
+int AlternativesPanel::of_key(int key) const {
+  const auto count = static_cast<int>(buttons_.size());
+  int alternative = -1;
+  if (count == 2 && (key == Qt::Key_Left || key == Qt::Key_Right)) alternative = key == Qt::Key_Left ? 0 : 1;
+  if (key >= Qt::Key_1 && key <= Qt::Key_9) alternative = key - Qt::Key_1;
+  if (key >= Qt::Key_A && key <= Qt::Key_Z) alternative = 9 + key - Qt::Key_A;
+  return alternative < count ? alternative : -1;
+}
+
+}  // namespace todbench

@@ -1,0 +1,34 @@
+// The alternatives of a question as icons, each a button with its key.
+#pragma once
+
+#include <QWidget>
+#include <string>
+#include <vector>
+
+#include "bench/studies/person_experiment.h"
+
+class QGridLayout;
+class QToolButton;
+
+namespace todbench {
+
+class AlternativesPanel final : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit AlternativesPanel(QWidget* parent = nullptr);
+  void set_alternatives(const PersonExperiment& experiment);
+  /// Without any: nothing is shown.
+  void clear();
+  /// The alternative of a key: 1 to 9, then letters; the arrows of two. -1: none.
+  [[nodiscard]] int of_key(int key) const;
+
+ signals:
+  void chosen(int alternative);
+
+ private:
+  QGridLayout* grid_;
+  std::vector<QToolButton*> buttons_;
+};
+
+}  // namespace todbench

@@ -1,0 +1,358 @@
+#include "bench/studies/person_experiment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "acquisition/core/rng.h"
+#include "bench/report/tod_figures.h"
+#include "bench/text/files.h"
+#include "bench/text/folders.h"
+#include "bench/text/text.h"
+
+namespace todbench {
+namespace {
+
+constexpr int icon_width = 96, icon_height = 64;
+constexpr int contrasts_of_bars = 6;
+constexpr double first_over_ideal = 2, step_of_contrasts = 1.6;
+constexpr std::size_t phases_of_bars = 16;
+constexpr int gap_samples = 4;
+constexpr int resamples_of_answers = 1000;
+
+/// The target alone, hot white and cold black, as large as fits.
+cv::Mat1d icon_of(const FieldScene& scene) {
+  constexpr int fine = 4;
+  cv::Mat1d icon(icon_height * fine, icon_width * fine, 0.5);
+  cv::Rect2d box;
+  double most_k = 0;
+  for (const SceneRegion& region : scene.regions) {
+    if (!region.target) continue;
+    for (const cv::Point2d& corner : region.outline_m) {
+      const cv::Rect2d point(corner.x, corner.y, 1e-9, 1e-9);
+      box = box.area() > 0 ? box | point : point;
+    }
+    most_k = std::max(most_k, std::abs(region.temperature_k - scene.background_k));
+  }
+  if (!(most_k > 0)) return icon;
+  const double scale = 0.9 * std::min(icon.cols / box.width, icon.rows / box.height);
+  const cv::Point2d middle(box.x + box.width / 2, box.y + box.height / 2);
+  for (const SceneRegion& region : scene.regions) {
+    if (!region.target) continue;
+    std::vector<cv::Point> outline;
+    for (const cv::Point2d& corner : region.outline_m)
+      outline.emplace_back(cvRound((corner.x - middle.x) * scale + icon.cols / 2.0),
+                           cvRound((corner.y - middle.y) * scale + icon.rows / 2.0));
+    // A region that is as warm as the background is still part of the shape.
+    const double relative = (region.temperature_k - scene.background_k) / most_k;
+    cv::fillPoly(icon, std::vector{outline}, 0.5 + 0.35 * relative + (relative < 0 ? -0.15 : 0.15));
+  }
+  cv::Mat1d small;
+  cv::resize(icon, small, {icon_width, icon_height}, 0, 0, cv::INTER_AREA);
+  return small;
+}
+
+/// Four bars on this side and five on the other.
+cv::Mat1d icon_of_bars(bool four_left) {
+  cv::Mat1d icon(icon_height, icon_width, 0.5);
+  for (const bool left : {true, false}) {
+    const int bars = left == four_left ? 4 : 5, width = 36, x0 = left ? 6 : icon_width - 6 - width;
+    const double unit = static_cast<double>(width) / (2 * bars - 1);
+    for (int bar = 0; bar < bars; ++bar)
+      icon.colRange(x0 + cvRound(2 * bar * unit), x0 + cvRound((2 * bar + 1) * unit))
+          .rowRange((icon_height - width) / 2, (icon_height + width) / 2) = 0.9;
+  }
+  return icon;
+}
+
+/// Half of the span: wide enough for the contrast and for the noise.
+GreyScale grey_about(double contrast_k, double noise_k) {
+  const double half = std::max(1.5 * contrast_k, 3 * noise_k);
+  return {-half, half};
+}
+
+double deviation_of(const cv::Mat1f& picture) {
+  cv::Scalar mean, sd;
+  cv::meanStdDev(picture, mean, sd);
+  return sd[0];
+}
+
+}  // namespace
+
+std::string_view to_string(PersonTask task) {
+  return task == PersonTask::identify ? "identify" : "mrtd";
+}
+
+void PersonExperiment::shuffle(std::uint64_t seed) {
+  const RandomStream order(seed, "person.order");
+  for (std::size_t i = trials_.size(); i > 1; --i) std::swap(trials_[i - 1], trials_[order.below(i, i)]);
+}
+
+Result<PersonExperiment> PersonExperiment::of_set(const IdentificationStudyTask& task, int per_target) {
+  const auto experiment = experiment_of(task);
+  if (!experiment) return tl::unexpected(experiment.error());
+  auto frames = IdentificationFrames::of(*experiment);
+  if (!frames) return tl::unexpected(frames.error());
+  PersonExperiment out;
+  out.task_ = PersonTask::identify;
+  const std::size_t aspects = task.set.azimuths_deg.size(), targets = experiment->targets.size();
+  // People know the targets from the side that shows most of them, which is nearest to 90 degrees.
+  std::size_t known = 0;
+  for (std::size_t a = 1; a < aspects; ++a) {
+    if (std::abs(task.set.azimuths_deg[a] - 90) < std::abs(task.set.azimuths_deg[known] - 90)) known = a;
+  }
+  for (const auto& target : experiment->targets) {
+    out.alternatives_.push_back(target.name);
+    out.icons_.push_back(icon_of(target.aspects[known]));
+  }
+  const RandomStream choice(task.seed, "person.identify");
+  std::uint64_t number = 0;
+  for (std::size_t r = 0; r < task.ranges_m.size(); ++r) {
+    double mean_k = 0;
+    for (std::size_t t = 0; t < targets; ++t) {
+      for (std::size_t a = 0; a < aspects; ++a)
+        mean_k += frames->contrast_k(r, t, a) / static_cast<double>(targets * aspects);
+      for (int k = 0; k < per_target; ++k, ++number) {
+        out.trials_.push_back({.condition = r,
+                               .truth = t,
+                               .aspect = choice.below(aspects, 2 * number),
+                               .draw = choice.below(1U << 20U, 2 * number + 1)});
+      }
+    }
+    out.conditions_.push_back({.range_m = task.ranges_m[r],
+                               .transmittance = experiment->ranges[r].transmittance,
+                               .contrast_k = mean_k,
+                               .place = r});
+    out.grey_.push_back(grey_about(mean_k, task.sensor.netd_k));
+  }
+  out.description_ = {{"set", task.set.name},
+                      {"sensor", task.sensor.name},
+                      {"atmosphere", task.air.name},
+                      {"azimuths_deg", task.set.azimuths_deg},
+                      {"cn2_m_minus_2_3", task.cn2_m_minus_2_3},
+                      {"seed", task.seed}};
+  out.frames_ = *std::move(frames);
+  out.shuffle(task.seed);
+  return out;
+}
+
+Result<PersonExperiment> PersonExperiment::of_bars(const VirtualMrtdTask& task, int per_contrast) {
+  auto bars = BarFrames::of(task);
+  if (!bars) return tl::unexpected(bars.error());
+  PersonExperiment out;
+  out.task_ = PersonTask::bars;
+  out.alternatives_ = {"four on the left", "four on the right"};
+  out.icons_ = {icon_of_bars(true), icon_of_bars(false)};
+  const RandomStream choice(task.seed, "person.bars");
+  std::uint64_t number = 0;
+  for (std::size_t f = 0; f < task.frequencies_per_mrad.size(); ++f) {
+    double contrast_k = first_over_ideal * bars->ideal_k(f);
+    const double noise_k = deviation_of(bars->frame_k(f, BarPattern::uniform, 0, 0, 0));
+    for (int c = 0; c < contrasts_of_bars; ++c, contrast_k *= step_of_contrasts) {
+      for (int k = 0; k < per_contrast; ++k, ++number) {
+        out.trials_.push_back({.condition = out.conditions_.size(),
+                               .truth = choice.below(2, 3 * number),
+                               .phase = choice.below(phases_of_bars, 3 * number + 1),
+                               .draw = 2 * choice.below(1U << 20U, 3 * number + 2)});
+      }
+      out.conditions_.push_back(
+          {.frequency_per_mrad = task.frequencies_per_mrad[f], .contrast_k = contrast_k, .place = f});
+      out.grey_.push_back(grey_about(contrast_k, noise_k));
+    }
+  }
+  out.description_ = {{"sensor", task.sensor.name},
+                      {"axis", task.axis == BarAxis::horizontal ? "horizontal" : "vertical"},
+                      {"criterion", "four-or-five"},
+                      {"seed", task.seed}};
+  out.bars_ = *std::move(bars);
+  out.shuffle(task.seed);
+  return out;
+}
+
+cv::Mat1f PersonExperiment::picture_k(const PersonTrial& trial) const {
+  const PersonCondition& condition = conditions_[trial.condition];
+  if (task_ == PersonTask::identify) return frames_->frame_k(condition.place, trial.truth, trial.aspect, trial.draw);
+  const auto interval = [&](bool four, std::uint64_t draw) {
+    return bars_->frame_k(condition.place, four ? BarPattern::four_bars : BarPattern::five_bars, condition.contrast_k,
+                          trial.phase, draw);
+  };
+  const cv::Mat1f left = interval(trial.truth == 0, trial.draw), right = interval(trial.truth == 1, trial.draw + 1);
+  const cv::Mat1f gap = cv::Mat1f::zeros(left.rows, gap_samples);
+  cv::Mat1f both;
+  cv::hconcat(std::vector<cv::Mat>{left, gap, right}, both);
+  return both;
+}
+
+namespace {
+
+/// Of trials that were answered, right or wrong, by condition.
+std::vector<std::vector<bool>> right_by_condition(const PersonExperiment& experiment,
+                                                  const std::vector<PersonAnswer>& answers) {
+  std::vector<std::vector<bool>> right(experiment.conditions().size());
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const PersonTrial& trial = experiment.trials()[i];
+    right[trial.condition].push_back(answers[i].answer == trial.truth);
+  }
+  return right;
+}
+
+/// Where the shares of some conditions, the easiest first, pass 75 %; `at` rises from one to the next.
+SetCriterion passing_of(const std::vector<double>& at, const std::vector<std::vector<bool>>& right,
+                        std::uint64_t seed) {
+  std::vector<double> shares;
+  for (const auto& answers : right) {
+    if (answers.empty()) return {};
+    shares.push_back(static_cast<double>(std::count(answers.begin(), answers.end(), true)) /
+                     static_cast<double>(answers.size()));
+  }
+  SetCriterion out;
+  out.value = crossing_of_75_percent(at, shares).at;
+  std::vector<double> found;
+  const RandomStream numbers(seed, "person.resample");
+  for (std::uint64_t r = 0; r < resamples_of_answers; ++r) {
+    std::vector<double> drawn;
+    std::uint64_t index = 0;
+    for (const auto& answers : right) {
+      double sum = 0;
+      for (std::size_t i = 0; i < answers.size(); ++i)
+        sum += answers[numbers.sub(r).below(answers.size(), index++)] ? 1 : 0;
+      drawn.push_back(sum / static_cast<double>(answers.size()));
+    }
+    const Crossing75 crossing = crossing_of_75_percent(at, drawn);
+    found.push_back(crossing.at ? *crossing.at : crossing.beyond_last ? 1e300 : 0);
+  }
+  std::sort(found.begin(), found.end());
+  const auto side = [&](std::size_t k) -> std::optional<double> {
+    return found[k] > 0 && found[k] < 1e300 ? std::optional(found[k]) : std::nullopt;
+  };
+  out.ci95 = {side(resamples_of_answers / 40), side(resamples_of_answers - 1 - resamples_of_answers / 40)};
+  return out;
+}
+
+std::optional<double> inverse(const std::optional<double>& value) {
+  return value ? std::optional(1 / *value) : std::nullopt;
+}
+
+Json share_json(const PersonShare& share) {
+  return {{"shown", share.shown},
+          {"right", share.right},
+          {"proportion_correct", share.shown > 0 ? Json(static_cast<double>(share.right) / share.shown) : Json()},
+          {"ci95", json_interval(share.ci95)}};
+}
+
+Json person_json(const PersonExperiment& experiment, const std::vector<PersonAnswer>& answers, bool complete) {
+  const PersonResult result = person_result(experiment, answers);
+  Json json{{"schema", "todbench-person-1"},
+            {"task", to_string(experiment.task())},
+            {"observer", "human"},
+            {"complete", complete},
+            {"answers", answers.size()},
+            {"planned", experiment.trials().size()},
+            {"alternatives", experiment.alternatives()}};
+  json.update(experiment.description());
+  Json rows = Json::array();
+  for (std::size_t c = 0; c < experiment.conditions().size(); ++c) {
+    const PersonCondition& condition = experiment.conditions()[c];
+    Json row = share_json(result.conditions[c]);
+    row["contrast_k"] = json_number(condition.contrast_k);
+    if (experiment.task() == PersonTask::identify) {
+      row["range_m"] = json_number(condition.range_m);
+      row["transmittance"] = json_number(condition.transmittance);
+      row["confusion"] = result.confusion[c];
+    } else {
+      row["frequency_per_mrad"] = json_number(condition.frequency_per_mrad);
+    }
+    rows.push_back(std::move(row));
+  }
+  if (experiment.task() == PersonTask::identify) {
+    json["ranges"] = rows;
+    json["chance"] = 1.0 / static_cast<double>(experiment.alternatives().size());
+    json["r75_m"] = json_number(result.r75_m.value);
+    json["r75_ci95_m"] = json_interval(result.r75_m.ci95);
+    return json;
+  }
+  json["contrasts"] = rows;
+  json["frequencies"] = Json::array();
+  for (const PersonCondition& condition : experiment.conditions()) {
+    if (condition.place < json["frequencies"].size()) continue;
+    const SetCriterion& threshold = result.thresholds_k[condition.place];
+    json["frequencies"].push_back({{"frequency_per_mrad", json_number(condition.frequency_per_mrad)},
+                                   {"threshold_k", json_number(threshold.value)},
+                                   {"threshold_ci95_k", json_interval(threshold.ci95)}});
+  }
+  return json;
+}
+
+std::string answers_csv(const PersonExperiment& experiment, const std::vector<PersonAnswer>& answers) {
+  std::string csv =
+      "number,range_m,frequency_per_mrad,contrast_k,shown,answered,aspect,phase,draw,response_s,limit_ms,black_k,"
+      "white_k\n";
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const PersonTrial& trial = experiment.trials()[i];
+    const PersonCondition& condition = experiment.conditions()[trial.condition];
+    const bool set = experiment.task() == PersonTask::identify;
+    const GreyScale grey = experiment.grey(trial);
+    csv +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", i + 1, set ? number_text(condition.range_m) : "",
+                    set ? "" : number_text(condition.frequency_per_mrad), number_text(condition.contrast_k),
+                    csv_field(experiment.alternatives()[trial.truth]),
+                    csv_field(experiment.alternatives()[answers[i].answer]), trial.aspect, trial.phase, trial.draw,
+                    number_text(answers[i].response_s), answers[i].limit_ms ? std::to_string(*answers[i].limit_ms) : "",
+                    number_text(grey.black_k), number_text(grey.white_k));
+  }
+  return csv;
+}
+
+}  // namespace
+
+PersonResult person_result(const PersonExperiment& experiment, const std::vector<PersonAnswer>& answers) {
+  const auto right = right_by_condition(experiment, answers);
+  const std::size_t alternatives = experiment.alternatives().size();
+  PersonResult out;
+  for (const auto& one : right) {
+    const auto count = std::count(one.begin(), one.end(), true);
+    out.conditions.push_back(
+        {.shown = static_cast<int>(one.size()),
+         .right = static_cast<int>(count),
+         .ci95 =
+             one.empty() ? Interval{} : wilson_interval(static_cast<double>(count), static_cast<double>(one.size()))});
+  }
+  out.confusion.assign(right.size(), std::vector(alternatives, std::vector<int>(alternatives, 0)));
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const PersonTrial& trial = experiment.trials()[i];
+    ++out.confusion[trial.condition][trial.truth][answers[i].answer];
+  }
+  const std::uint64_t seed = experiment.description().at("seed").get<std::uint64_t>();
+  std::vector<double> at;
+  if (experiment.task() == PersonTask::identify) {
+    for (const PersonCondition& condition : experiment.conditions()) at.push_back(condition.range_m);
+    out.r75_m = passing_of(at, right, seed);
+    return out;
+  }
+  // The contrasts of a frequency, from the highest: its inverse rises as a range does.
+  for (std::size_t first = 0; first < right.size(); first += contrasts_of_bars) {
+    std::vector<std::vector<bool>> own;
+    at.clear();
+    for (std::size_t c = first + contrasts_of_bars; c-- > first;) {
+      at.push_back(1 / experiment.conditions()[c].contrast_k);
+      own.push_back(right[c]);
+    }
+    const SetCriterion found = passing_of(at, own, seed);
+    out.thresholds_k.push_back({inverse(found.value), {inverse(found.ci95.high), inverse(found.ci95.low)}});
+  }
+  return out;
+}
+
+Result<void> write_person(const std::filesystem::path& folder, const PersonExperiment& experiment,
+                          const std::vector<PersonAnswer>& answers, bool complete) {
+  if (is_there(folder)) return fail(ErrorCode::invalid_input, folder.string() + ": exists");
+  if (auto made = make_folder(folder); !made) return made;
+  if (auto written = write_file_atomically(folder / "answers.csv", answers_csv(experiment, answers)); !written)
+    return written;
+  return write_file_atomically(folder / "person.json", person_json(experiment, answers, complete).dump(2) + "\n");
+}
+
+}  // namespace todbench
