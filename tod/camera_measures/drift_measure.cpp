@@ -56,6 +56,10 @@ class DriftGroups {
   std::vector<DriftGroup> groups_;
 };
 
+/// What a camera says of its correction comes with the delays of its frames: less is no new correction.
+constexpr double told_jitter_s = 0.5;
+constexpr double longest_lag_s = 5;  // of that time behind the host's clock
+
 double host_s(const Frame& frame) {
   return static_cast<double>(frame.host_time_ns) * 1e-9;
 }
@@ -69,7 +73,7 @@ Result<Frame> after_own_correction(FrameTaker& taker, double wait_s, const std::
     if (!frame) return frame;
     const double since_s = taker.since_nuc_s(*frame);
     // One that is known from the first frame on may be long ago.
-    if (began_s && since_s >= 0 && (last_s < 0 || since_s < last_s)) return frame;
+    if (began_s && since_s >= 0 && (last_s < 0 || since_s < last_s - told_jitter_s)) return frame;
     if (!began_s) began_s = host_s(*frame);
     last_s = since_s;
     if (host_s(*frame) - *began_s > wait_s) {
@@ -89,6 +93,7 @@ Result<DriftMeasure> measure_drift(FrameTaker& taker, const cv::Rect& field, con
   DriftGroups groups(options.drift_s / short_groups);
   DriftMeasure measure;
   double last_s = first_s;
+  const double began_s = host_s(*frame);
   for (;;) {
     const auto kelvin = window_kelvin(*frame, field);
     if (!kelvin) return tl::unexpected(kelvin.error());
@@ -96,9 +101,11 @@ Result<DriftMeasure> measure_drift(FrameTaker& taker, const cv::Rect& field, con
     frame = taker.next(stop);
     if (!frame) return tl::unexpected(frame.error());
     const double since_s = taker.since_nuc_s(*frame);
-    measure.ended_by_correction = since_s < last_s;
+    measure.ended_by_correction = since_s < last_s - told_jitter_s;
     if (measure.ended_by_correction || since_s - first_s >= options.drift_s) break;
-    last_s = since_s;
+    if (host_s(*frame) - began_s > options.drift_s + longest_lag_s)
+      return fail(ErrorCode::integrity, "the time since the correction that the camera tells does not go on");
+    last_s = std::max(last_s, since_s);
   }
   const std::vector<DriftGroup> means = std::move(groups).finished();
   if (means.size() < least_drift_groups) {

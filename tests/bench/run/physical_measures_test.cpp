@@ -293,6 +293,7 @@ class DriftingCamera : public FrameSource {
     std::copy(draws.begin(), draws.end(), pattern_.begin());
   }
   static constexpr double level_k_per_s = 0.02, pattern_k_per_s = 0.004, frame_s = 0.05;
+  bool stands_still = false;  ///< the time since the correction that it tells
 
   const SourceInfo& info() const override { return camera_.info(); }
   Result<void> start() override { return camera_.start(); }
@@ -302,7 +303,7 @@ class DriftingCamera : public FrameSource {
     constexpr std::int64_t own_every = 150;
     if (!commanded_ && ++taken_ % own_every == 0) corrected_at_ = taken_;
     if (commanded_) ++taken_;
-    const double since_s = frame_s * static_cast<double>(taken_ - corrected_at_);
+    const double since_s = stands_still ? 1 : frame_s * static_cast<double>(taken_ - corrected_at_);
     frame->host_time_ns = start_ns_ + static_cast<std::int64_t>(1e9 * frame_s * static_cast<double>(taken_));
     frame->correction = CorrectionState::idle;
     frame->since_correction_s = since_s;
@@ -403,6 +404,11 @@ TEST(PhysicalMeasures, HaveAReasonWhereNoCorrectionComes) {
   EXPECT_FALSE(measures->drift);
   ASSERT_EQ(measures->reasons.size(), 1u);
   EXPECT_THAT(measures->reasons[0], HasSubstr("drift"));
+  camera.stands_still = true;
+  options.measurement.nuc_interval_s = 100;
+  const auto still = measure_camera(camera, *bench.target, options, *bench.host, {});
+  ASSERT_TRUE(still) << still.error().message;
+  EXPECT_FALSE(still->drift);
 }
 
 Plan mtf_plan() {
