@@ -75,7 +75,7 @@ std::string in_text(const Interval& interval) {
 
 /// What moved, in the notes of the report.
 std::vector<std::string> sentences(const DynamicMeasurement& found) {
-  std::vector<std::string> out;
+  std::vector<std::string> out{"curve and verdict are those of the plate at rest, single frames; here is what moved"};
   for (const DynamicContrast& contrast : found.contrasts) {
     for (const DynamicAcuity& at : contrast.speeds) {
       for (const DynamicPoint& point : at.points) {
@@ -113,8 +113,8 @@ class DynamicRun {
     const std::vector<Trial> trials = trials_of_the_curve(found->measured);
     auto curve = tod_curve(trials, fit_options(plan));
     if (!curve) return abandon(frame, plan, provenance_, curve.error());
-    curve->sensor = found->camera;
-    curve->observer = loaded_.observer().name + ", single frames of a plate at rest";
+    curve->sensor = sensor_;
+    curve->observer = loaded_.observer().name;
     examine(*curve, fit_options(plan));
     for (const std::string& sentence : sentences(*found)) {
       note(*folder_, listener_, sentence);
@@ -139,9 +139,11 @@ class DynamicRun {
   Result<void> begin(const OpenedBench& bench) {
     const Plan& plan = loaded_.plan();
     simulated_ = bench.simulated;
+    const SourceInfo& info = bench.camera->info();
+    sensor_ = plan.camera.id.empty() ? loaded_.sensor().name : info.model + " " + info.serial;
     provenance_ = begin_provenance(plan, plan.camera.id.empty() ? Side::simulated : Side::measured);
     provenance_.effects = full_plan(loaded_.sensor(), plan.simulation.skip, plan.simulation.force, any_motion);
-    if (!plan.camera.id.empty()) provenance_.camera = camera_record(bench.camera->info());
+    if (!plan.camera.id.empty()) provenance_.camera = camera_record(info);
     provenance_.target = plan.camera.id.empty() ? "simulated scene" : bench.target->capabilities().description;
     auto folder = begin_session(loaded_, options_, provenance_);
     if (!folder) return tl::unexpected(folder.error());
@@ -173,6 +175,7 @@ class DynamicRun {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::optional<SessionFolder> folder_;
   Provenance provenance_;
+  std::string sensor_;  ///< whose curve it is
   bool simulated_ = false;
 };
 

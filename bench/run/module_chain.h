@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/plan/plan_options.h"
 #include "bench/run/devices.h"
 #include "bench/run/experiment_inputs.h"
 #include "hvs/observer/observer.h"

@@ -167,6 +167,10 @@ TEST(DynamicCommand, MeasuresAPlanThatMovesAndRefusesInASentence) {
   EXPECT_EQ(run({"verify", "moved"}).code, 0);
   EXPECT_EQ(run({"report", "moved"}).code, 0);
   expect_refused(run({"dynamic", "./moving.toml", "--out", "moved"}), 2, "");
+  folder.write("camera.toml",
+               small_measurement(1, "[motion]\nspeeds_mrad_s = [30]\npasses = 4\nframes = 2\nlead_frames = 1\n"));
+  EXPECT_EQ(run({"dynamic", "./camera.toml", "--out", "of-a-camera"}).code, 0);
+  EXPECT_EQ(run({"history", "add", "of-a-camera", "--index", "index.sqlite"}).code, 0) << "a session as any other";
   folder.write("graded.toml", small_plan(1, "[schedule]\nanswers = \"graded\"\n[fit]\nestimator = \"twin-shape\"\n"));
   expect_refused(run({"dynamic", "./graded.toml", "--out", "graded"}), 2, "graded");
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "graded"));

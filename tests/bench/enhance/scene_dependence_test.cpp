@@ -5,8 +5,10 @@
 
 #include <cmath>
 
+#include "bench/enhance/dynamic_session.h"
 #include "bench/plan/plan.h"
 #include "sim_devices/sensor/sensor_model.h"
+#include "tests/support/temporary_folder.h"
 #include "tod/registration/registration.h"
 
 namespace todbench {
@@ -105,6 +107,71 @@ TEST(SceneDependence, OfAGainControlIsWhatMediansOfItsFramesShow) {
   EXPECT_LT(by_medians, 0.9);
   for (const SizeDependence& size : found->sizes)
     EXPECT_NEAR(size.ratio, by_medians, 0.03 * by_medians) << "a gain that is the same everywhere";
+}
+
+TEST(SceneDependence, OfACameraHasItsBarMovedByTheOperator) {
+  Plan plan = bar_plan().plan();
+  plan.camera.id = "sim:sc2000";
+  plan.camera.ifov_mrad = 1.3085399449;
+  const auto loaded = LoadedPlan::load(plan);
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  std::vector<bool> asked;
+  ExperimentHost host;
+  host.ask_operator = [&](const OperatorRequest& request, const std::stop_token&) -> Result<OperatorAnswer> {
+    for (const OperatorStep& step : request.steps) asked.push_back(std::get<MoveHotBar>(step).in);
+    return asked.size() <= 7 ? OperatorAnswer::done : OperatorAnswer::stop;
+  };
+
+  const auto found = plan_scene_dependence(*loaded, nullptr, 40, {.cycles = 3, .frames = 4}, host, {});
+  const auto stopped = plan_scene_dependence(*loaded, nullptr, 40, {.cycles = 4, .frames = 4}, host, {});
+
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(found->verdict, SceneDependenceVerdict::independent) << "nobody brought a bar";
+  ASSERT_GE(asked.size(), 7u);
+  EXPECT_THAT(std::vector<bool>(asked.begin(), asked.begin() + 7),
+              ::testing::ElementsAre(false, true, false, true, false, true, false))
+      << "asked only where it has to move";
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().code, ErrorCode::interrupted);
+  const StagePlan stage;
+  const EnhancementPackage package = package_of_stage(stage);
+  EXPECT_FALSE(plan_scene_dependence(*loaded, &package, 40, quick, host, {})) << "a package behind a camera";
+}
+
+TEST(DynamicSession, ThatIsStoppedKeepsItsTrialsAndSaysSo) {
+  const testing::TemporaryFolder folder;
+  Plan plan = bar_plan().plan();
+  plan.target.delta_t_k = {16.9};
+  plan.motion = {.speeds_mrad_s = {30}, .passes = 4, .frames = 2, .lead_frames = 1};
+  const auto loaded = LoadedPlan::load(plan);
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  std::stop_source stop;
+  const auto on_pass = [&](const MovingPassRecord& pass) {
+    if (pass.pass == 3) stop.request_stop();
+  };
+
+  const auto session =
+      measure_dynamic_session(*loaded, {.folder = folder.path() / "stopped"}, {}, on_pass, stop.get_token());
+
+  ASSERT_FALSE(session);
+  EXPECT_EQ(session.error().code, ErrorCode::interrupted);
+  const auto kept = read_session(folder.path() / "stopped");
+  ASSERT_TRUE(kept) << kept.error().message;
+  EXPECT_EQ(kept->provenance.state, SessionState::interrupted);
+  EXPECT_EQ(kept->trials.size(), 2u * 20) << "two passes at rest before the fourth pass of all";
+}
+
+TEST(DynamicSession, RefusesInOneSentenceWhatItDoesNotMeasure) {
+  Plan plan = bar_plan().plan();
+  EXPECT_TRUE(check_dynamic_plan(plan, {}));
+  plan.measures.noise = true;
+  plan.limits.equivalence_margin_percent = 10;
+  plan.camera.nuc_interval_s = 60;
+  const auto refused = check_dynamic_plan(plan, {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::invalid_input);
+  for (const char* name : {"[measures]", "equivalence_margin_percent", "nuc_interval_s"})
+    EXPECT_THAT(refused.error().message, ::testing::HasSubstr(name));
 }
 
 TEST(SceneDependence, IsRefusedWithoutRoomForABarAndWithoutCycles) {

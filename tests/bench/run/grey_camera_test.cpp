@@ -1,14 +1,18 @@
 // A camera of eight bits with gain control through the GigE path, beside the same camera with its temperatures.
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <cmath>
 #include <filesystem>
 
+#include "bench/enhance/scene_dependence.h"
+#include "bench/plan/descriptions.h"
 #include "bench/run/emulation.h"
 #include "bench/run/experiment.h"
 #include "bench/session/open_session.h"
 #include "bench/text/csv_table.h"
 #include "bench/text/text.h"
+#include "sim_devices/lab/gvsp_laboratory.h"
 #include "tests/support/temporary_folder.h"
 
 namespace todbench {
@@ -84,6 +88,69 @@ TEST(GreyCamera, WithGainControlHasTheCurveOfTheSameCameraWithTemperatures) {
   const auto table = parse_csv(*text, "grey-levels.csv");
   ASSERT_TRUE(table);
   EXPECT_EQ(table->rows.size(), 2u * 2 * 6) << "a row for every frame that was judged";
+}
+
+/// An emulated Ax5 whose field a hot bar comes into.
+struct BarBench {
+  std::shared_ptr<std::atomic<bool>> in = std::make_shared<std::atomic<bool>>(false);
+  std::unique_ptr<Laboratory> laboratory;
+  ExperimentHost operating;
+  int moves = 0;
+
+  BarBench() {
+    LaboratoryOptions options;
+    options.sensor = with_counts_of(CameraModel::ax5, load_sensor("sc2000").value());
+    options.plan = full_plan(options.sensor, {}, {}, any_motion);
+    options.accuracy = Accuracy::draft();
+    options.plates = {load_plate("tcat-a").value()};
+    GvspCameraConfig camera;
+    camera.model = CameraModel::ax5;
+    camera.serial = "TB0001";
+    options.connect = [connect = connect_gvsp(camera), in = in](const SensorSpec& sensor, LaboratoryExposure exposure) {
+      const int bar_counts = static_cast<int>(40 / sensor.kelvin_per_count);
+      return connect(sensor, [exposure = std::move(exposure), in, bar_counts](std::uint64_t index) {
+        cv::Mat1w counts = exposure(index);
+        if (*in) counts(cv::Rect(2, 48, 16, 144)) += bar_counts;
+        return counts;
+      });
+    };
+    options.black_body.time_constant_s = 0.05;
+    options.black_body.stable_dwell_s = 0.05;
+    options.stage.speed_mm_per_s = 200;
+    options.stage.settle_s = 0.02;
+    options.stage.plate_change_s = 0.1;
+    options.stage.mounting_change_s = 0.1;
+    auto started = Laboratory::start(std::move(options));
+    if (started) laboratory = *std::move(started);
+    operating.ask_operator = [this](const OperatorRequest& request, const std::stop_token&) {
+      for (const OperatorStep& step : request.steps) *in = std::get<MoveHotBar>(step).in;
+      ++moves;
+      return Result<OperatorAnswer>(OperatorAnswer::done);
+    };
+  }
+};
+
+TEST(GreyCamera, WithGainControlDependsOnAHotBarAndTheSameWithTemperaturesDoesNot) {
+  BarBench bench;
+  ASSERT_TRUE(bench.laboratory);
+  Plan plan = grey_plan();
+  plan.target.plates = {"tcat-a"};
+  plan.target.delta_t_k = {16.9};
+  plan = with_laboratory(plan, *bench.laboratory);
+  const SceneDependenceOptions quick{.cycles = 3, .frames = 4, .settle_frames = 2};
+
+  const auto linear = plan_scene_dependence(LoadedPlan::load(plan).value(), nullptr, 40, quick, bench.operating, {});
+  for (const auto& [name, value] : eight_bits) plan.camera.settings[name] = value;
+  plan.camera.contrast = ContrastUnit::grey_levels;
+  const auto grey = plan_scene_dependence(LoadedPlan::load(plan).value(), nullptr, 40, quick, bench.operating, {});
+
+  ASSERT_TRUE(linear) << linear.error().message;
+  ASSERT_TRUE(grey) << grey.error().message;
+  EXPECT_EQ(linear->verdict, SceneDependenceVerdict::independent);
+  EXPECT_EQ(grey->verdict, SceneDependenceVerdict::depends);
+  EXPECT_EQ(bench.moves, 2 * 7);
+  // The range of the means grows from that of the triangles, 16.9 K and the noise of means of nine, to that of the bar.
+  EXPECT_NEAR(grey->sizes.front().ratio, 17.0 / 40.1, 0.02);
 }
 
 TEST(GreyCamera, IsRefusedInKelvinAndWithoutLargeTriangles) {
