@@ -25,29 +25,37 @@ Interval hull_of(const Interval& a, const Interval& b) {
   return both;
 }
 
-struct LogPoint {
+/// A point of a curve as its form has it: the square of the size over the inverse contrast.
+struct SlopePoint {
   std::size_t index;
-  double x, y;
+  double z;       ///< 1 / contrast
+  double square;  ///< S75^2
 };
 
-/// Slope at p of the parabola through p, a and b.
-double parabola_slope(const LogPoint& p, const LogPoint& a, const LogPoint& b) {
-  const double to_a = (a.y - p.y) / (a.x - p.x), to_b = (b.y - p.y) / (b.x - p.x);
-  return (to_a * (b.x - p.x) - to_b * (a.x - p.x)) / (b.x - a.x);
+/// d square / d z at p of the parabola through p, a and b.
+double parabola_slope(const SlopePoint& p, const SlopePoint& a, const SlopePoint& b) {
+  const double to_a = (a.square - p.square) / (a.z - p.z), to_b = (b.square - p.square) / (b.z - p.z);
+  return (to_a * (b.z - p.z) - to_b * (a.z - p.z)) / (b.z - a.z);
 }
 
-double secant(const LogPoint& a, const LogPoint& b) {
-  return (b.y - a.y) / (b.x - a.x);
+/// d ln acuity / d ln contrast = z / (2 S^2) dS^2/dz.
+double in_logarithms(const SlopePoint& p, double slope) {
+  return std::abs(0.5 * p.z * slope / p.square);
 }
 
-double slope_at(const std::vector<LogPoint>& points, std::size_t i) {
+double slope_at(const std::vector<SlopePoint>& points, std::size_t i) {
   const std::size_t last = points.size() - 1;
   if (last == 0) return 1;
-  if (i > 0 && i < last) return std::abs(parabola_slope(points[i], points[i - 1], points[i + 1]));
-  const std::size_t near = i == 0 ? 1 : last - 1;
-  const double line = std::abs(secant(points[i], points[near]));
-  if (last == 1) return line;
-  return std::max(line, std::abs(parabola_slope(points[i], points[near], points[i == 0 ? 2 : last - 2])));
+  const SlopePoint& p = points[i];
+  if (last == 1) {
+    // Two points have one term: that which says more, 1 / C or 1 / C^2.
+    const SlopePoint& other = points[1 - i];
+    const double rise = p.square - other.square;
+    return std::max(in_logarithms(p, rise / (p.z - other.z)),
+                    in_logarithms(p, 2 * p.z * rise / (p.z * p.z - other.z * other.z)));
+  }
+  if (i > 0 && i < last) return in_logarithms(p, parabola_slope(p, points[i - 1], points[i + 1]));
+  return in_logarithms(p, parabola_slope(p, points[i == 0 ? 1 : last - 1], points[i == 0 ? 2 : last - 2]));
 }
 
 /// Mean of what the camera saw less what the air leaves of what the target said, at a set contrast.
@@ -281,17 +289,17 @@ Interval deciding_interval(const TodPoint& point) {
 std::vector<double> contrast_slopes(const TodCurve& curve) {
   std::vector<double> slopes(curve.points.size(), 1.0);
   for (const bool positive : {false, true}) {
-    std::vector<LogPoint> points;
+    std::vector<SlopePoint> points;
     for (std::size_t i = 0; i < curve.points.size(); ++i) {
       const TodPoint& point = curve.points[i];
       if ((point.set_delta_t_k > 0) != positive || !point.fit.threshold || !(*point.fit.threshold > 0)) continue;
       if (!(contrast_k(point) > 0)) continue;
-      points.push_back({i, std::log(contrast_k(point)), -std::log(*point.fit.threshold)});
+      points.push_back({i, 1 / contrast_k(point), *point.fit.threshold * *point.fit.threshold});
     }
-    std::sort(points.begin(), points.end(), [](const LogPoint& a, const LogPoint& b) { return a.x < b.x; });
+    std::sort(points.begin(), points.end(), [](const SlopePoint& a, const SlopePoint& b) { return a.z < b.z; });
     // Contrasts that the camera saw as the same one have no slope between them.
     points.erase(std::unique(points.begin(), points.end(),
-                             [](const LogPoint& a, const LogPoint& b) { return std::abs(a.x - b.x) < 0.005; }),
+                             [](const SlopePoint& a, const SlopePoint& b) { return std::log(b.z / a.z) < 0.005; }),
                  points.end());
     for (std::size_t i = 0; i < points.size(); ++i) slopes[points[i].index] = slope_at(points, i);
   }

@@ -112,6 +112,7 @@ TEST(ValidPlan, NoNumberLeavesItsRangeWhoeverMadeThePlan) {
   good.limits.measures = {{LimitedMeasure::netd, std::nullopt, 0.05}};
   good.measures.pixels = true;
   good.limits.zones = {{.name = "centre", .bad_pixels = 0}};
+  good.limits.fleets = {{.delta_t_k = 0.23, .mean = 0.3, .sd = 0.04, .units = 12}};
   for (ModulePlan& module : good.modules) module.command = "cat";
   ASSERT_TRUE(validate(good)) << validate(good).error().message;
   int tried = 0;
