@@ -117,6 +117,10 @@ Result<DynamicMeasurement> measure_dynamic(const LoadedPlan& loaded,
   const Plan& plan = loaded.plan();
   if (has_modules(plan, loaded.sensor()))
     return fail(ErrorCode::invalid_input, "a target that moves is not measured behind modules");
+  if (plan.fit.estimator == EstimatorChoice::twin_shape)
+    return fail(
+        ErrorCode::invalid_input,
+        "the function of the twin is that of a target at rest: [fit] estimator must be 'weibull' or 'automatic'");
   const auto accuracy = accuracy_of(plan);
   if (!accuracy) return tl::unexpected(accuracy.error());
   const auto model = std::make_shared<const SensorModel>(
