@@ -37,6 +37,7 @@ Result<FitOptions> options_of(const FitArguments& arguments) {
 void print(const Console& console, const PsychometricFit& fit) {
   std::vector<TableRow> rows{
       {"verdict", std::string(to_string(fit.verdict)), ""},
+      {"function", "Weibull", std::string(in_words(EstimatorReason::no_twin))},
       {"threshold (75 % correct)", fixed(fit.threshold, 6), "95 %: " + range(fit.ci95, 6)},
       {"slope", fixed(fit.slope, 4), ""},
       {"lapse", fixed(fit.lapse, 4), ""},
@@ -77,6 +78,8 @@ int run_fit(Console& console, const FitArguments& arguments) {
   const Adequacy found = adequacy(*levels, *fit, *options);
   if (console.json()) {
     Json json = fit_json(*fit);
+    json["estimator"] = to_string(FitEstimator::weibull);
+    json["estimator_reason"] = to_string(EstimatorReason::no_twin);
     json["adequacy"] = adequacy_json(found);
     console.object(json);
   } else {

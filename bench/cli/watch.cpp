@@ -11,6 +11,7 @@
 #include "bench/plan/plan_options.h"
 #include "bench/report/curve_lines.h"
 #include "bench/session/provenance.h"
+#include "bench/session/session_folder.h"
 #include "bench/session/trials_csv.h"
 #include "bench/text/files.h"
 #include "bench/text/json.h"
@@ -95,8 +96,14 @@ int watch_session(Console& console, const std::filesystem::path& folder, const s
     const auto bytes = size_of(folder / "trials.csv") + size_of(folder / "trials_simulated.csv");
     if (bytes != shown_bytes) {
       shown_bytes = bytes;
-      const auto measured = curve_of(folder / "trials.csv", options);
-      const auto twin = curve_of(folder / "trials_simulated.csv", options);
+      std::optional<TodCurve> measured, twin;
+      if (const auto session = *state == SessionState::running ? Result<Session>(Session{}) : read_session(folder)) {
+        measured = session->curve;
+        twin = session->twin;
+      }
+      // While it runs, and where it left no fits.
+      if (!measured) measured = curve_of(folder / "trials.csv", options);
+      if (!twin) twin = curve_of(folder / "trials_simulated.csv", options);
       show(console, {.delta_t_k = plan->target.delta_t_k,
                      .measured = measured ? &*measured : nullptr,
                      .twin = twin ? &*twin : nullptr,

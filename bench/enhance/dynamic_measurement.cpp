@@ -118,6 +118,10 @@ Result<DynamicMeasurement> measure_dynamic(const LoadedPlan& loaded, const Dynam
     return fail(ErrorCode::invalid_input, "a target that moves is not measured behind modules");
   if (plan.camera.contrast == ContrastUnit::grey_levels)
     return fail(ErrorCode::invalid_input, "a target that moves is measured in kelvin, not in grey levels");
+  if (plan.fit.estimator == EstimatorChoice::twin_shape)
+    return fail(
+        ErrorCode::invalid_input,
+        "the function of the twin is that of a target at rest: [fit] estimator must be 'weibull' or 'automatic'");
   const auto accuracy = accuracy_of(plan);
   if (!accuracy) return tl::unexpected(accuracy.error());
   const auto model = std::make_shared<const SensorModel>(

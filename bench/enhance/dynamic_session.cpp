@@ -115,6 +115,9 @@ class DynamicRun {
     if (!curve) return abandon(frame, plan, provenance_, curve.error());
     curve->sensor = sensor_;
     curve->observer = loaded_.observer().name;
+    for (TodPoint& point : curve->points)
+      point.estimator_reason =
+          plan.fit.estimator == EstimatorChoice::automatic ? EstimatorReason::moving_target : EstimatorReason::plan;
     examine(*curve, fit_options(plan));
     for (const std::string& sentence : sentences(*found)) {
       note(*folder_, listener_, sentence);
@@ -182,16 +185,15 @@ class DynamicRun {
 }  // namespace
 
 Result<void> check_dynamic_plan(const Plan& plan, const SensorSpec& sensor) {
-  const MeasuresPlan& m = plan.measures;
   const std::pair<bool, const char*> refused[] = {
       {has_modules(plan, sensor), "[[module]]"},
       {plan.camera.contrast == ContrastUnit::grey_levels, "contrasts in grey levels ([camera] contrast)"},
       {plan.camera.nuc_interval_s > 0, "corrections on command ([camera] nuc_interval_s)"},
       {plan.schedule.kind == ScheduleKind::adaptive, "an adaptive schedule ([schedule] kind)"},
       {plan.schedule.answers == AnswerKind::graded, "graded answers ([schedule] answers)"},
-      {plan.fit.estimator == FitEstimator::twin_shape, "the function of the twin ([fit] estimator)"},
+      {plan.fit.estimator == EstimatorChoice::twin_shape, "the function of the twin ([fit] estimator)"},
       {plan.measurement.record_frames, "recorded frames ([measurement] record_frames)"},
-      {m.noise || m.transfer || m.triangles || m.mtf || m.ctf, "physical measures ([measures])"},
+      {plan.measures.any(), "physical measures ([measures])"},
       {plan.limits.equivalence_margin_percent.has_value(),
        "agreement with a twin ([limits] equivalence_margin_percent)"}};
   std::string names;

@@ -94,6 +94,9 @@ void run_one(SimulatedSetUp set_up, const Plan& plan, const ExperimentInputs& in
     result.curve = std::move(*curve);
     result.curve.sensor = inputs.sensor.name;
     result.curve.observer = inputs.observer.name;
+    for (TodPoint& point : result.curve.points)
+      point.estimator_reason =
+          plan.fit.estimator == EstimatorChoice::automatic ? EstimatorReason::package : EstimatorReason::plan;
   } else if (!result.error) {
     result.error = curve.error();
   }
@@ -251,9 +254,10 @@ Result<void> check_paired_plan(const Plan& plan) {
   if (plan.schedule.kind == ScheduleKind::adaptive)
     return fail(ErrorCode::invalid_input,
                 "an adaptive schedule shows each package other frames: [schedule] kind must be 'constant'");
-  if (plan.fit.estimator == FitEstimator::twin_shape)
+  if (plan.fit.estimator == EstimatorChoice::twin_shape || plan.schedule.answers == AnswerKind::graded)
     return fail(ErrorCode::invalid_input,
-                "the functions of the sensor are not those behind a package: [fit] estimator must be 'weibull'");
+                "the functions of the sensor are not those behind a package: [fit] estimator must be 'weibull' or "
+                "'automatic', [schedule] answers 'binary'");
   return {};
 }
 

@@ -23,8 +23,8 @@ constexpr const auto& values_of(const ScheduleKind&) {
 constexpr const auto& values_of(const AnswerKind&) {
   return all_answer_kinds;
 }
-constexpr const auto& values_of(const FitEstimator&) {
-  return all_fit_estimators;
+constexpr const auto& values_of(const EstimatorChoice&) {
+  return all_estimator_choices;
 }
 constexpr const auto& values_of(const PsychometricForm&) {
   return all_psychometric_forms;

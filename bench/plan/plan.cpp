@@ -9,6 +9,18 @@ std::string_view to_string(ScheduleKind kind) {
   return kind == ScheduleKind::constant ? "constant" : "adaptive";
 }
 
+std::string_view to_string(EstimatorChoice choice) {
+  switch (choice) {
+    case EstimatorChoice::automatic:
+      return "automatic";
+    case EstimatorChoice::weibull:
+      return to_string(FitEstimator::weibull);
+    case EstimatorChoice::twin_shape:
+      return to_string(FitEstimator::twin_shape);
+  }
+  return "unknown";
+}
+
 std::string_view to_string(TargetKind kind) {
   switch (kind) {
     case TargetKind::scpi:

@@ -103,11 +103,21 @@ struct SchedulePlan {
 
 inline constexpr std::array all_psychometric_forms{PsychometricForm::size, PsychometricForm::acuity};
 
+/// With what function answers are to be fitted.
+enum class EstimatorChoice {
+  automatic,   ///< that of the simulated twin where there is one, else a Weibull function (chosen_estimator())
+  weibull,     ///< a Weibull function
+  twin_shape,  ///< the function of the simulated twin
+};
+inline constexpr std::array all_estimator_choices{EstimatorChoice::automatic, EstimatorChoice::weibull,
+                                                  EstimatorChoice::twin_shape};
+[[nodiscard]] std::string_view to_string(EstimatorChoice choice);
+
 /// [fit]
 struct FitPlan {
   PsychometricForm form = PsychometricForm::size;
   std::optional<double> lapse = 0.0;  ///< nothing: free
-  FitEstimator estimator = FitEstimator::weibull;
+  EstimatorChoice estimator = EstimatorChoice::automatic;
   bool operator==(const FitPlan&) const = default;
 };
 
@@ -309,6 +319,9 @@ struct MeasuresPlan {
   int ctf_frames = 64;                    ///< averaged
   double ctf_frequency_per_pitch = 0.4;   ///< the group nearest to it is stated and limited
   bool operator==(const MeasuresPlan&) const = default;
+
+  /// Whether any is on.
+  [[nodiscard]] bool any() const { return noise || transfer || drift || geometry || triangles || mtf || ctf; }
 };
 
 /// [motion]: passes of a plate that a stage moves, for `todbench dynamic PLAN`.

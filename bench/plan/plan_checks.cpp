@@ -62,9 +62,8 @@ ValueMistakes check_display_span(const Plan& plan, std::size_t /*row*/) {
 
 ValueMistakes check_contrast_unit(const Plan& plan, std::size_t /*row*/) {
   if (plan.camera.contrast == ContrastUnit::kelvin) return {};
-  const MeasuresPlan& m = plan.measures;
   ValueMistakes mistakes;
-  if (m.noise || m.transfer || m.triangles || m.mtf || m.ctf)
+  if (plan.measures.any())
     mistakes.push_back({std::nullopt, "grey levels are no kelvin: [measures] of such a camera have no meaning"});
   if (!plan.modules.empty())
     mistakes.push_back({std::nullopt, "contrasts in grey levels are not measured behind a [[module]]"});
@@ -101,14 +100,14 @@ ValueMistakes check_frames_per_presentation(const Plan& plan, std::size_t /*row*
 }
 
 ValueMistakes check_estimator(const Plan& plan, std::size_t /*row*/) {
-  const bool twin = plan.fit.estimator == FitEstimator::twin_shape;
-  if (!twin && plan.schedule.answers == AnswerKind::graded) {
+  if (plan.schedule.answers != AnswerKind::graded) return {};
+  if (plan.fit.estimator == EstimatorChoice::weibull) {
     return {{std::nullopt,
              "answers = \"graded\" needs \"twin-shape\": a Weibull function is off by more than the "
              "interval of graded answers"}};
   }
-  if (!twin || plan.fit.lapse == 0.0) return {};
-  return {{std::nullopt, "the function of the twin has no lapse: \"twin-shape\" needs lapse = 0"}};
+  if (plan.fit.lapse == 0.0) return {};
+  return {{std::nullopt, "graded answers are those of an observer that does not lapse: they need lapse = 0"}};
 }
 
 ValueMistakes check_transfer_steps(const Plan& plan, std::size_t /*row*/) {
@@ -324,10 +323,16 @@ ValueMistakes check_module_command(const Plan& plan, std::size_t row) {
 }
 
 ValueMistakes check_module_place(const Plan& plan, std::size_t row) {
-  if (plan.fit.estimator == FitEstimator::twin_shape)
-    return {
-        {std::nullopt, "the functions of the sensor are not those behind a module: [fit] estimator must be 'weibull'"}};
-  if (plan.modules[row].place != ModulePlace::observer) return {};
+  if (plan.fit.estimator == EstimatorChoice::twin_shape)
+    return {{std::nullopt,
+             "the functions of the sensor are not those behind a module: [fit] estimator must be 'weibull' or "
+             "'automatic'"}};
+  if (plan.modules[row].place != ModulePlace::observer) {
+    if (plan.schedule.answers != AnswerKind::graded) return {};
+    return {{std::nullopt,
+             "graded answers are fitted with the function of the sensor, which is not that behind a module: [schedule] "
+             "answers must be 'binary'"}};
+  }
   for (std::size_t i = 0; i < row; ++i) {
     if (plan.modules[i].place == ModulePlace::observer) return {{std::nullopt, "a second observer"}};
   }

@@ -350,8 +350,9 @@ PlanSection fit_section() {
                     .sentence = "share of wrong answers to triangles that are plainly seen",
                     .place = in(&Plan::fit, &FitPlan::lapse)},
                    {.name = "estimator",
-                    .type = ChoiceKey{names_of(all_fit_estimators)},
-                    .sentence = "the form above, or the function of the simulated twin, stretched in size",
+                    .type = ChoiceKey{names_of(all_estimator_choices)},
+                    .sentence = "the form above, or the function of the simulated twin, stretched in size; automatic: "
+                                "the twin's where there is one",
                     .place = in(&Plan::fit, &FitPlan::estimator),
                     .check = check_estimator}}};
 }

@@ -56,6 +56,11 @@ ConstantStimuliOptions stimuli_options(const Plan& plan, const std::vector<Targe
   return options;
 }
 
+double stopping_half_width_percent(const Plan& plan) {
+  constexpr double reserve = 0.92;
+  return plan.schedule.half_width_percent * (plan.fit.estimator == EstimatorChoice::weibull ? 1 : reserve);
+}
+
 std::unique_ptr<TrialSchedule> make_schedule(const Plan& plan, const std::vector<TargetPlate>& plates, double ifov_mrad,
                                              Side side, const RandomStream& stream) {
   const ConstantStimuliOptions stimuli = stimuli_options(plan, plates, ifov_mrad, side);
@@ -65,7 +70,7 @@ std::unique_ptr<TrialSchedule> make_schedule(const Plan& plan, const std::vector
                                                             .plates = plates,
                                                             .distance_m = plan.target.distance_m,
                                                             .fit = fit_options(plan),
-                                                            .half_width_percent = plan.schedule.half_width_percent,
+                                                            .half_width_percent = stopping_half_width_percent(plan),
                                                             .max_presentations = plan.schedule.max_presentations},
                                             stream);
 }
@@ -75,6 +80,13 @@ FitOptions fit_options(const Plan& plan) {
   options.form = plan.fit.form;
   options.fixed_lapse = plan.fit.lapse;
   return options;
+}
+
+ChosenEstimator chosen_estimator(const Plan& plan, const SensorSpec& sensor) {
+  if (plan.fit.estimator == EstimatorChoice::weibull) return {FitEstimator::weibull, EstimatorReason::plan};
+  if (plan.fit.estimator == EstimatorChoice::twin_shape) return {FitEstimator::twin_shape, EstimatorReason::plan};
+  if (!plan.modules.empty() || !sensor.modules.empty()) return {FitEstimator::weibull, EstimatorReason::modules};
+  return {FitEstimator::twin_shape, EstimatorReason::twin};
 }
 
 ComparisonOptions comparison_options(const Plan& plan) {

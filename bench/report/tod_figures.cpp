@@ -101,7 +101,7 @@ PlotSeries fitted_curve(const PsychometricFit& fit, PsychometricForm form, const
   }
   for (int i = 0; i <= steps; ++i) {
     const double size = sizes.low * std::pow(sizes.high / sizes.low, static_cast<double>(i) / steps);
-    const double proportion = shape ? shape->at(twin_ln_size(*shape, *fit.twin_shape, std::log(size))).proportion
+    const double proportion = shape ? twin_proportion(*shape, *fit.twin_shape, fit.lapse, std::log(size))
                                     : psychometric(form, size, *fit.threshold, *fit.slope, fit.lapse);
     series.points.push_back({size, proportion, {}, {}});
   }

@@ -45,9 +45,7 @@ class Walk {
   /// What [measures] asks for behind the trials, as measure_camera() goes through it.
   void measure(const TargetState& last, const std::string& first_plate) {
     const MeasuresPlan& measures = plan_.measures;
-    if (!measures.noise && !measures.transfer && !measures.geometry && !measures.drift && !measures.triangles &&
-        !measures.mtf && !measures.ctf)
-      return;
+    if (!measures.any()) return;
     const TargetPlan& target = plan_.target;
     const auto change = [&](double seconds, int frames) {
       time_.changes_s += seconds;

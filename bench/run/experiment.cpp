@@ -126,14 +126,20 @@ struct TwinRun {
   double wall_s = 0;
 };
 
-/// Fits a curve with the functions of its simulated sensor, where the plan asks for it.
+/// Fits a curve with the functions of its simulated sensor, where the plan has it so, and says why. `known`: of
+/// fit_twin_shapes().
 void give_shape(TodCurve& curve, MeasurementResult& result, const Plan& plan, const ExperimentInputs& inputs,
-                const std::map<double, double>& shown_delta_t_k, const SessionFrame& frame, std::stop_token stop) {
-  if (plan.fit.estimator != FitEstimator::twin_shape || result.ended_by) return;
+                const std::map<double, double>& shown_delta_t_k, const TodCurve* known, const SessionFrame& frame,
+                std::stop_token stop) {
+  const ChosenEstimator chosen = chosen_estimator(plan, inputs.sensor);
+  const bool by_twin = chosen.estimator == FitEstimator::twin_shape;
+  for (TodPoint& point : curve.points)
+    point.estimator_reason = by_twin && result.ended_by ? EstimatorReason::ended_early : chosen.reason;
+  if (!by_twin || result.ended_by) return;
   phase(frame.folder, frame.listener, "fitting with the functions of " + inputs.sensor.name);
   TwinShapesOutcome outcome =
       fit_twin_shapes(curve, result.trials, inputs, fit_options(plan),
-                      direct_options(curve, inputs, shown_delta_t_k, plan.seed, std::move(stop)));
+                      direct_options(curve, inputs, shown_delta_t_k, plan.seed, std::move(stop)), known);
   result.ended_by = std::move(outcome.ended_by);
   for (auto& sentence : outcome.notes) {
     note(frame.folder, frame.listener, sentence);
@@ -141,9 +147,11 @@ void give_shape(TodCurve& curve, MeasurementResult& result, const Plan& plan, co
   }
 }
 
+/// `measured`: the curve of the camera whose contrasts are shown; null where there is none.
 Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, SessionFolder& folder,
                               SessionCurve which, const std::map<double, double>& shown_delta_t_k,
-                              const ExperimentHost& host, const ExperimentListener& listener, std::stop_token stop) {
+                              const TodCurve* measured, const ExperimentHost& host, const ExperimentListener& listener,
+                              std::stop_token stop) {
   const auto begin = Clock::now();
   auto set_up = simulated_set_up(plan, inputs, shown_delta_t_k, stop);
   if (!set_up) return tl::unexpected(set_up.error());
@@ -172,7 +180,7 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
     point.lag1_correlation = run.result.lag1_correlation;
   }
 
-  give_shape(run.curve, run.result, plan, inputs, shown_delta_t_k, {folder, listener}, stop);
+  give_shape(run.curve, run.result, plan, inputs, shown_delta_t_k, measured, {folder, listener}, stop);
   if (!run.result.ended_by && has_modules(plan, inputs.sensor)) {
     const std::string sentence = "no direct estimate: it would leave out the modules";
     note(folder, listener, sentence);
@@ -215,8 +223,8 @@ TwinResults run_twin(const Plan& plan, const ExperimentInputs& inputs, const Tod
   phase(folder, listener, "simulating its twin " + inputs.sensor.name);
   std::map<double, double> shown;
   for (const auto& point : measured.points) shown[point.set_delta_t_k] = point.delta_t_k;
-  auto twin =
-      run_simulated(plan, inputs, folder, SessionCurve::twin, std::move(shown), host, listener, std::move(stop));
+  auto twin = run_simulated(plan, inputs, folder, SessionCurve::twin, std::move(shown), &measured, host, listener,
+                            std::move(stop));
   TwinResults results;
   if (!twin) {
     results.ended_by = with_context("the simulated twin", twin.error());
@@ -318,7 +326,7 @@ Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const Experime
 
   for (const auto& warning : inputs->warnings) note(*folder, listener, warning);
   phase(*folder, listener, "simulating " + inputs->sensor.name);
-  auto run = run_simulated(plan, *inputs, *folder, SessionCurve::main, {}, options.host, listener, stop);
+  auto run = run_simulated(plan, *inputs, *folder, SessionCurve::main, {}, nullptr, options.host, listener, stop);
   if (!run) {
     // Below what can be seen, the plate may not be found either: that is the reason, not its symptom.
     if (!inputs->identifiable && run.error().code == ErrorCode::calibration)
@@ -423,7 +431,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   }
   std::map<double, double> shown;
   for (const auto& point : curve->points) shown[point.set_delta_t_k] = point.delta_t_k;
-  give_shape(*curve, *result, plan, inputs, shown, frame, stop);
+  give_shape(*curve, *result, plan, inputs, shown, nullptr, frame, stop);
   curve->sensor = info.model + " " + info.serial;
   curve->observer = observer_name(plan, inputs);
   for (auto& point : curve->points) {

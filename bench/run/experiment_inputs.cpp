@@ -46,9 +46,14 @@ Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlann
   inputs.observer = loaded.observer();
   inputs.motion = plan.simulation.motion;
   if (has_modules(plan, loaded.sensor())) {
-    if (plan.fit.estimator == FitEstimator::twin_shape)
+    if (chosen_estimator(plan, loaded.sensor()).estimator == FitEstimator::twin_shape)
       return fail(ErrorCode::invalid_input,
-                  "the functions of the sensor are not those behind a module: [fit] estimator must be 'weibull'");
+                  "the functions of the sensor are not those behind a module: [fit] estimator must be 'weibull' or "
+                  "'automatic'");
+    if (plan.schedule.answers == AnswerKind::graded)
+      return fail(ErrorCode::invalid_input,
+                  "graded answers are fitted with the function of the sensor, which is not that behind a module: "
+                  "[schedule] answers must be 'binary'");
     // What may be left out for the sensor alone may matter behind a module.
     inputs.effects = full_plan(loaded.sensor(), plan.simulation.skip, plan.simulation.force, inputs.motion);
     inputs.sensor = as_planned(loaded.sensor(), inputs.effects);

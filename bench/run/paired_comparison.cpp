@@ -39,7 +39,7 @@ Result<RatioOfPairs> ratio_at(const TodPoint& point, std::span<const Trial> tria
 
 bool pairs_asked(const Plan& plan) {
   return plan.simulation.paired && plan.schedule.answers == AnswerKind::graded &&
-         plan.fit.estimator == FitEstimator::twin_shape;
+         plan.fit.estimator != EstimatorChoice::weibull;
 }
 
 PairedTwinOptions paired_options(const ExperimentInputs& inputs, std::span<const SetUpRecord> set_ups,

@@ -86,16 +86,10 @@ std::optional<double> closed_form_netd_k(const SensorSpec& spec, const SensorPla
 
 }  // namespace
 
-bool measures_asked(const Plan& plan) {
-  const MeasuresPlan& measures = plan.measures;
-  return measures.noise || measures.transfer || measures.geometry || measures.drift || measures.triangles ||
-         measures.mtf || measures.ctf;
-}
-
 Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan, const MeasurementOptions& options,
                                                         const ExperimentInputs& inputs, OpenedBench& bench,
                                                         const SessionFrame& frame, std::stop_token stop) {
-  if (!measures_asked(plan)) return std::nullopt;
+  if (!plan.measures.any()) return std::nullopt;
   phase(frame.folder, frame.listener, "physical measures");
   auto measures = measure_camera(*bench.camera, *bench.target,
                                  {.noise = plan.measures.noise,
@@ -151,7 +145,7 @@ Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loade
                                                          const SessionFrame& frame, std::stop_token stop) {
   Plan plan = loaded.plan();
   plan.measures.drift = false;  // nothing is corrected in it
-  if (!measures_asked(plan)) return std::nullopt;
+  if (!plan.measures.any()) return std::nullopt;
   const auto model = whole_sensor(loaded, inputs);
   MeasurementOptions options = simulated_options(plan, inputs);
   auto response = simulated_responses(*model, plan, inputs.plates, options, stop);

@@ -11,9 +11,6 @@
 
 namespace todbench {
 
-/// The plan asks for a measure.
-[[nodiscard]] bool measures_asked(const Plan& plan);
-
 /// With the bench of the trials, after them; `options` are those of the trials, the plates those of `inputs`. What
 /// cannot be measured is a reason in the result and a note. Nothing: none is asked for. Fails with `interrupted` only.
 [[nodiscard]] Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan,

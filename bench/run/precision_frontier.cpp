@@ -13,7 +13,7 @@ Plan with_answers(Plan plan, AnswerKind answers, int frames) {
   plan.schedule.answers = answers;
   plan.schedule.frames_per_presentation = frames;
   if (answers == AnswerKind::graded) {
-    plan.fit.estimator = FitEstimator::twin_shape;
+    plan.fit.estimator = EstimatorChoice::twin_shape;
     plan.fit.lapse = 0.0;
   }
   return plan;

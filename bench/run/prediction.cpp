@@ -47,9 +47,10 @@ double sensor_share(const TemplateObserverSpec& observer, double q_eff) {
   return std::max(0.0, q_eff * q_eff - own) / factor / (q_eff * q_eff);
 }
 
-/// Relative standard error of the threshold of a table of proportions (needed_draws(), twin_shapes.h).
-double se_of_shape(const Accuracy& accuracy, double q_eff) {
-  return (0.046 + 0.285 * q_eff) / std::sqrt(std::max<double>(accuracy.noise_draws, twin_shape_draws));
+/// Relative standard error of the threshold of a table of proportions (needed_draws(), twin_shapes.h), for answers
+/// with this one.
+double se_of_shape(const Accuracy& accuracy, double q_eff, std::optional<double> se_ln_threshold) {
+  return (0.046 + 0.285 * q_eff) / std::sqrt(draws_of_twin_shape(se_ln_threshold, accuracy));
 }
 
 /// Half the interval of ln S75 of graded answers, from the standard error of as many right and wrong ones.
@@ -60,8 +61,8 @@ double graded_half_width(const Plan& plan, const ExperimentInputs& inputs, doubl
                                    .draws = MeasurementOptions::graded_draws,
                                    .set_ups = set_ups,
                                    .presentations = set_ups * plan.simulation.phases};
-  const double se =
-      std::hypot(binary_se * std::sqrt(graded_variance_ratio(design)), se_of_shape(inputs.accuracy, q_eff));
+  const double se = std::hypot(binary_se * std::sqrt(graded_variance_ratio(design)),
+                               se_of_shape(inputs.accuracy, q_eff, std::nullopt));
   return graded_interval_factor(design) * se;
 }
 
@@ -72,9 +73,11 @@ std::optional<double> uncertainty_percent(const Plan& plan, const ExperimentInpu
                                 plan.fit.lapse.value_or(0.01));
   const auto fit = expected_fit(design, fit_options(plan));
   if (!fit) return std::nullopt;
+  const bool by_twin = chosen_estimator(plan, inputs.sensor).estimator == FitEstimator::twin_shape;
+  const double of_shape = by_twin ? se_of_shape(inputs.accuracy, outlook.q_eff, fit->se_ln_threshold) : 0;
   const double half = plan.schedule.answers == AnswerKind::graded
                           ? graded_half_width(plan, inputs, outlook.q_eff, fit->se_ln_threshold)
-                          : likely_excess * 1.96 * fit->se_ln_threshold;
+                          : likely_excess * 1.96 * std::hypot(fit->se_ln_threshold, of_shape);
   return 100 * std::expm1(half);
 }
 
@@ -86,7 +89,8 @@ void adapt(ContrastPrediction& point, const Plan& plan, const std::vector<Target
   for (const auto& plate : plates) triangles += static_cast<double>(plate.triangles.size());
   const double per_presentation = triangles / static_cast<double>(plates.size());
   const double asked = plan.schedule.half_width_percent / 100, constant = std::log1p(*point.uncertainty_percent / 100);
-  const double needed = std::max(point.trials * std::pow(constant / asked, 2), 8 * per_presentation);
+  const double stop = stopping_half_width_percent(plan) / 100;
+  const double needed = std::max(point.trials * std::pow(constant / stop, 2), 8 * per_presentation);
   const double share = plan.schedule.max_presentations / static_cast<double>(plan.target.delta_t_k.size());
   const double cap = std::max(std::floor(share), 1.0) * per_presentation;
   // Below the cap the schedule goes on until the interval itself is narrow enough.

@@ -49,9 +49,12 @@ Result<bool> same_trials(const std::filesystem::path& session, const std::filesy
   return *now == *then || (cut_off && (now->starts_with(*then) || then->starts_with(*now)));
 }
 
-/// A curve without what is said of it: a session of an earlier program knows no findings.
+/// A curve without what is said of it: a session of an earlier program knows no findings and no reasons.
 Json fits_of(TodCurve curve) {
-  for (TodPoint& point : curve.points) point.adequacy.reset();
+  for (TodPoint& point : curve.points) {
+    point.adequacy.reset();
+    point.estimator_reason.reset();
+  }
   return curve_record(curve);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "bench/plan/plan_options.h"
 #include "bench/run/devices.h"
@@ -142,6 +143,15 @@ Counts counts_of(const Plan& plan, const ExperimentInputs& inputs, int phases) {
   return counts;
 }
 
+/// Of ln S75, of right and wrong answers on sizes a factor of two about it; nothing for graded ones.
+std::optional<double> expected_error(const Plan& plan, const ExperimentInputs& inputs, const Counts& counts) {
+  if (plan.schedule.answers == AnswerKind::graded) return std::nullopt;
+  double trials = 0;
+  for (const auto& plate : inputs.plates)
+    trials += static_cast<double>(plate.triangles.size()) * counts.presentations / counts.contrasts;
+  return 0.65 / std::sqrt(std::max(trials, 1.0));
+}
+
 }  // namespace
 
 double needed_draws(const Accuracy& accuracy, double q_eff) {
@@ -171,7 +181,7 @@ Result<TimePrediction> predict_time(const Plan& plan, const ExperimentInputs& in
     if (plan.target.kind == TargetKind::scene) out.measuring_s += measured.presentations * speed->draw;
   }
   out.simulation_s += simulated.contrasts * fit_s;
-  const bool shaped = plan.fit.estimator == FitEstimator::twin_shape;
+  const bool shaped = chosen_estimator(plan, inputs.sensor).estimator == FitEstimator::twin_shape;
   for (const auto& outlook : inputs.outlooks) {
     const double draws = std::min<double>(needed_draws(inputs.accuracy, outlook.q_eff), Accuracy::max_noise_draws);
     const auto seconds = measured_direct_seconds(inputs.sensor, inputs.effects, inputs.observer, outlook.delta_t_k,
@@ -180,7 +190,7 @@ Result<TimePrediction> predict_time(const Plan& plan, const ExperimentInputs& in
     out.simulation_s += *seconds;
     if (!shaped) continue;
     // Of the curve, and where there is a camera of its own: the same draws whatever tolerance is asked for.
-    const double table_draws = std::max<double>(inputs.accuracy.noise_draws, twin_shape_draws);
+    const double table_draws = draws_of_twin_shape(expected_error(plan, inputs, simulated), inputs.accuracy);
     const double table_s = sizes_of_shape * *seconds * table_draws / draws;
     out.simulation_s += table_s;
     out.measuring_s += table_s;

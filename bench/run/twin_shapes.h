@@ -20,8 +20,11 @@ namespace todbench {
                                                    const std::map<double, double>& shown_delta_t_k, std::uint64_t seed,
                                                    std::stop_token stop);
 
-/// Draws per size of the functions, at least.
-inline constexpr int twin_shape_draws = 4000;
+/// Draws per size of the functions: the most, or those of the accuracy where they are more, and the least.
+inline constexpr int twin_shape_draws = 4000, least_twin_shape_draws = 1000;
+/// As many as make the error of a function a quarter of that of the answers, `se_ln_threshold`, by which it lengthens
+/// an interval by 3 %; nothing: not known.
+[[nodiscard]] int draws_of_twin_shape(std::optional<double> se_ln_threshold, const Accuracy& accuracy);
 
 /// What became of it, a sentence for each contrast that keeps its Weibull function.
 struct TwinShapesOutcome {
@@ -30,10 +33,11 @@ struct TwinShapesOutcome {
 };
 
 /// Fits every point of a curve anew with the function of the simulated sensor at its contrast (fit_twin_shape()), from
-/// the trials that it was made of. Four thousand draws per size at least: 0.15 to 0.3 %
-/// of the threshold, which the interval holds.
+/// the trials that it was made of. The interval holds the error of the function: of 4000 draws per size 0.15 to 0.3 %
+/// of the threshold. `known`: a curve that was fitted with the functions of the same sensor
+/// for the same scenes; they are taken from it where it has them.
 [[nodiscard]] TwinShapesOutcome fit_twin_shapes(TodCurve& curve, std::span<const Trial> trials,
                                                 const ExperimentInputs& inputs, const FitOptions& fit,
-                                                DirectEstimateOptions options);
+                                                DirectEstimateOptions options, const TodCurve* known = nullptr);
 
 }  // namespace todbench

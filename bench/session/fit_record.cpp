@@ -36,6 +36,7 @@ Json twin_shape_record(const TwinShapeUse& use) {
   json["departure_limit"] = json_number(use.departure_limit);
   json["departure_shift"] = json_number(use.departure_shift);
   json["shape_se_ln_threshold"] = json_number(use.shape_se_ln_threshold);
+  json["lapse_inflation"] = json_number(use.lapse_inflation);
   json["size_mrad"] = numbers_json(use.table.size_mrad);
   json["proportion_correct"] = numbers_json(use.table.proportion_correct);
   json["standard_error"] = numbers_json(use.table.standard_error);
@@ -52,6 +53,7 @@ std::optional<TwinShapeUse> read_twin_shape(const JsonReader& reader) {
   use.departure_limit = reader.at("departure_limit").number();
   use.departure_shift = reader.at("departure_shift").number();
   use.shape_se_ln_threshold = reader.at("shape_se_ln_threshold").number();
+  use.lapse_inflation = reader.at_if_there("lapse_inflation").optional_number().value_or(1);
   use.table = {numbers_from(reader.at("size_mrad")), numbers_from(reader.at("proportion_correct")),
                numbers_from(reader.at("standard_error"))};
   return use;
@@ -127,6 +129,8 @@ Json point_record(const TodPoint& point) {
   json["delta_t_k"] = json_number(point.delta_t_k);
   json["delta_t_se_k"] = json_number(point.delta_t_se_k);
   json["fit"] = fit_record(point.fit);
+  json["estimator"] = to_string(estimator_of(point.fit));
+  json["estimator_reason"] = point.estimator_reason ? Json(to_string(*point.estimator_reason)) : Json(nullptr);
   json["free_lapse_fit"] = point.free_lapse_fit ? fit_record(*point.free_lapse_fit) : Json(nullptr);
   json["lapse_warning"] = point.lapse_warning;
   json["adequacy"] = adequacy_json(point.adequacy);
@@ -146,6 +150,8 @@ TodPoint read_point(const JsonReader& reader) {
   point.delta_t_k = reader.at("delta_t_k").number();
   point.delta_t_se_k = reader.at("delta_t_se_k").number();
   point.fit = read_fit(reader.at("fit"));
+  if (const JsonReader reason = reader.at_if_there("estimator_reason"); !reason.is_null())
+    point.estimator_reason = reason.named(all_estimator_reasons);
   if (const JsonReader free = reader.at("free_lapse_fit"); !free.is_null()) point.free_lapse_fit = read_fit(free);
   point.lapse_warning = reader.at("lapse_warning").flag();
   point.adequacy = read_adequacy(reader.at_if_there("adequacy"));

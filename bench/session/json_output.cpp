@@ -70,7 +70,8 @@ Json curve_json(const TodCurve& curve, const SensorPlan& plan, const RunFigures&
     json["acuity_per_mrad"] = json_number(acuity_per_mrad(point.fit));
     json["trials"] = static_cast<std::int64_t>(std::llround(point.fit.trials));
     json["verdict"] = to_string(point.fit.verdict);
-    json["estimator"] = to_string(point.fit.twin_shape ? FitEstimator::twin_shape : FitEstimator::weibull);
+    json["estimator"] = to_string(estimator_of(point.fit));
+    json["estimator_reason"] = point.estimator_reason ? Json(to_string(*point.estimator_reason)) : Json(nullptr);
     json["interval"] = to_string(point.fit.interval);
     json["dispersion"] = json_number(point.fit.dispersion);
     json["clusters"] = json_number(point.fit.clusters);

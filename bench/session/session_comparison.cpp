@@ -23,11 +23,27 @@ bool same_trials(const std::vector<Trial>& a, const std::vector<Trial>& b) {
   return both > 0 && std::equal(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(both), b.begin(), same_trial);
 }
 
-std::string in_words(const Plan& plan) {
-  if (plan.fit.estimator == FitEstimator::twin_shape) return "the functions of the simulated twin";
-  const FitOptions fit = fit_options(plan);
-  return "the " + std::string(to_string(fit.form)) + " form with " +
+/// Whether the function of a twin was fitted, or would have been where the answers had been better.
+bool by_twin(const TodCurve& curve) {
+  return std::ranges::any_of(curve.points, [](const TodPoint& point) {
+    const auto& reason = point.estimator_reason;
+    return point.fit.twin_shape || reason == EstimatorReason::irregular || reason == EstimatorReason::no_function ||
+           reason == EstimatorReason::ended_early;
+  });
+}
+
+std::string in_words(const Session& session) {
+  const FitOptions fit = fit_options(session.plan);
+  const std::string function = by_twin(*session.curve) ? std::string("the functions of the simulated twin")
+                                                       : "the " + std::string(to_string(fit.form)) + " form";
+  return function + " with " +
          (fit.fixed_lapse ? "a lapse of " + number_text(*fit.fixed_lapse) : std::string("a free lapse"));
+}
+
+/// What was fitted counts, not how the plan came to it.
+bool fitted_alike(const Session& a, const Session& b) {
+  return a.plan.fit.form == b.plan.fit.form && a.plan.fit.lapse == b.plan.fit.lapse &&
+         by_twin(*a.curve) == by_twin(*b.curve);
 }
 
 bool same_shape(const TargetPlate& a, const TargetPlate& b) {
@@ -61,9 +77,9 @@ Result<void> check_comparable(const Session& a, const Session& b) {
   if (same_trials(a.trials, b.trials))
     return fail(ErrorCode::invalid_input,
                 "both sessions hold the same trials: comparing a session with itself shows nothing");
-  if (!(a.plan.fit == b.plan.fit))
+  if (!fitted_alike(a, b))
     return fail(ErrorCode::invalid_input,
-                "the curves were fitted differently: " + in_words(a.plan) + ", and " + in_words(b.plan));
+                "the curves were fitted differently: " + in_words(a) + ", and " + in_words(b));
   const TemplateObserverSpec &observer_a = a.parts.observer, &observer_b = b.parts.observer;
   if (observer_a.name != observer_b.name)
     return fail(ErrorCode::invalid_input,

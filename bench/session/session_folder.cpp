@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "bench/judgement/verdict_record.h"
+#include "bench/plan/strict_toml.h"
 #include "bench/session/cost_record.h"
 #include "bench/session/ending_reserve.h"
 #include "bench/session/fit_record.h"
@@ -327,6 +328,18 @@ std::string curve_csv(const TodCurve& main, const std::optional<TodCurve>& twin,
   return text;
 }
 
+namespace {
+
+Result<bool> states_estimator(const std::filesystem::path& file) {
+  const auto text = read_text_file(file);
+  if (!text) return tl::unexpected(text.error());
+  auto reader = TomlReader::parse(*text, file.string());
+  if (!reader) return tl::unexpected(reader.error());
+  return reader->section("fit").has("estimator");
+}
+
+}  // namespace
+
 Result<Session> read_session(const std::filesystem::path& folder) {
   if (!is_there(folder / "session.toml")) {
     return fail(ErrorCode::invalid_input, folder.string() + ": not a session folder (there is no session.toml)");
@@ -335,6 +348,10 @@ Result<Session> read_session(const std::filesystem::path& folder) {
   const Result<LoadedPlan> loaded = read_plan((folder / "session.toml").string());
   if (!loaded) return tl::unexpected(loaded.error());
   session.plan = loaded->plan();
+  const auto stated = states_estimator(folder / "session.toml");
+  if (!stated) return tl::unexpected(stated.error());
+  // Written before there was a choice: fitted with a Weibull function.
+  if (!*stated) session.plan.fit.estimator = EstimatorChoice::weibull;
   session.parts = loaded->parts();
 
   const std::filesystem::path provenance_file = folder / "provenance.json";

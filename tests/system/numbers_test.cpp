@@ -24,9 +24,9 @@ Json fit(const std::string& rows, int code, const std::vector<std::string>& more
 TEST(FitJson, HasTheKeysOfTheContractAndAThresholdBetweenTheLevels) {
   const Json json = fit("1,26,100\n2,50,100\n3,80,100\n4,96,100\n6,100,100\n", 0);
 
-  EXPECT_THAT(keys_of(json),
-              UnorderedElementsAre("verdict", "threshold", "ci95", "slope", "lapse", "log_likelihood", "deviance",
-                                   "degrees_of_freedom", "posterior", "slope_at_cap", "adequacy"));
+  EXPECT_THAT(keys_of(json), UnorderedElementsAre("verdict", "threshold", "ci95", "slope", "lapse", "log_likelihood",
+                                                  "deviance", "degrees_of_freedom", "posterior", "slope_at_cap",
+                                                  "adequacy", "estimator", "estimator_reason"));
   EXPECT_EQ(json["adequacy"], Json::parse(R"({"adequate": true, "findings": []})"));
   EXPECT_THAT(keys_of(json["posterior"]), UnorderedElementsAre("median", "ci95", "prior_bound"));
   EXPECT_EQ(json["verdict"], "ok");

@@ -19,9 +19,10 @@ using ::testing::UnorderedElementsAre;
 
 const std::set<std::string> curve_keys{"observer", "sensor", "points",  "plan",
                                        "wall_s",   "frames", "verdict", "judgement"};
-const std::set<std::string> point_keys{
-    "delta_t_k", "s75_mrad", "s75_ci95_mrad", "s75_direct_mrad", "s75_direct_se_mrad", "acuity_per_mrad", "trials",
-    "verdict",   "adequacy", "estimator",     "interval",        "dispersion",         "clusters"};
+const std::set<std::string> point_keys{"delta_t_k",          "s75_mrad",        "s75_ci95_mrad", "s75_direct_mrad",
+                                       "s75_direct_se_mrad", "acuity_per_mrad", "trials",        "verdict",
+                                       "adequacy",           "estimator",       "interval",      "dispersion",
+                                       "clusters",           "estimator_reason"};
 const std::set<std::string> effect_keys{"name", "decision", "reason", "predicted_change_percent"};
 
 /// A folder with a plan, and the program run in it.
@@ -407,7 +408,8 @@ TEST_F(Sessions, QuietMeansNothingOnStandardErrorAndNoTerminalNoControlCharacter
   auto said = lines_of(plain.err);
   // On a busy machine a run takes long enough for a line of the curve so far.
   std::erase_if(said, [](const std::string& line) { return line.starts_with("acuity [1/mrad] so far"); });
-  EXPECT_THAT(said, ElementsAre("simulating sc2000", "estimating sc2000 directly", "session: s"));
+  EXPECT_THAT(said, ElementsAre("simulating sc2000", "fitting with the functions of sc2000",
+                                "estimating sc2000 directly", "session: s"));
   EXPECT_EQ(quiet.err, "");
   for (const char c : plain.err + plain.out) EXPECT_TRUE(c == '\n' || c < 0 || c >= 0x20) << static_cast<int>(c);
 }

@@ -8,6 +8,7 @@
 
 #include "tod/adequacy/alternatives.h"
 #include "tod/adequacy/model_test.h"
+#include "tod/adequacy/twin_scatter.h"
 #include "tod/psychometric/psychometric_model.h"
 
 namespace todbench {
@@ -113,6 +114,15 @@ class Examination {
   }
 
   void examine_twin_shape() {
+    examine_twin_departure();
+    if (options_.fixed_lapse && point_.free_lapse_fit) {
+      const auto test = twin_lapse_test(fit_, *point_.free_lapse_fit, false_alarms.lapse);
+      if (test && test->statistic > test->limit) add_lapse(*test, *point_.free_lapse_fit);
+    }
+    if (const auto scatter = twin_dispersions(point_.levels, fit_, options_)) add_scatter(*scatter);
+  }
+
+  void examine_twin_departure() {
     const TwinShapeUse& use = *fit_.twin_shape;
     if (!(use.departure_limit > 0) || std::abs(use.departure) <= use.departure_limit) return;
     const char* asked = use.slope_fitted ? "a bend" : "another slope";

@@ -104,6 +104,11 @@ bool unfit(const TodPoint& point) {
   return point.adequacy && !point.adequacy->adequate();
 }
 
+// Where one function is that of the twin and the other is none, their difference is not that of the cameras.
+bool other_functions(const TodPoint& a, const TodPoint& b) {
+  return estimator_of(a.fit) != estimator_of(b.fit);
+}
+
 // Answers of two runs are never the same row by row.
 bool same_answers(const TodPoint& a, const TodPoint& b) {
   const auto same = [](const Level& x, const Level& y) {
@@ -161,7 +166,7 @@ Result<ComparisonPoint> compare_points(const TodPoint& a, const TodPoint& b, con
   point.p_difference = *p_difference;
   point.p_equivalence =
       equivalence_probability(*tb - *ta, point.ratio_ci90, options.margin_percent, spread.degrees_of_freedom);
-  point.verdict = unfit(a) || unfit(b) ? ComparisonVerdict::inconclusive : verdict_of(point);
+  point.verdict = unfit(a) || unfit(b) || other_functions(a, b) ? ComparisonVerdict::inconclusive : verdict_of(point);
   return point;
 }
 
@@ -232,6 +237,12 @@ Result<Comparison> compare(const TodCurve& a, const TodCurve& b, const Compariso
     add_unfit(*comparison.adequacy, *other, "second");
     auto compared = compare_points(point, *other, options);
     if (!compared) return fail("comparing at " + std::to_string(point.set_delta_t_k) + " K", compared.error());
+    if (other_functions(point, *other) && compared->ratio) {
+      const std::string sentence = fmt::format(
+          "at {:.4g} K one curve is fitted with the function of the twin, the other with a Weibull function",
+          point.set_delta_t_k);
+      comparison.adequacy->findings.push_back({.kind = FindingKind::identity, .sentence = sentence, .unfit = true});
+    }
     comparison.points.push_back(*compared);
   }
   if (comparison.points.empty()) return fail(ErrorCode::invalid_input, "no contrast was measured in both curves");

@@ -90,7 +90,8 @@ Sums sums_over(std::span<const AnswerScore> answers, const Root& root, const Key
 
 }  // namespace
 
-ClusteredVariance clustered_variance(std::span<const AnswerScore> answers, std::size_t parameters, std::size_t which) {
+ClusteredVariance clustered_variance(std::span<const AnswerScore> answers, std::size_t parameters, std::size_t which,
+                                     AnswerScatter scatter) {
   ClusteredVariance out;
   out.variance = std::numeric_limits<double>::infinity();
   const auto size = static_cast<Eigen::Index>(parameters);
@@ -109,7 +110,8 @@ ClusteredVariance clustered_variance(std::span<const AnswerScore> answers, std::
   const Sums set_ups = sums_over(answers, *root, [](const AnswerScore& a) { return a.set_up; });
   int number = 0;
   const Sums single = sums_over(answers, *root, [&number](const AnswerScore&) { return number++; });
-  if (1 / set_ups.concentration >= least_set_ups) {
+  const bool binomial = scatter == AnswerScatter::binomial;
+  if (!binomial && 1 / set_ups.concentration >= least_set_ups) {
     out.kind = IntervalKind::set_ups;
     out.variance = std::max(set_ups.variance, least_share * single.variance);
     out.degrees_of_freedom = freedom(set_ups);
@@ -117,9 +119,16 @@ ClusteredVariance clustered_variance(std::span<const AnswerScore> answers, std::
   }
   const Sums presentations = sums_over(answers, *root, [](const AnswerScore& a) { return a.presentation; });
   const Sums places = sums_over(answers, *root, [](const AnswerScore& a) { return a.place; });
+  if (binomial && (presentations.clusters < 2) != (places.clusters < 2)) {
+    const Sums& several = presentations.clusters < 2 ? places : presentations;
+    out.variance = std::max(several.variance, root->variance);
+    out.degrees_of_freedom = freedom(several);
+    return out;
+  }
   if (presentations.clusters < 2 || places.clusters < 2) return out;
   out.variance =
       std::max({presentations.variance + places.variance - single.variance, presentations.variance, places.variance});
+  if (binomial) out.variance = std::max(out.variance, root->variance);
   out.degrees_of_freedom = std::min(freedom(presentations), freedom(places));
   return out;
 }

@@ -10,7 +10,7 @@
 namespace todbench {
 
 /// Parameters of an estimating equation, at most.
-inline constexpr std::size_t most_parameters = 3;
+inline constexpr std::size_t most_parameters = 4;
 
 /// With fewer set-ups their variance says too little: Student's t with three degrees of freedom is 3.2.
 inline constexpr double least_set_ups = 5;
@@ -23,6 +23,12 @@ struct AnswerScore {
   int presentation = 0;                             ///< whole numbers of 0 or more
   int place = 0;
   int set_up = 0;  ///< of the plate and its mounting: a presentation and a place have one each
+};
+
+/// What is known of the scatter of single answers.
+enum class AnswerScatter {
+  estimated,  ///< graded answers: their own residuals say it
+  binomial,   ///< right and wrong ones: chance does
 };
 
 /// The variance of one parameter over clusters.
@@ -45,12 +51,16 @@ struct ClusteredVariance {
 /// ways, V_presentation + V_place - V_answer (Cameron, Gelbach and Miller 2011), but not below that of either alone:
 /// safe, and too long where evenly spread phases cancel.
 ///
+/// Right and wrong answers scatter by chance far more than by what a set-up has in common, and a variance over eight
+/// set-ups scatters by a quarter itself: `binomial` ones have presentations and places as clusters both ways, however
+/// many set-ups there are, and at least the binomial variance. Where there is one cluster of a kind the other is used.
+///
 /// Degrees of freedom: clusters less one, with (sum of shares)^2 / sum of squared shares of the information as their
 /// number (Satterthwaite 1946); both ways, those of the fewer ones.
 ///
 /// Where the information is singular, or there are fewer than two clusters of a kind that is needed, nothing is known:
 /// variance infinite.
 [[nodiscard]] ClusteredVariance clustered_variance(std::span<const AnswerScore> answers, std::size_t parameters,
-                                                   std::size_t which);
+                                                   std::size_t which, AnswerScatter scatter = AnswerScatter::estimated);
 
 }  // namespace todbench

@@ -22,7 +22,7 @@ enum class FindingKind {
   clipping,         ///< saturated pixels in windows of triangles; share of trials
   rounding,         ///< a count is wider than the noise; standard deviation of the noise in counts
   temporal_correlation,  ///< successive frames share noise; correlation
-  identity,              ///< of two curves: on other plates, or of the same answers; no figures
+  identity,  ///< of two curves: on other plates, of the same answers, or fitted with other functions; no figures
 };
 inline constexpr std::array all_finding_kinds{FindingKind::deviance,        FindingKind::lapse,
                                               FindingKind::overdispersion,  FindingKind::underdispersion,

@@ -119,7 +119,7 @@ AnswerScore score_of(const GradedAnswer& answer, const PooledCounts& counts, Psy
   score.residual = (answer.probability_correct - right) / sd;
   const Scores at = scores_at(form, maximum.place, ln_size);
   std::size_t parameter = 0;
-  for (std::size_t k = 0; k < most_parameters; ++k)
+  for (std::size_t k = 0; k < maximum.free.size(); ++k)
     if (maximum.free[k]) score.direction[parameter++] = right * at.right[k] / sd;
   return score;
 }

@@ -227,6 +227,58 @@ std::string_view to_string(FitEstimator estimator) {
   return "unknown";
 }
 
+std::string_view to_string(EstimatorReason reason) {
+  switch (reason) {
+    case EstimatorReason::plan:
+      return "plan";
+    case EstimatorReason::twin:
+      return "twin";
+    case EstimatorReason::no_twin:
+      return "no-twin";
+    case EstimatorReason::person:
+      return "person";
+    case EstimatorReason::modules:
+      return "modules";
+    case EstimatorReason::package:
+      return "package";
+    case EstimatorReason::moving_target:
+      return "moving-target";
+    case EstimatorReason::irregular:
+      return "irregular";
+    case EstimatorReason::no_function:
+      return "no-function";
+    case EstimatorReason::ended_early:
+      return "ended-early";
+  }
+  return "unknown";
+}
+
+std::string_view in_words(EstimatorReason reason) {
+  switch (reason) {
+    case EstimatorReason::plan:
+      return "the plan names it";
+    case EstimatorReason::twin:
+      return "there is a simulated twin";
+    case EstimatorReason::no_twin:
+      return "there is no simulated twin";
+    case EstimatorReason::person:
+      return "a person answered";
+    case EstimatorReason::modules:
+      return "the function of the sensor is not that of the chain with its modules";
+    case EstimatorReason::package:
+      return "the function of the sensor is not that behind a package";
+    case EstimatorReason::moving_target:
+      return "the function of the twin is that of a target at rest";
+    case EstimatorReason::irregular:
+      return "the answers have no regular fit";
+    case EstimatorReason::no_function:
+      return "the twin has no function that could be used at this contrast";
+    case EstimatorReason::ended_early:
+      return "the run ended before the functions of the twin were there";
+  }
+  return "unknown";
+}
+
 std::string_view to_string(IntervalKind kind) {
   switch (kind) {
     case IntervalKind::independent:

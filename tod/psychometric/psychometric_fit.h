@@ -92,6 +92,28 @@ enum class FitEstimator {
 inline constexpr std::array all_fit_estimators{FitEstimator::weibull, FitEstimator::twin_shape};
 [[nodiscard]] std::string_view to_string(FitEstimator estimator);
 
+/// Why with that one.
+enum class EstimatorReason {
+  plan,           ///< the plan names it
+  twin,           ///< there is a simulated twin, whose function it is
+  no_twin,        ///< counts without a simulated sensor
+  person,         ///< a person answered, with a function of their own
+  modules,        ///< the sensor alone does not have the function of the chain behind it
+  package,        ///< likewise behind a package of enhancement
+  moving_target,  ///< the twin's function is that of a target at rest
+  irregular,      ///< the Weibull fit is none that a threshold could be read from (verdict)
+  no_function,    ///< the twin has no usable function at this contrast
+  ended_early,    ///< the run ended before its functions were there
+};
+inline constexpr std::array all_estimator_reasons{EstimatorReason::plan,          EstimatorReason::twin,
+                                                  EstimatorReason::no_twin,       EstimatorReason::person,
+                                                  EstimatorReason::modules,       EstimatorReason::package,
+                                                  EstimatorReason::moving_target, EstimatorReason::irregular,
+                                                  EstimatorReason::no_function,   EstimatorReason::ended_early};
+[[nodiscard]] std::string_view to_string(EstimatorReason reason);
+/// In a sentence: "there is a simulated twin".
+[[nodiscard]] std::string_view in_words(EstimatorReason reason);
+
 /// Proportion correct over size without a form: of a simulated sensor, averaged over phases and noise.
 struct ProportionTable {
   std::vector<double> size_mrad;           ///< rising
@@ -110,6 +132,7 @@ struct TwinShapeUse {
   double departure_limit = 0;        ///< of its size, 1 % by chance
   double departure_shift = 0;        ///< of ln threshold, with that parameter
   double shape_se_ln_threshold = 0;  ///< of what the standard errors of the table add
+  double lapse_inflation = 1;        ///< of a free lapse: its clustered variance over that of independent answers
   ProportionTable table;
   bool operator==(const TwinShapeUse&) const = default;
 };
@@ -147,6 +170,11 @@ struct PsychometricFit {
   /// ok or extrapolated with both sides of ci95.
   [[nodiscard]] bool usable() const;
 };
+
+/// With what function a fit was made.
+[[nodiscard]] inline FitEstimator estimator_of(const PsychometricFit& fit) {
+  return fit.twin_shape ? FitEstimator::twin_shape : FitEstimator::weibull;
+}
 
 /// psi(size) of the model at a threshold, slope and lapse; exact at size 0 and for huge arguments.
 [[nodiscard]] double psychometric(PsychometricForm form, double size, double threshold, double slope, double lapse);

@@ -146,8 +146,6 @@ Result<TodPoint> tod_point(double set_delta_t_k, const TrialGroup& trials, const
   auto free_fit = fitter.fit(point, free);
   if (!free_fit) return tl::unexpected(free_fit.error());
   point.free_lapse_fit = *free_fit;
-  constexpr double boundary_drop =
-      2.705543454095404;  // 5 % where the parameter is at its bound under the null hypothesis
   if (point.fit.log_likelihood && free_fit->log_likelihood) {
     const double scale = is_quasi(point.fit.interval) ? point.fit.variance_inflation : 1;
     point.lapse_warning = 2 * (*free_fit->log_likelihood - *point.fit.log_likelihood) > scale * boundary_drop;

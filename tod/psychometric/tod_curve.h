@@ -17,8 +17,10 @@ struct TodPoint {
   double set_delta_t_k = 0;  ///< what the target was told: the name by which points are paired
   double delta_t_k = 0;      ///< effective contrast measured by the camera (mean over trials)
   double delta_t_se_k = 0;  ///< standard error of that mean, over the measurements of it (one per set-up and set-point)
-  std::vector<Level> levels;                      ///< counts per size, one row per size and cluster: what the fit saw
-  PsychometricFit fit;                            ///< in mrad
+  std::vector<Level> levels;  ///< counts per size, one row per size and cluster: what the fit saw
+  PsychometricFit fit;        ///< in mrad
+  /// Why the fit is with a Weibull function or with that of the twin; nothing: not said.
+  std::optional<EstimatorReason> estimator_reason;
   std::optional<PsychometricFit> free_lapse_fit;  ///< the same with a free lapse, as a check
   bool lapse_warning = false;             ///< the free lapse explains the data significantly better (2 ln LR > 2.71)
   std::optional<Adequacy> adequacy;       ///< what speaks against the threshold; nothing: not examined
@@ -36,6 +38,10 @@ struct TodCurve {
   std::string observer, sensor;
   std::vector<TodPoint> points;  ///< contrast decreasing
 };
+
+/// Twice the ln likelihood by which a free lapse has to be better for a warning: 5 % where the parameter is at its
+/// bound under the null hypothesis.
+inline constexpr double boundary_drop = 2.705543454095404;
 
 /// Groups trials by set contrast, counts them per size and presentation, and fits each group. Intervals are clustered
 /// by presentation and by place on the plate (which shares fixed pattern); the wider one is reported. A group all of

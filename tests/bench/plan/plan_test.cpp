@@ -93,7 +93,7 @@ Plan graded_plan() {
   Plan plan;
   plan.schedule.answers = AnswerKind::graded;
   plan.schedule.frames_per_presentation = 4;
-  plan.fit.estimator = FitEstimator::twin_shape;
+  plan.fit.estimator = EstimatorChoice::twin_shape;
   return plan;
 }
 
@@ -173,17 +173,41 @@ TEST(Plan, SeveralFramesAreForGradedAnswers) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::invalid_input);
   EXPECT_THAT(refused.error().message, HasSubstr("more than one frame needs answers = \"graded\""));
-  EXPECT_TRUE(
-      parse("[schedule]\nframes_per_presentation = 2\nanswers = \"graded\"\n"
-            "[fit]\nestimator = \"twin-shape\"\n"));
+  EXPECT_TRUE(parse("[schedule]\nframes_per_presentation = 2\nanswers = \"graded\"\n"));
 }
 
 TEST(Plan, GradedAnswersAreNotFittedWithAWeibullFunction) {
-  const Result<Plan> refused = parse("[schedule]\nanswers = \"graded\"\n");
+  const std::string graded = "[schedule]\nanswers = \"graded\"\n";
+  const Result<Plan> refused = parse(graded + "[fit]\nestimator = \"weibull\"\n");
 
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::invalid_input);
   EXPECT_THAT(refused.error().message, HasSubstr("answers = \"graded\" needs \"twin-shape\""));
+  EXPECT_TRUE(parse(graded));
+  EXPECT_TRUE(parse(graded + "[fit]\nestimator = \"twin-shape\"\n"));
+  EXPECT_FALSE(parse(graded + "[fit]\nlapse = 0.01\n"));
+  EXPECT_FALSE(parse(graded + "[[module]]\nplace = \"picture\"\ncommand = \"x\"\n"));
+}
+
+TEST(Plan, WithoutAnEstimatorTakesTheFunctionOfTheTwinWhereThereIsOne) {
+  const auto chosen = [](const std::string& text, const SensorSpec& sensor) {
+    return chosen_estimator(parse(text).value(), sensor);
+  };
+  const SensorSpec sensor;
+  SensorSpec behind_module;
+  behind_module.modules.emplace_back();
+  const std::string module = "[[module]]\nplace = \"picture\"\ncommand = \"x\"\n";
+  for (const char* text : {"", "[fit]\nestimator = \"automatic\"\n", "[fit]\nlapse = \"free\"\n"}) {
+    EXPECT_EQ(chosen(text, sensor).estimator, FitEstimator::twin_shape) << text;
+    EXPECT_EQ(chosen(text, sensor).reason, EstimatorReason::twin) << text;
+  }
+  EXPECT_EQ(chosen("", behind_module).estimator, FitEstimator::weibull);
+  EXPECT_EQ(chosen(module, sensor).estimator, FitEstimator::weibull);
+  EXPECT_EQ(chosen(module, sensor).reason, EstimatorReason::modules);
+  EXPECT_EQ(chosen("[fit]\nestimator = \"weibull\"\n", sensor).estimator, FitEstimator::weibull);
+  EXPECT_EQ(chosen("[fit]\nestimator = \"twin-shape\"\nlapse = 0.02\n", sensor).estimator, FitEstimator::twin_shape);
+  EXPECT_EQ(chosen("[fit]\nestimator = \"weibull\"\n", sensor).reason, EstimatorReason::plan);
+  EXPECT_FALSE(parse("[fit]\nestimator = \"twin-shape\"\n" + module));
 }
 
 TEST(Plan, AnEmptyFileIsThePlanOfDefaults) {

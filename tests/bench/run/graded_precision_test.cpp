@@ -33,7 +33,7 @@ TEST(PrecisionFrontier, HasEveryChoiceAndRecommendsOne) {
   plan.simulation.accuracy = "draft";
   plan.schedule.answers = AnswerKind::graded;
   plan.schedule.frames_per_presentation = 3;
-  plan.fit.estimator = FitEstimator::twin_shape;
+  plan.fit.estimator = EstimatorChoice::twin_shape;
   EffectPlanner planner;
   const auto inputs = experiment_inputs(LoadedPlan::load(plan).value(), planner);
   ASSERT_TRUE(inputs);

@@ -15,7 +15,7 @@ using GradedSession = testing::MeasuredSession;
 TEST_F(GradedSession, ReplaysWithTheSameProbabilitiesAndTheFunctionOfTheTwin) {
   plan_.schedule.answers = AnswerKind::graded;
   plan_.schedule.frames_per_presentation = 3;
-  plan_.fit.estimator = FitEstimator::twin_shape;
+  plan_.fit.estimator = EstimatorChoice::twin_shape;
   ASSERT_TRUE(measure("m"));
 
   const auto replay = replay_session(at("m"), options("r"), {}, {});

@@ -96,6 +96,7 @@ inline PsychometricFit full_fit(double threshold_mrad) {
                                 .departure_limit = 2.75,
                                 .departure_shift = -0.001,
                                 .shape_se_ln_threshold = 1e-3,
+                                .lapse_inflation = 1.5,
                                 .table = {{1, 2, 4}, {0.3, 0.7, 1}, {0.01, 0.02, 0}}};
   return fit;
 }
@@ -109,6 +110,7 @@ inline TodPoint full_point(double delta_t_k, double threshold_mrad) {
   point.fit = full_fit(threshold_mrad);
   point.free_lapse_fit = full_fit(threshold_mrad * 1.01);
   point.lapse_warning = true;
+  point.estimator_reason = EstimatorReason::twin;
   point.direct_s75_mrad = threshold_mrad * 1.002;
   point.direct_s75_se_mrad = 0.004;
   point.saturated_share = 0.0625;

@@ -67,5 +67,28 @@ TEST(GradedCoverage, OfTheTruthOverWholeRuns) {
   }
 }
 
+/// What a plan has that says nothing about answers and estimator.
+TEST(DefaultCoverage, OfTheTruthOverWholeRuns) {
+  const TemporaryFolder temporary;
+  const char* kept = std::getenv("TODBENCH_STUDY_FOLDER");
+  const char* asked = std::getenv("TODBENCH_STUDY_RUNS");
+  const GradedDesign design{.name = "default"};
+  GradedRecord record((kept != nullptr ? kept : temporary.path().string()) + std::string("/default_runs.csv"));
+  const std::uint64_t runs = asked != nullptr ? std::strtoull(asked, nullptr, 10) : 600;
+  for (std::uint64_t seed = 1; seed <= runs; ++seed)
+    if (!record.has(design.name, seed)) record.append(default_results_of(design, seed));
+  const auto truth = true_s75_mrad(design, {16.9, 1.93, 0.23}, 3);
+  for (const double contrast : {16.9, 1.93, 0.23}) {
+    for (const char* estimator : {"default weibull", "default"}) {
+      const GradedSummary s = summary_of(record.rows(), design.name, contrast, estimator, truth.at(contrast));
+      std::printf("| %g K | %s | %d | %+.2f %% | %.2f %% | %.2f %% | %.2f %% | %.3f |\n", contrast, estimator, s.runs,
+                  s.bias_percent, s.scatter_percent, s.stated_percent, s.half_width_percent, s.coverage);
+      if (std::string(estimator) == "default") {
+        EXPECT_GT(s.coverage, 0.93 - 3 * std::sqrt(0.95 * 0.05 / s.runs)) << contrast;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace todbench::testing

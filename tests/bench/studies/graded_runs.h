@@ -51,7 +51,7 @@ inline Plan plan_of(const GradedDesign& design, std::uint64_t seed) {
   plan.simulation.microscan = design.microscan;
   plan.schedule.answers = AnswerKind::graded;
   plan.schedule.frames_per_presentation = design.frames;
-  plan.fit.estimator = FitEstimator::twin_shape;
+  plan.fit.estimator = EstimatorChoice::twin_shape;
   return plan;
 }
 
@@ -113,6 +113,27 @@ inline std::vector<GradedResult> results_of(const GradedDesign& design, std::uin
     EXPECT_TRUE(outcome.notes.empty()) << outcome.notes.front();
     add_results(results, design, seed, std::string(kind) + " twin-shape", shaped);
   }
+  return results;
+}
+
+/// What a plan without `answers` and `estimator` makes of the same run: right and wrong answers, one frame each, beside
+/// those of a Weibull function.
+inline std::vector<GradedResult> default_results_of(const GradedDesign& design, std::uint64_t seed) {
+  Plan plan = plan_of(design, seed);
+  plan.schedule = {};
+  plan.fit = {};
+  const ExperimentInputs camera = inputs_of(plan, design.camera), twin = inputs_of(plan, design.twin);
+  const std::vector<Trial> trials = trials_of(plan, camera);
+  std::vector<GradedResult> results;
+  auto curve = tod_curve(trials, {.with_posterior = false});
+  EXPECT_TRUE(curve) << design.name << " " << seed;
+  if (!curve) return results;
+  add_results(results, design, seed, "default weibull", *curve);
+  std::map<double, double> shown;
+  for (const TodPoint& point : curve->points) shown[point.set_delta_t_k] = point.delta_t_k;
+  const auto outcome = fit_twin_shapes(*curve, trials, twin, {}, direct_options(*curve, twin, shown, seed, {}));
+  EXPECT_TRUE(outcome.notes.empty()) << outcome.notes.front();
+  add_results(results, design, seed, "default", *curve);
   return results;
 }
 

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <iostream>
+#include <map>
+#include <utility>
 
 #include "tests/tod/adequacy/adequacy_support.h"
 
@@ -14,6 +17,7 @@ namespace {
 using testing::AdequacyDesign;
 using testing::finding_shares;
 using testing::FindingShares;
+using testing::point_by_twin;
 
 void print(const AdequacyDesign& design, const FindingShares& shares) {
   std::cout << design.name << ": unfit " << shares.unfit << ", no threshold " << shares.not_identified;
@@ -73,6 +77,28 @@ TEST(AdequacyStudy, WrongModelsAreFoundAsOftenAsTheDocumentSays) {
     print(row.design, shares);
     const auto found = shares.found.find(row.kind);
     EXPECT_GE(found == shares.found.end() ? 0 : found->second, row.at_least) << row.design.name;
+  }
+}
+
+TEST(AdequacyStudy, OfAFitByTheFunctionOfTheTwin) {
+  constexpr int runs = 2000;
+  std::printf("| lapse | twist | deviance | lapse | overdispersion | underdispersion | unfit |\n");
+  for (const auto& [lapse, twist] : {std::pair(0.0, 0.0), std::pair(0.05, 0.0), std::pair(0.0, 1.0)}) {
+    std::map<FindingKind, int> found;
+    int unfit = 0;
+    for (int run = 1; run <= runs; ++run) {
+      const Adequacy result = adequacy(point_by_twin(static_cast<std::uint64_t>(run), lapse, twist), {});
+      for (const AdequacyFinding& finding : result.findings) ++found[finding.kind];
+      unfit += result.adequate() ? 0 : 1;
+    }
+    std::printf("| %g | %g |", lapse, twist);
+    for (const FindingKind kind :
+         {FindingKind::deviance, FindingKind::lapse, FindingKind::overdispersion, FindingKind::underdispersion})
+      std::printf(" %.2f %% |", 100.0 * found[kind] / runs);
+    std::printf(" %.2f %% |\n", 100.0 * unfit / runs);
+    if (lapse == 0 && twist == 0) {
+      EXPECT_LT(unfit, 0.018 * runs + 3 * std::sqrt(0.018 * runs));
+    }
   }
 }
 

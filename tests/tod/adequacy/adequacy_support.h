@@ -4,10 +4,13 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "tests/tod/psychometric/graded_support.h"
 #include "tests/tod/psychometric/psychometric_support.h"
 #include "tod/adequacy/adequacy.h"
+#include "tod/psychometric/twin_shape.h"
 
 namespace todbench::testing {
 
@@ -112,6 +115,33 @@ inline std::vector<AdequacyDesign> right_designs() {
       {.name = "20 x 96", .sizes = 20, .trials_per_size = 96},
       {.name = "8 x 80 in rows of 8", .trials_per_size = 8, .rows = 10},
   };
+}
+
+/// Right and wrong answers fitted with the function of the twin, 24 presentations of 32. `twist` is a part of
+/// the answers at every other size that turns round, `lapse` one of all.
+inline TodPoint point_by_twin(std::uint64_t seed, double lapse, double twist) {
+  auto answers = graded_answers_of({}, seed);
+  const RandomStream lots(seed, "lots");
+  std::map<std::pair<double, int>, Level> rows;
+  std::map<double, int> sizes;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const int number = sizes.emplace(answers[i].size, static_cast<int>(sizes.size())).first->second;
+    const double share = (true_proportion(answers[i].size, 2, 1) - 0.25) / 0.75;
+    double p = 0.25 + (0.75 - lapse) * share;
+    p += (number % 2 == 0 ? twist : -twist) * share * (1 - share);
+    answers[i].probability_correct = lots.uniform(i) < p ? 1 : 0;
+    Level& row = rows[{answers[i].size, answers[i].presentation}];
+    row.size = answers[i].size;
+    row.cluster = answers[i].presentation;
+    row.total += 1;
+    row.correct += answers[i].probability_correct;
+  }
+  TodPoint point;
+  for (const auto& [key, row] : rows) point.levels.push_back(row);
+  const auto weibull = fit_psychometric(point.levels, {.with_posterior = false});
+  point.fit = fit_twin_shape(answers, *weibull, table_of({}, 0.001, seed), {}).value();
+  point.free_lapse_fit = twin_fit_with_free_lapse(answers, point.fit, PsychometricForm::size).value();
+  return point;
 }
 
 }  // namespace todbench::testing

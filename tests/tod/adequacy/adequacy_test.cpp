@@ -21,6 +21,7 @@ using testing::finding_shares;
 using testing::geometric;
 using ::testing::IsEmpty;
 using ::testing::Not;
+using testing::point_by_twin;
 
 auto of_kind(FindingKind kind) {
   return Contains(Field(&AdequacyFinding::kind, kind));
@@ -202,6 +203,24 @@ TEST(Adequacy, RightModelsAreAdequate) {
     for (const auto& [kind, share] : shares.found)
       EXPECT_LE(share * replicates, 7) << design.name << ": " << to_string(kind);
   }
+}
+
+TEST(Adequacy, OfAFitByTheTwinFindsWhatIsWrongAndSeldomWhatIsRight) {
+  constexpr int runs = 150;
+  int alarms = 0, lapses = 0, twists = 0;
+  for (int run = 1; run <= runs; ++run) {
+    const auto seed = static_cast<std::uint64_t>(run);
+    const auto unfit = [](const TodPoint& point) { return !adequacy(point, {}).adequate(); };
+    alarms += unfit(point_by_twin(seed, 0, 0)) ? 1 : 0;
+    const Adequacy lapsing = adequacy(point_by_twin(seed, 0.08, 0), {});
+    const Adequacy twisted = adequacy(point_by_twin(seed, 0, 1), {});
+    lapses += lapsing.findings.empty() ? 0 : 1;
+    twists += twisted.findings.empty() ? 0 : 1;
+  }
+  // 0.5 % for a lapse, 0.3 % for scatter, 1 % for another slope that would move the threshold.
+  EXPECT_LE(alarms, 0.018 * runs + 3.5 * std::sqrt(0.018 * runs));
+  EXPECT_GT(lapses, 0.5 * runs);
+  EXPECT_GT(twists, 0.8 * runs);
 }
 
 }  // namespace

@@ -188,6 +188,21 @@ TEST(Comparison, ManyTrialsOfEqualThresholdsAreEquivalent) {
   EXPECT_EQ(p.delta_t_a_k, 0.95 * 2);
 }
 
+TEST(Comparison, ByTheFunctionOfATwinAndByAWeibullFunctionIsInconclusiveThere) {
+  TodPoint shaped = point(2, counts(1, 3, 1000));
+  shaped.fit.twin_shape.emplace();
+  const auto b = curve({point(2, counts(1.01, 3.2, 1000)), point(0.5, counts(2, 3, 1000))});
+
+  const auto comparison = compare(curve({shaped, point(0.5, counts(2.01, 3.1, 1000))}), b, {});
+
+  ASSERT_TRUE(comparison);
+  EXPECT_EQ(comparison->points[0].verdict, ComparisonVerdict::inconclusive);
+  EXPECT_EQ(comparison->points[1].verdict, ComparisonVerdict::equivalent);
+  EXPECT_EQ(comparison->verdict, ComparisonVerdict::inconclusive);
+  ASSERT_EQ(comparison->adequacy->findings.size(), 1u);
+  EXPECT_EQ(comparison->adequacy->findings[0].kind, FindingKind::identity);
+}
+
 TEST(Comparison, RatioIntervalsJoinBothIntervalsOnTheLogScale) {
   const auto a = point(2, counts(1, 3, 30)), b = point(2, counts(1.1, 5, 20));
 

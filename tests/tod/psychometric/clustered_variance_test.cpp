@@ -118,6 +118,37 @@ TEST(ClusteredVariance, OfSetUpsHoldsThatOfTheMeanWhateverTheyHaveInCommon) {
   }
 }
 
+TEST(ClusteredVariance, OfRightAndWrongAnswersIsNotBelowThatOfChance) {
+  // Residuals that cancel within each presentation and place: over clusters there is no scatter at all.
+  std::vector<AnswerScore> answers;
+  for (int i = 0; i < 8; ++i)
+    for (int j = 0; j < 8; ++j)
+      answers.push_back(
+          {.direction = {1}, .residual = (i + j) % 2 == 0 ? 1.0 : -1.0, .presentation = i, .place = j, .set_up = i});
+
+  const ClusteredVariance graded = clustered_variance(answers, 1, 0);
+  const ClusteredVariance binary = clustered_variance(answers, 1, 0, AnswerScatter::binomial);
+
+  EXPECT_EQ(graded.kind, IntervalKind::set_ups);
+  EXPECT_LT(graded.variance, 0.02 / 64);
+  EXPECT_EQ(binary.kind, IntervalKind::two_way);
+  EXPECT_DOUBLE_EQ(binary.variance, 1.0 / 64);
+  EXPECT_DOUBLE_EQ(binary.degrees_of_freedom, 7);
+}
+
+TEST(ClusteredVariance, OfOnePresentationIsThatOverPlaces) {
+  std::vector<AnswerScore> answers;
+  for (int j = 0; j < 40; ++j)
+    answers.push_back({.direction = {1}, .residual = j / 2 % 2 == 0 ? 1.0 : -1.0, .presentation = 0, .place = j / 2});
+
+  const ClusteredVariance found = clustered_variance(answers, 1, 0, AnswerScatter::binomial);
+
+  // Pairs of equal answers: twice the variance of single ones, and 2 / 40 of leverage in each.
+  EXPECT_NEAR(found.variance, 2.0 / 40 / (1 - 0.05), 1e-12);
+  EXPECT_DOUBLE_EQ(found.degrees_of_freedom, 19);
+  EXPECT_EQ(clustered_variance(answers, 1, 0).variance, INFINITY);
+}
+
 TEST(ClusteredVariance, SaysNothingWhereNothingIsKnown) {
   EXPECT_EQ(clustered_variance({}, 1, 0).variance, INFINITY);
   std::vector<AnswerScore> alike(10, {.direction = {1, 1, 0}, .residual = 0.1});

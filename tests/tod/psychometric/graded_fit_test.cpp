@@ -201,11 +201,101 @@ TEST(TwinShape, RefusesTablesThatSayNothing) {
   EXPECT_FALSE(with([](ProportionTable& t) { std::ranges::fill(t.standard_error, 0.5); }));
 }
 
-TEST(TwinShape, LeavesAnIrregularFitAsItIsAndHasNoLapse) {
+/// Whole presentations of right and wrong answers, some of them lapses.
+std::vector<GradedAnswer> right_and_wrong(const GradedBench& bench, double lapse, std::uint64_t seed) {
+  std::vector<GradedAnswer> answers = graded_answers_of(bench, seed);
+  const RandomStream lots(seed, "lots");
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const double mu = true_proportion(answers[i].size, bench.threshold, bench.slope_ratio);
+    answers[i].probability_correct = lots.uniform(i) < 0.25 + (0.75 - lapse) * (mu - 0.25) / 0.75 ? 1 : 0;
+  }
+  return answers;
+}
+
+/// Where answers with lapses are right in 75 %, by bisection.
+double size_with_lapse(double threshold, double lapse) {
+  double low = threshold / 2, high = threshold * 2;
+  for (int step = 0; step < 60; ++step) {
+    const double middle = std::sqrt(low * high);
+    const double p = 0.25 + (0.75 - lapse) * (true_proportion(middle, threshold, 1) - 0.25) / 0.75;
+    (p < 0.75 ? low : high) = middle;
+  }
+  return low;
+}
+
+Result<PsychometricFit> fitted(const std::vector<GradedAnswer>& answers, const ProportionTable& table,
+                               const FitOptions& options) {
+  const auto weibull = fit_graded(answers, options);
+  if (!weibull) return weibull;
+  return fit_twin_shape(answers, *weibull, table, options);
+}
+
+TEST(TwinShape, FindsTheLapseAndTheThresholdOfExactProportions) {
+  constexpr double lapse = 0.04;
+  std::vector<GradedAnswer> answers = graded_answers_of({}, 1);
+  for (GradedAnswer& answer : answers)
+    answer.probability_correct = 0.25 + (0.75 - lapse) * (true_proportion(answer.size, 2, 1) - 0.25) / 0.75;
+  const ProportionTable table = table_of({}, 0, 1);
+
+  const auto fixed = fitted(answers, table, {.fixed_lapse = lapse});
+  const auto free = fitted(answers, table, {.fixed_lapse = std::nullopt});
+  const auto none = fitted(answers, table, {.fixed_lapse = 0.0});
+
+  ASSERT_TRUE(fixed && free && none);
+  // The table is smoothed: 0.1 % of size, 0.001 of a proportion.
+  EXPECT_NEAR(std::log(*fixed->threshold / size_with_lapse(2, lapse)), 0, 1e-3);
+  EXPECT_EQ(fixed->lapse, lapse);
+  EXPECT_NEAR(std::log(*free->threshold / size_with_lapse(2, lapse)), 0, 1e-3);
+  EXPECT_NEAR(free->lapse, lapse, 1e-3);
+  EXPECT_GT(std::abs(std::log(*none->threshold / size_with_lapse(2, lapse))), 0.005);
+  const auto shape = TwinShape::of(table);
+  EXPECT_NEAR(twin_proportion(*shape, *free->twin_shape, free->lapse, std::log(*free->threshold)), 0.75, 1e-6);
+  EXPECT_NEAR(twin_proportion(*shape, *free->twin_shape, free->lapse, std::log(4.4)),
+              0.25 + (0.75 - lapse) * (true_proportion(4.4, 2, 1) - 0.25) / 0.75, 2e-3);
+}
+
+TEST(TwinShape, HoldsTheThresholdOfRightAndWrongAnswersWithAndWithoutLapses) {
+  for (const auto& [lapse, options] :
+       {std::pair(0.0, FitOptions{}), std::pair(0.0, FitOptions{.fixed_lapse = std::nullopt}),
+        std::pair(0.04, FitOptions{.fixed_lapse = 0.04}), std::pair(0.04, FitOptions{.fixed_lapse = std::nullopt})}) {
+    const Record record = record_of(runs, size_with_lapse(2, lapse), [&](std::uint64_t seed) {
+      auto fit = fitted(right_and_wrong({}, lapse, seed), table_of({}, 0.003, seed), options).value();
+      EXPECT_EQ(fit.interval, IntervalKind::two_way);
+      EXPECT_GE(fit.variance_inflation, 1);
+      EXPECT_TRUE(fit.deviance);
+      EXPECT_FALSE(fit.dispersion);
+      return fit;
+    });
+    EXPECT_GT(record.coverage, 0.95 - share_tolerance) << lapse;
+    EXPECT_LT(std::abs(record.bias), 3.5 * record.scatter / std::sqrt(runs) + 0.001) << lapse;
+    // Not below chance, so a little long: the largest of four variances.
+    EXPECT_NEAR(record.stated / record.scatter, 1.05, 3.5 / std::sqrt(2.0 * runs) + 0.05) << lapse;
+  }
+}
+
+TEST(TwinShape, ALapseThatTheFitDoesNotAllowForIsFound) {
+  int warned = 0, found = 0;
+  for (int run = 1; run <= runs; ++run) {
+    const auto seed = static_cast<std::uint64_t>(run);
+    const auto gain = [&](const std::vector<GradedAnswer>& answers) {
+      const auto fit = fitted(answers, table_of({}, 0.001, seed), {});
+      const auto free = twin_fit_with_free_lapse(answers, *fit, PsychometricForm::size);
+      return twin_lapse_gain(*fit, *free);
+    };
+    warned += gain(right_and_wrong({}, 0, seed)) > boundary_drop ? 1 : 0;
+    found += gain(right_and_wrong({}, 0.05, seed)) > boundary_drop ? 1 : 0;
+  }
+  EXPECT_LE(warned, 0.05 * runs + 3.5 * std::sqrt(0.05 * 0.95 * runs));
+  EXPECT_GT(found, 0.5 * runs);
+  EXPECT_FALSE(twin_fit_with_free_lapse({}, PsychometricFit{}, PsychometricForm::size));
+}
+
+TEST(TwinShape, LeavesAnIrregularFitAsItIs) {
   std::vector<GradedAnswer> answers = graded_answers_of({}, 1);
   const ProportionTable table = table_of({}, 0.001, 1);
-  EXPECT_FALSE(fit_twin_shape(answers, fit_graded(answers, {}).value(), table, {.fixed_lapse = 0.02}));
-  EXPECT_FALSE(fit_twin_shape(answers, fit_graded(answers, {}).value(), table, {.fixed_lapse = std::nullopt}));
+  const auto regular = fit_graded(answers, {}).value();
+  for (const double wrong : {-0.01, 0.2, std::nan("")})
+    EXPECT_FALSE(fit_twin_shape(answers, regular, table, {.fixed_lapse = wrong})) << wrong;
   for (GradedAnswer& answer : answers) answer.probability_correct = 1;
   const auto fit = by_twin(answers, table);
   EXPECT_EQ(fit.verdict, FitVerdict::below_range);

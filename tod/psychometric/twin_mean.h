@@ -1,0 +1,42 @@
+// The mean of answers by the function of a twin, as its parameters are searched.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "tod/psychometric/twin_shape.h"
+
+namespace todbench {
+
+/// ln size ratio, ln slope ratio, bend (per squared unit of ln size from the threshold), lapse.
+using TwinPlace = std::array<double, 4>;
+inline constexpr std::size_t twin_size = 0, twin_slope = 1, twin_bend = 2, twin_lapse = 3;
+
+/// Without a bend.
+[[nodiscard]] TwinPlace twin_place(const TwinShapeUse& use, double lapse);
+
+/// Up to this lapse the table knows the size at which answers with lapses are right in 75 %; max_free_lapse at most.
+[[nodiscard]] double largest_twin_lapse(const TwinShape& shape);
+
+/// mu(S) = 1/4 + r (F(c + k d + e d^2) - 1/4), d = ln S - ln S75, r = 1 - lapse / (3/4), F(c) = 1/4 + 1/2 / r, so that
+/// mu(S75) = 3/4 whatever the lapse is. It keeps a reference to the shape.
+class TwinMean {
+ public:
+  TwinMean(const TwinShape& shape, const TwinPlace& place);
+
+  struct Value {
+    double value = 0;
+    std::array<double, 4> gradient{};  ///< per unit of each parameter
+  };
+  /// At ln(size / mrad).
+  [[nodiscard]] Value at(double ln_size) const;
+
+ private:
+  const TwinShape& shape_;
+  TwinPlace place_;
+  double share_ = 1;     ///< r
+  double centre_ = 0;    ///< c
+  double d_centre_ = 0;  ///< per unit of lapse
+};
+
+}  // namespace todbench
