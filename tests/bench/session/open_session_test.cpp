@@ -9,6 +9,7 @@
 #include "bench/text/files.h"
 #include "bench/text/json.h"
 #include "tests/bench/session/trial_values.h"
+#include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace todbench {
@@ -197,6 +198,17 @@ TEST_F(ChangedSession, AManifestOfAnEarlierVersionIsTakenWithoutItsOwnDigest) {
   put("manifest.json", to_page(manifest));
 
   EXPECT_EQ(refusal(), "");
+}
+
+TEST(ReadSession, OfAVersionWithoutAnEstimatorStaysFittedWithAWeibullFunction) {
+  const auto session = read_session(source_file("tests/golden/session-0.1"));
+
+  ASSERT_TRUE(session) << session.error().message;
+  EXPECT_EQ(session->plan.fit.estimator, EstimatorChoice::weibull);
+  for (const TodPoint& point : session->curve->points) {
+    EXPECT_FALSE(point.fit.twin_shape);
+    EXPECT_FALSE(point.estimator_reason);
+  }
 }
 
 }  // namespace

@@ -30,7 +30,8 @@ struct StudiedRun {
 };
 
 /// Both plates in all mountings, so often that a constant design has 128 presentations; the simulated SC2000.
-inline Plan plan_to_study(ScheduleKind kind, double half_width_percent) {
+inline Plan plan_to_study(ScheduleKind kind, double half_width_percent,
+                          EstimatorChoice estimator = EstimatorChoice::automatic) {
   Plan plan;
   plan.name = "asked";
   plan.target.delta_t_k = {1.93, 0.23};
@@ -38,6 +39,7 @@ inline Plan plan_to_study(ScheduleKind kind, double half_width_percent) {
   plan.simulation.phases = 8;
   plan.schedule.kind = kind;
   plan.schedule.half_width_percent = half_width_percent;
+  plan.fit.estimator = estimator;
   return plan;
 }
 
