@@ -10,10 +10,10 @@
 namespace todbench {
 namespace {
 
-constexpr int columns = 8;
+constexpr int icon_columns = 8;
 
 /// Shown before the name: "1" to "9", then "a", "b", ...
-QString key_of(int alternative) {
+QString key_of_alternative(int alternative) {
   return alternative < 9 ? QString::number(alternative + 1) : QString(QChar('a' + alternative - 9));
 }
 
@@ -36,12 +36,12 @@ void AlternativesPanel::set_alternatives(const PersonExperiment& experiment) {
     button->setIcon(QIcon(QPixmap::fromImage(icon)));
     button->setIconSize(count > 16 ? icon.size() * 3 / 4 : icon.size());
     const QString name = QString::fromStdString(experiment.alternatives()[at]);
-    button->setText(count == 2 ? name : key_of(i) + "  " + name);
+    button->setText(count == 2 ? name : key_of_alternative(i) + "  " + name);
     button->setToolTip(name);
     button->setToolButtonStyle(Qt::ToolButtonTextUnderIcon);
     button->setFocusPolicy(Qt::NoFocus);  // the keys are those of the page
     connect(button, &QToolButton::clicked, this, [this, i] { emit chosen(i); });
-    grid_->addWidget(button, i / columns, i % columns, Qt::AlignCenter);
+    grid_->addWidget(button, i / icon_columns, i % icon_columns, Qt::AlignCenter);
     buttons_.push_back(button);
   }
 }
