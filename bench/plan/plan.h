@@ -368,7 +368,7 @@ struct Plan {
   bool operator==(const Plan&) const = default;
 };
 
-/// A plan's keys are the rows of bench/plan/plan_key_table.cpp; docs/plan-keys.md lists them.
+/// A plan's keys are the rows of bench/plan/..._keys.cpp; docs/plan-keys.md lists them.
 ///
 /// Reads a plan by name ("demo") or file. Relative files named in it are relative to its folder and absolute in the
 /// result. `invalid_input` with file and line for anything unknown, missing, of the wrong type, out of range,

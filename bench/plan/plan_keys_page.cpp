@@ -34,7 +34,7 @@ std::string row_text(const KeyAt& at) {
 std::string plan_keys_page() {
   std::string page =
       "# Keys of a plan\n\n"
-      "Every key of a plan file (TOML), from the table of the program (`bench/plan/plan_key_table.cpp`); "
+      "Every key of a plan file (TOML), from the table of the program (`bench/plan/plan_sections.h`); "
       "`plan_keys_page FILE` writes this page, and a\ntest fails when it is not what the table says. "
       "A key that is left out has its default. An unknown or misspelt key is refused with file and\nline. "
       "Files named in a plan are relative to it. Options of the command line stand in place of a key: "

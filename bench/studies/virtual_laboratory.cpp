@@ -182,7 +182,7 @@ Result<std::vector<LaboratoryPoint>> measured_by_laboratory(const Plan& of_all, 
   if (!measured) return tl::unexpected(measured.error());
   auto curve = tod_curve(measured->trials, fit_options(plan));
   if (!curve) return tl::unexpected(curve.error());
-  if (plan.fit.estimator == FitEstimator::twin_shape) {
+  if (plan.fit.estimator == EstimatorChoice::twin_shape) {
     std::map<double, double> shown;
     for (const TodPoint& point : curve->points) shown[point.set_delta_t_k] = point.delta_t_k;
     auto outcome = fit_twin_shapes(*curve, measured->trials, inputs, fit_options(plan),

@@ -1,0 +1,39 @@
+// The sections of a plan's keys, each in the file of its group.
+#pragma once
+
+#include "bench/plan/plan_keys.h"
+
+namespace todbench {
+
+inline constexpr NumberRange positive = NumberRange::positive();
+inline constexpr NumberRange not_negative = NumberRange::not_negative();
+inline constexpr NumberRange share = NumberRange::between(0, 1);
+
+// bench_keys.cpp
+[[nodiscard]] PlanSection about_section();
+[[nodiscard]] PlanSection camera_section();
+[[nodiscard]] PlanSection target_section();
+[[nodiscard]] PlanSection motion_section();
+[[nodiscard]] PlanSection instrument_section();
+[[nodiscard]] PlanSection module_section();
+
+// run_keys.cpp
+[[nodiscard]] PlanSection observer_section();
+[[nodiscard]] PlanSection simulation_section();
+[[nodiscard]] PlanSection schedule_section();
+[[nodiscard]] PlanSection fit_section();
+[[nodiscard]] PlanSection measurement_section();
+
+// measure_keys.cpp
+[[nodiscard]] PlanSection measures_section();
+
+// limit_keys.cpp
+[[nodiscard]] PlanSection limits_section();
+[[nodiscard]] PlanSection acuity_limits_section();
+[[nodiscard]] PlanSection measure_limits_section();
+[[nodiscard]] PlanSection zone_limits_section();
+[[nodiscard]] PlanSection fleet_section();
+[[nodiscard]] PlanSection uncertainty_section();
+[[nodiscard]] PlanSection budget_row_section();
+
+}  // namespace todbench
