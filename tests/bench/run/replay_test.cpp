@@ -77,6 +77,7 @@ TEST_F(MeasuredSession, WithinTheToleranceOfThePlanHasNoNoteOfItsReadBackAndStat
 }
 
 TEST_F(MeasuredSession, ReplaysWithTheSameTrialsAndTheSameReadings) {
+  plan_.fit.estimator = EstimatorChoice::automatic;
   ASSERT_TRUE(measure("m"));
 
   const auto replay = replay_session(at("m"), options("r"), {}, {});
