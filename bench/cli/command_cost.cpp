@@ -4,6 +4,7 @@
 
 #include "bench/cli/commands.h"
 #include "bench/cli/findings.h"
+#include "bench/cli/seeded_plan.h"
 #include "bench/cli/session_argument.h"
 #include "bench/judgement/verdict.h"
 #include "bench/report/cost_figure.h"
@@ -106,13 +107,8 @@ Result<std::vector<PrecisionChoice>> precision_of(const LoadedPlan& loaded, std:
 int run_cost(Console& console, const CostArguments& arguments, const Program& program) {
   const auto asked = plan_of(console, arguments);
   if (!asked) return report_error(console, asked.error());
-  Result<LoadedPlan> plan = asked->plan;
-  if (program.common.seed_given) {
-    Plan seeded = plan->plan();
-    seeded.seed = program.common.seed;
-    plan = plan->with(std::move(seeded));
-    if (!plan) return report_error(console, plan.error());
-  }
+  const auto plan = with_seed(asked->plan, program.common);
+  if (!plan) return report_error(console, plan.error());
   const CostListener listener{
       .on_phase = [&console](std::string_view phase) { console.phase(phase); },
       .on_progress = [&console](std::size_t done, std::size_t points) { console.progress(done, points); }};

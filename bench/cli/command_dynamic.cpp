@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "bench/cli/seeded_plan.h"
 #include "bench/cli/shown_run.h"
 #include "bench/enhance/dynamic_json.h"
 #include "bench/enhance/dynamic_session.h"
@@ -46,14 +47,8 @@ void add_rows(std::vector<TableRow>& rows, const std::vector<DynamicAcuity>& fou
 }
 
 int run_dynamic_plan(Console& console, const DynamicArguments& a, const Program& program) {
-  auto loaded = read_plan(a.plan);
+  const auto loaded = with_seed(read_plan(a.plan), program.common);
   if (!loaded) return report_error(console, loaded.error());
-  if (program.common.seed_given) {
-    Plan seeded = loaded->plan();
-    seeded.seed = program.common.seed;
-    loaded = loaded->with(std::move(seeded));
-    if (!loaded) return report_error(console, loaded.error());
-  }
   const Plan& plan = loaded->plan();
   console.phase("measuring before a target that moves");
   const auto said = [&](const MovingPassRecord& pass) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "bench/cli/seeded_plan.h"
 #include "bench/enhance/scene_dependence.h"
 #include "bench/session/json_output.h"
 #include "bench/text/text.h"
@@ -41,14 +42,8 @@ Json scene_dependence_json(const SceneDependence& found) {
 }
 
 int run_scene_dependence(Console& console, const SceneDependenceArguments& a, const Program& program) {
-  auto loaded = read_plan(a.plan);
+  const auto loaded = with_seed(read_plan(a.plan), program.common);
   if (!loaded) return report_error(console, loaded.error());
-  if (program.common.seed_given) {
-    Plan seeded = loaded->plan();
-    seeded.seed = program.common.seed;
-    loaded = loaded->with(std::move(seeded));
-    if (!loaded) return report_error(console, loaded.error());
-  }
   std::optional<EnhancementPackage> package;
   if (!a.package.empty()) {
     auto read = read_package(a.package);
