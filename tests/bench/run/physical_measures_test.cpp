@@ -22,42 +22,17 @@
 #include "sim_devices/sensor/pixel_faults.h"
 #include "tests/bench/run/bars_coverage.h"
 #include "tests/bench/run/edge_coverage.h"
+#include "tests/bench/run/measures_plan.h"
 #include "tests/support/temporary_folder.h"
 
 namespace todbench {
 namespace {
 
 using ::testing::HasSubstr;
+using testing::line_of;
+using testing::measures_plan;
+using testing::plan_of_one;
 using testing::TemporaryFolder;
-
-Plan measures_plan() {
-  Plan plan = *load_plan("demo");
-  plan.camera = {};
-  plan.camera.id = "sim:sc2000";
-  plan.camera.ifov_mrad = load_sensor("sc2000")->ifov_mrad();
-  plan.target.kind = TargetKind::scene;
-  plan.target.plates = {"tcat-a"};
-  plan.target.mountings = {Mounting::identity};
-  plan.target.delta_t_k = {16.9};
-  plan.target.phases = 2;
-  plan.simulation.accuracy = "draft";
-  plan.simulation.phases = 2;
-  plan.measurement.registration_frames = 4;
-  plan.measurement.contrast_frames = 8;
-  plan.limits = {};
-  plan.measures.noise = true;
-  plan.measures.noise_frames = 16;
-  plan.measures.transfer = true;
-  return plan;
-}
-
-const MeasureLine* line_of(const std::optional<MeasureLines>& side, std::string_view name) {
-  if (!side) return nullptr;
-  for (const MeasureLine& line : side->lines) {
-    if (line.measure == name) return &line;
-  }
-  return nullptr;
-}
 
 TEST(PhysicalMeasures, FindTheNoiseAndTheScaleOfTheSimulatedSensor) {
   const TemporaryFolder folder;
@@ -219,208 +194,9 @@ TEST(PhysicalMeasures, KeepTheirPicturesInFilesOfTheSession) {
   EXPECT_FALSE(open_session(path, {.accept_changed = true}));
 }
 
-Plan geometry_plan() {
-  Plan plan = measures_plan();
-  plan.measures.noise = plan.measures.transfer = false;
-  plan.measures.geometry = true;
-  return plan;
-}
-
-TEST(PhysicalMeasures, FindTheIfovOfTheSensorAndJudgeItWithTheDistance) {
-  const TemporaryFolder folder;
-  Plan plan = geometry_plan();
-  const double ifov_mrad = plan.camera.ifov_mrad;
-  BudgetRow distance{.name = "distance", .value = 0.002, .unit = "m"};
-  plan.uncertainty.rows = {distance};
-  plan.limits.measures = {{LimitedMeasure::ifov_x, 0.98 * ifov_mrad, 1.02 * ifov_mrad},
-                          {LimitedMeasure::ifov_y, 1.01 * ifov_mrad, std::nullopt},
-                          {LimitedMeasure::distortion, std::nullopt, 3}};
-
-  const auto outcome = measure_plan(plan, {.folder = folder.path() / "session"}, {}, {});
-
-  ASSERT_TRUE(outcome) << outcome.error().message;
-  ASSERT_FALSE(outcome->ended_by) << outcome->ended_by->message;
-  const auto session = open_session(folder.path() / "session", {});
-  ASSERT_TRUE(session) << session.error().message;
-  ASSERT_TRUE(session->measures && session->measures->main && session->measures->twin);
-  EXPECT_THAT(session->measures->main->reasons, ::testing::IsEmpty());
-  for (const char* name : {"ifov_x", "ifov_y"}) {
-    const auto* line = line_of(session->measures->main, name);
-    ASSERT_NE(line, nullptr);
-    // Two half-widths are four standard uncertainties.
-    const double half = 0.5 * (line->ci95.high.value() - line->ci95.low.value());
-    EXPECT_NEAR(line->value.value(), ifov_mrad, 2 * half);
-    EXPECT_LT(half, 0.003 * ifov_mrad);
-    ASSERT_TRUE(line->expanded);
-    // 2 mm of 2 m.
-    EXPECT_NEAR(line->expanded->high.value() - line->value.value(), std::hypot(1.96e-3 * line->value.value(), half),
-                1e-5);
-    const auto* twin = line_of(session->measures->twin, name);
-    ASSERT_NE(twin, nullptr);
-    EXPECT_FALSE(twin->expanded);
-  }
-  EXPECT_EQ(line_of(session->measures->twin, "ifov_model")->value, ifov_mrad);
-  const auto* distortion = line_of(session->measures->main, "distortion");
-  ASSERT_NE(distortion, nullptr);
-  EXPECT_LT(distortion->ci95.low.value(), 0);
-  EXPECT_GT(distortion->ci95.high.value(), 0);
-  ASSERT_TRUE(session->measures->main->geometry);
-  EXPECT_GE(session->measures->main->geometry->places.size(), 12u);
-  const auto decided = [&](DemandKind kind) {
-    for (const Demand& demand : outcome->verdict.demands)
-      if (demand.kind == kind) return demand;
-    return Demand{};
-  };
-  EXPECT_EQ(decided(DemandKind::ifov_x_at_least).decision, VerdictKind::pass);
-  EXPECT_EQ(decided(DemandKind::ifov_x_at_most).decision, VerdictKind::pass);
-  EXPECT_EQ(decided(DemandKind::ifov_y_at_least).decision, VerdictKind::fail);
-  ASSERT_TRUE(decided(DemandKind::ifov_x_at_most).statistical);
-  EXPECT_NEAR(decided(DemandKind::ifov_x_at_most).interval.high.value(),
-              line_of(session->measures->main, "ifov_x")->expanded->high.value(), 1e-9);
-  EXPECT_EQ(decided(DemandKind::distortion).decision, VerdictKind::pass);
-  EXPECT_EQ(decided(DemandKind::distortion).interval.low, 0);
-  EXPECT_THAT(render_report(*report_data(*session, "session")), HasSubstr("geometry-main"));
-}
-
-/// A camera that drifts after each correction, with a clock of its own: 20 frames a second. It takes commands, or
-/// corrects itself and tells of it.
-class DriftingCamera : public FrameSource {
- public:
-  DriftingCamera(FrameSource& camera, bool commanded) : camera_(camera), commanded_(commanded) {
-    pattern_ = cv::Mat1f(camera.info().height, camera.info().width);
-    std::vector<float> draws(pattern_.total());
-    RandomStream(5, "test.drifting").fill_normal(draws);
-    std::copy(draws.begin(), draws.end(), pattern_.begin());
-  }
-  static constexpr double level_k_per_s = 0.02, pattern_k_per_s = 0.004, frame_s = 0.05;
-  bool stands_still = false;  ///< the time since the correction that it tells
-
-  const SourceInfo& info() const override { return camera_.info(); }
-  Result<void> start() override { return camera_.start(); }
-  Result<Frame> next(std::chrono::milliseconds timeout) override {
-    auto frame = camera_.next(timeout);
-    if (!frame) return frame;
-    constexpr std::int64_t own_every = 150;
-    if (!commanded_ && ++taken_ % own_every == 0) corrected_at_ = taken_;
-    if (commanded_) ++taken_;
-    const double since_s = stands_still ? 1 : frame_s * static_cast<double>(taken_ - corrected_at_);
-    frame->host_time_ns = start_ns_ + static_cast<std::int64_t>(1e9 * frame_s * static_cast<double>(taken_));
-    frame->correction = CorrectionState::idle;
-    frame->since_correction_s = since_s;
-    const double per_count = *info().scale.kelvin_per_count(1000);
-    cv::Mat1d counts;
-    frame->counts.convertTo(counts, CV_64F);
-    cv::Mat1d pattern;
-    pattern_.convertTo(pattern, CV_64F, pattern_k_per_s * since_s / per_count, level_k_per_s * since_s / per_count);
-    cv::Mat1w drifted;
-    cv::Mat1d(counts + pattern).convertTo(drifted, CV_16U);
-    frame->counts = drifted;
-    return frame;
-  }
-  void stop() override { camera_.stop(); }
-  Result<std::string> get(const std::string& feature) override { return camera_.get(feature); }
-  Result<void> set(const std::string& feature, const std::string& value) override {
-    return camera_.set(feature, value);
-  }
-  Result<void> correct_nonuniformity() override {
-    if (!commanded_) return fail(ErrorCode::invalid_input, "no such command");
-    corrected_at_ = taken_;
-    return {};
-  }
-
- private:
-  FrameSource& camera_;
-  bool commanded_;
-  cv::Mat1f pattern_;
-  std::int64_t taken_ = 0, corrected_at_ = 0;
-  /// Ahead of the host's clock, so that no frame is older than a change of the target.
-  std::int64_t start_ns_ = std::chrono::steady_clock::now().time_since_epoch().count() + 3'600'000'000'000;
-};
-
-CameraMeasuresOptions drift_options(const SensorSpec& sensor, const TargetPlate& plate, double drift_s) {
-  CameraMeasuresOptions options;
-  options.drift_s = drift_s;
-  options.transfer_steps_k = {16.9};
-  options.measurement.ifov_mrad = sensor.ifov_mrad();
-  options.measurement.distance_m = 2;
-  options.measurement.plates = {plate};
-  options.measurement.registration_frames = 4;
-  return options;
-}
-
-TEST(PhysicalMeasures, FindTheDriftOfACameraThatIsCorrectedOrCorrectsItself) {
-  const SensorSpec sensor = *load_sensor("sc2000");
-  const auto model = std::make_shared<const SensorModel>(sensor, full_plan(sensor, {}, {}), Accuracy::draft(), 1);
-  const TargetPlate plate = *load_plate("tcat-a");
-  for (const bool commanded : {true, false}) {
-    OpenedBench bench = simulated_bench(model, {plate}, 2, {});
-    DriftingCamera camera(*bench.camera, commanded);
-    CameraMeasuresOptions options = drift_options(sensor, plate, commanded ? 6 : 20);
-    options.measurement.nuc_interval_s = 100, options.measurement.nuc_wait_s = 0.2;
-
-    const auto measures = measure_camera(camera, *bench.target, options, *bench.host, {});
-
-    ASSERT_TRUE(measures) << measures.error().message;
-    EXPECT_THAT(measures->reasons, ::testing::IsEmpty());
-    ASSERT_TRUE(measures->drift);
-    const DriftMeasure& drift = *measures->drift;
-    EXPECT_EQ(drift.ended_by_correction, !commanded);
-    EXPECT_GE(drift.groups, commanded ? 19 : 8);
-    EXPECT_NEAR(drift.first_s, 0.3, 0.5);
-    EXPECT_EQ(drift.law.level.shape, DriftShape::linear);
-    EXPECT_EQ(drift.law.pattern.shape, DriftShape::linear);
-    const double watched_s = drift.law.time_s.back() - drift.law.time_s.front();
-    const auto off = [&](const DriftFit& fit, double rate) {
-      const double half = 0.5 * (fit.change_ci95.high.value() - fit.change_ci95.low.value());
-      return std::abs(fit.change_k - rate * watched_s) / half;
-    };
-    // Two half-widths are four standard uncertainties.
-    EXPECT_LT(off(drift.law.level, DriftingCamera::level_k_per_s), 2);
-    EXPECT_LT(off(drift.law.pattern, DriftingCamera::pattern_k_per_s), 2);
-    EXPECT_GT(drift.law.level.change_ci95.low.value(), 0.9 * DriftingCamera::level_k_per_s * watched_s);
-    EXPECT_GT(drift.law.pattern.change_ci95.low.value(), 0.9 * DriftingCamera::pattern_k_per_s * watched_s);
-    const Json written = measures_json(*measures, std::nullopt);
-    const auto record = measures_from(written);
-    ASSERT_TRUE(record) << record.error().message;
-    EXPECT_EQ(record->main->drift->pattern.seen_k, drift.law.pattern.seen_k);
-    EXPECT_NEAR(line_of(record->main, "drift_rate")->value.value(), 60 * DriftingCamera::level_k_per_s, 0.1);
-    Json cut = written;
-    cut["main"]["drift"]["level"]["seen_k"].erase(0);
-    EXPECT_FALSE(measures_from(cut));
-  }
-}
-
-TEST(PhysicalMeasures, HaveAReasonWhereNoCorrectionComes) {
-  const SensorSpec sensor = *load_sensor("sc2000");
-  const auto model = std::make_shared<const SensorModel>(sensor, full_plan(sensor, {}, {}), Accuracy::draft(), 1);
-  const TargetPlate plate = *load_plate("tcat-a");
-  OpenedBench bench = simulated_bench(model, {plate}, 2, {});
-  DriftingCamera camera(*bench.camera, true);
-  CameraMeasuresOptions options = drift_options(sensor, plate, 2);
-
-  const auto measures = measure_camera(camera, *bench.target, options, *bench.host, {});
-
-  ASSERT_TRUE(measures) << measures.error().message;
-  EXPECT_FALSE(measures->drift);
-  ASSERT_EQ(measures->reasons.size(), 1u);
-  EXPECT_THAT(measures->reasons[0], HasSubstr("drift"));
-  camera.stands_still = true;
-  options.measurement.nuc_interval_s = 100;
-  const auto still = measure_camera(camera, *bench.target, options, *bench.host, {});
-  ASSERT_TRUE(still) << still.error().message;
-  EXPECT_FALSE(still->drift);
-}
-
-Plan mtf_plan() {
-  Plan plan = measures_plan();
-  plan.measures.noise = plan.measures.transfer = false;
-  plan.measures.mtf = true;
-  return plan;
-}
-
 TEST(PhysicalMeasures, FindTheMtfOfTheSensorModelAndJudgeIt) {
   const TemporaryFolder folder;
-  Plan plan = mtf_plan();
+  Plan plan = plan_of_one(&MeasuresPlan::mtf);
   plan.limits.measures = {{LimitedMeasure::mtf_x, 0.5, std::nullopt}, {LimitedMeasure::mtf_y, 0.99, std::nullopt}};
 
   const auto outcome = measure_plan(plan, {.folder = folder.path() / "session"}, {}, {});
@@ -457,16 +233,9 @@ TEST(PhysicalMeasures, FindTheMtfOfTheSensorModelAndJudgeIt) {
   EXPECT_THAT(page, HasSubstr("mtf-xsquare"));
 }
 
-Plan ctf_plan() {
-  Plan plan = measures_plan();
-  plan.measures.noise = plan.measures.transfer = false;
-  plan.measures.ctf = true;
-  return plan;
-}
-
 TEST(PhysicalMeasures, FindTheCtfOfTheSensorModelAndJudgeIt) {
   const TemporaryFolder folder;
-  Plan plan = ctf_plan();
+  Plan plan = plan_of_one(&MeasuresPlan::ctf);
   plan.limits.measures = {{LimitedMeasure::ctf_x, 0.3, std::nullopt}, {LimitedMeasure::ctf_y, 0.95, std::nullopt}};
 
   const auto outcome = measure_plan(plan, {.folder = folder.path() / "session"}, {}, {});
@@ -615,12 +384,15 @@ TEST(PhysicalMeasures, RefusePlatesThatDoNotHaveWhatIsAskedOfThem) {
     const auto loaded = LoadedPlan::load(plan);
     return loaded ? std::string() : loaded.error().message;
   };
-  Plan no_bars = ctf_plan(), no_contrast = ctf_plan(), no_ctf = ctf_plan();
+  Plan no_bars = plan_of_one(&MeasuresPlan::ctf), no_contrast = plan_of_one(&MeasuresPlan::ctf),
+       no_ctf = plan_of_one(&MeasuresPlan::ctf);
   no_bars.measures.ctf_plate = "edge";
   no_contrast.measures.ctf_delta_t_k = 0;
   no_ctf.measures.ctf = false;
   no_ctf.limits.measures = {{LimitedMeasure::ctf_y, 0.5, std::nullopt}};
-  Plan triangles = mtf_plan(), rectangles = mtf_plan(), flat = mtf_plan(), unasked = mtf_plan(), above = mtf_plan();
+  Plan triangles = plan_of_one(&MeasuresPlan::mtf), rectangles = plan_of_one(&MeasuresPlan::mtf),
+       flat = plan_of_one(&MeasuresPlan::mtf), unasked = plan_of_one(&MeasuresPlan::mtf),
+       above = plan_of_one(&MeasuresPlan::mtf);
   triangles.measures.mtf_plate = "tcat-b";
   rectangles.target.plates = {"edge"};
   flat.measures.mtf_delta_t_k = 0;
@@ -628,19 +400,20 @@ TEST(PhysicalMeasures, RefusePlatesThatDoNotHaveWhatIsAskedOfThem) {
   unasked.limits.measures = {{LimitedMeasure::mtf_x, 0.5, std::nullopt}};
   above.limits.measures = {{LimitedMeasure::mtf_x, std::nullopt, 0.5}};
 
-  Plan no_geometry = geometry_plan(), distorted = geometry_plan(), narrow = geometry_plan();
+  Plan no_geometry = plan_of_one(&MeasuresPlan::geometry), distorted = plan_of_one(&MeasuresPlan::geometry),
+       narrow = plan_of_one(&MeasuresPlan::geometry);
   no_geometry.measures.geometry = false;
   no_geometry.limits.measures = {{LimitedMeasure::ifov_y, 0.5, std::nullopt}};
   distorted.limits.measures = {{LimitedMeasure::distortion, 0.5, std::nullopt}};
   narrow.limits.measures = {{LimitedMeasure::ifov_x, 1.307, 1.309}};
   narrow.uncertainty.rows = {{.name = "distance", .value = 0.01, .unit = "m"}};
 
-  EXPECT_EQ(refusal(geometry_plan()), "");
+  EXPECT_EQ(refusal(plan_of_one(&MeasuresPlan::geometry)), "");
   EXPECT_THAT(refusal(no_geometry), HasSubstr("geometry = true"));
   EXPECT_THAT(refusal(distorted), HasSubstr("no lower limit"));
   EXPECT_THAT(refusal(narrow), HasSubstr("nothing can pass"));
-  EXPECT_EQ(refusal(mtf_plan()), "");
-  EXPECT_EQ(refusal(ctf_plan()), "");
+  EXPECT_EQ(refusal(plan_of_one(&MeasuresPlan::mtf)), "");
+  EXPECT_EQ(refusal(plan_of_one(&MeasuresPlan::ctf)), "");
   EXPECT_THAT(refusal(no_bars), HasSubstr("ctf_plate"));
   EXPECT_THAT(refusal(no_contrast), HasSubstr("ctf_delta_t_k"));
   EXPECT_THAT(refusal(no_ctf), HasSubstr("ctf = true"));
@@ -650,13 +423,13 @@ TEST(PhysicalMeasures, RefusePlatesThatDoNotHaveWhatIsAskedOfThem) {
   EXPECT_THAT(refusal(unasked), HasSubstr("mtf = true"));
   EXPECT_THAT(refusal(above), HasSubstr("no upper limit"));
   // The same plan with an MTF asked for reads the plate that it did not need before.
-  Plan without = mtf_plan();
+  Plan without = plan_of_one(&MeasuresPlan::mtf);
   without.measures.mtf = false;
   const auto loaded = LoadedPlan::load(without);
   ASSERT_TRUE(loaded);
   EXPECT_FALSE(loaded->parts().mtf_plate);
-  EXPECT_TRUE(loaded->with(mtf_plan()).value().parts().mtf_plate);
-  Plan both = mtf_plan();
+  EXPECT_TRUE(loaded->with(plan_of_one(&MeasuresPlan::mtf)).value().parts().mtf_plate);
+  Plan both = plan_of_one(&MeasuresPlan::mtf);
   both.measures.ctf = true;
   const auto more = loaded->with(both);
   ASSERT_TRUE(more) << more.error().message;
