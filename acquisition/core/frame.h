@@ -35,6 +35,8 @@ enum class Numbering : std::uint8_t {
 
 [[nodiscard]] std::string_view to_string(Numbering numbering);
 
+struct JudgedPicture;
+
 /// One exposed image. Immutable once handed out: pixels are shared, copying is cheap, any thread may read.
 struct Frame {
   cv::Mat1w counts;            ///< as the camera sent them, row by row from the top
@@ -48,6 +50,7 @@ struct Frame {
   double since_correction_s = -1;                         ///< as the camera says; negative: it does not
   int significant_bits = 16;                              ///< full scale is 2^significant_bits - 1 counts
   std::shared_ptr<const RadiometricScale> scale;          ///< never null
+  std::shared_ptr<const JudgedPicture> judged{};          ///< null: the counts themselves
 };
 
 /// The frame in kelvin. Fails with `calibration` when the scale cannot say for some pixel.

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "sim_devices/module/module_check.h"
+#include "sim_devices/sensor/module_sensor_check.h"
 
 namespace todbench {
 namespace {
@@ -14,6 +15,7 @@ struct ModuleArguments {
   int limit_ms = 5000;
   std::size_t memory_mib = 0;
   bool network = false;
+  std::string place = "picture";
 };
 
 Json report_json(const ModuleReport& report) {
@@ -37,17 +39,57 @@ Json report_json(const ModuleReport& report) {
           {"reason", nullptr}};
 }
 
+int refuse_module(Console& console, const Error& error) {
+  if (console.json()) console.object({{"ok", false}, {"reason", error.message}});
+  return report_error(console, error);
+}
+
+int run_sensor_check(Console& console, const ModuleArguments& a) {
+  SensorSpec spec;
+  spec.modules = {{.place = ModulePlace::sensor,
+                   .command = a.command,
+                   .version = {},
+                   .parameters = {},
+                   .limit_ms = a.limit_ms,
+                   .memory_mib = static_cast<int>(a.memory_mib),
+                   .network = a.network}};
+  const auto report = check_sensor(spec);
+  if (!report) return refuse_module(console, report.error());
+  if (console.json()) {
+    Json shapes = Json::array();
+    for (const auto& shape : report->shapes) shapes.push_back({shape.height, shape.width});
+    console.object({{"ok", true},
+                    {"deterministic", true},
+                    {"shapes", shapes},
+                    {"network_cut", report->network_cut},
+                    {"latency_ms", json_number(report->latency_ms)},
+                    {"linear", report->linear},
+                    {"linearity_deviation", json_number(report->linearity_deviation)},
+                    {"response", json_number(report->response)},
+                    {"noise_k", json_number(report->noise_k)},
+                    {"reason", nullptr}});
+    return 0;
+  }
+  console.text(fmt::format("keeps the contract of a sensor: frames of {} sizes, two processes agree bit for bit",
+                           report->shapes.size()));
+  console.text(report->network_cut ? "it had no network" : "it had the network of this host");
+  console.text(fmt::format("{:.3f} ms a frame of 320 x 240 pixels", report->latency_ms));
+  console.text(fmt::format(
+      "{}, deviation {:.2g}; a scene of 1 K is answered with {:.4g} K, noise {:.3g} K from frame "
+      "to frame",
+      report->linear ? "linear" : "not linear", report->linearity_deviation, report->response, report->noise_k));
+  return 0;
+}
+
 int run_check(Console& console, const ModuleArguments& a) {
+  if (a.place == to_string(ModulePlace::sensor)) return run_sensor_check(console, a);
   const auto report =
       check_module({.command = a.command,
                     .header = R"({"protocol": "todbench-module", "version": 1, "place": "picture", "parameters": {}})",
                     .limit = std::chrono::milliseconds(a.limit_ms),
                     .memory_limit_mib = a.memory_mib,
                     .network = a.network ? ModuleNetwork::ours : ModuleNetwork::cut});
-  if (!report) {
-    if (console.json()) console.object({{"ok", false}, {"reason", report.error().message}});
-    return report_error(console, report.error());
-  }
+  if (!report) return refuse_module(console, report.error());
   if (console.json()) {
     console.object(report_json(*report));
     return 0;
@@ -73,6 +115,10 @@ void add_module_command(CLI::App& app, Program& program) {
   check->add_option("--limit-ms", a->limit_ms, "for an answer")->check(whole_number(1, 600000))->capture_default_str();
   check->add_option("--memory-mib", a->memory_mib, "address space that each of its processes may have; 0: no limit")
       ->check(whole_number(0, 1 << 20))
+      ->capture_default_str();
+  check->add_option("--place", a->place, "in the chain: picture to picture, or scene to frame")
+      ->check(
+          CLI::IsMember({std::string(to_string(ModulePlace::picture)), std::string(to_string(ModulePlace::sensor))}))
       ->capture_default_str();
   check->add_flag("--network", a->network, "leaves it the network of this host");
   finish_command(*check, program, [a](Console& console) { return run_check(console, *a); });

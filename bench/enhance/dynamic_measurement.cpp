@@ -154,7 +154,7 @@ Result<DynamicMeasurement> measure_dynamic(const LoadedPlan& loaded, const Dynam
     if (auto begun = listener.on_open(bench); !begun) return tl::unexpected(begun.error());
   }
   auto measured =
-      measure_moving(*bench.camera, *bench.target, observer, options, *bench.host, listener.on_pass, std::move(stop));
+      measure_moving(*bench.camera, *bench.target, observer, options, *bench.host, listener.moving, std::move(stop));
   if (!measured) return tl::unexpected(measured.error());
   if (listener.on_measured) {
     if (auto kept = listener.on_measured(*measured); !kept) return tl::unexpected(kept.error());

@@ -42,9 +42,9 @@ struct DynamicMeasurement {
   double residual_px = 0;  ///< rms over the passes that moved of the places from the stage's line
 };
 
-/// What a measurement says on its way. Every function may be empty; an error of one ends the run with it.
+/// What a measurement says on its way, that of measure_moving() included.
 struct DynamicListener {
-  std::function<void(const MovingPassRecord&)> on_pass{};
+  MovingListener moving{};
   std::function<Result<void>(const OpenedBench&)> on_open{};  ///< before anything is measured
   /// All passes are there, or as many as there were when the run ended early.
   std::function<Result<void>(const MovingMeasurement&)> on_measured{};

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <chrono>
 #include <optional>
 #include <utility>
@@ -24,21 +25,18 @@ bool of_the_curve(const MovingAnswer& answer) {
   return answer.speed_mrad_s == 0 && answer.observer == SequenceObserver::single_frame;
 }
 
-/// Who answered what at which speed; places and times are in the passes of dynamic.json.
-std::string moving_trials_csv(const MovingMeasurement& measured) {
-  constexpr std::array<std::string_view, 12> columns{"pair",      "speed_mrad_s", "observer",      "plate",
-                                                     "mounting",  "triangle",     "set_delta_t_k", "delta_t_k",
-                                                     "size_mrad", "truth",        "answer",        "frame"};
-  std::string text = header_line(columns);
-  for (const MovingAnswer& answer : measured.answers) {
-    const Trial& t = answer.trial;
-    text += std::to_string(t.presentation) + "," + number_text(answer.speed_mrad_s) + "," +
-            std::string(to_string(answer.observer)) + "," + csv_field(t.plate) + "," +
-            std::string(to_string(t.mounting)) + "," + csv_field(t.triangle) + "," + number_text(t.set_delta_t_k) +
-            "," + number_text(t.delta_t_k) + "," + number_text(t.size_mrad) + "," + std::string(to_string(t.truth)) +
-            "," + std::string(to_string(t.answer)) + "," + std::to_string(t.frame) + "\n";
-  }
-  return text;
+constexpr std::array<std::string_view, 12> moving_columns{"pair",      "speed_mrad_s", "observer",      "plate",
+                                                          "mounting",  "triangle",     "set_delta_t_k", "delta_t_k",
+                                                          "size_mrad", "truth",        "answer",        "frame"};
+
+/// Who answered what at which speed, a row of moving-trials.csv; places and times are in the passes of dynamic.json.
+std::string moving_row(const MovingAnswer& answer) {
+  const Trial& t = answer.trial;
+  return std::to_string(t.presentation) + "," + number_text(answer.speed_mrad_s) + "," +
+         std::string(to_string(answer.observer)) + "," + csv_field(t.plate) + "," + std::string(to_string(t.mounting)) +
+         "," + csv_field(t.triangle) + "," + number_text(t.set_delta_t_k) + "," + number_text(t.delta_t_k) + "," +
+         number_text(t.size_mrad) + "," + std::string(to_string(t.truth)) + "," + std::string(to_string(t.answer)) +
+         "," + std::to_string(t.frame) + "\n";
 }
 
 std::vector<Trial> trials_of_the_curve(const MovingMeasurement& measured) {
@@ -49,22 +47,43 @@ std::vector<Trial> trials_of_the_curve(const MovingMeasurement& measured) {
   return trials;
 }
 
-Result<void> write_measured(SessionFolder& folder, const MovingMeasurement& measured, bool simulated) {
-  auto trials = folder.open_trials(SessionCurve::main);
-  if (!trials) return tl::unexpected(trials.error());
-  for (const Trial& trial : trials_of_the_curve(measured)) {
-    if (auto written = trials->append(trial); !written) return written;
+/// The files that grow while the run goes on: whatever ends it, what was answered before is on the disk.
+class GrowingFiles {
+ public:
+  [[nodiscard]] static Result<GrowingFiles> open(SessionFolder& folder, bool simulated) {
+    auto trials = folder.open_trials(SessionCurve::main);
+    if (!trials) return tl::unexpected(trials.error());
+    auto targets = folder.open_targets(SessionCurve::main);
+    if (!targets) return tl::unexpected(targets.error());
+    auto moving = AppendFile::open(folder.path() / "moving-trials.csv", AppendFile::Start::empty);
+    if (!moving) return tl::unexpected(moving.error());
+    if (auto begun = moving->append(header_line(moving_columns)); !begun) return tl::unexpected(begun.error());
+    return GrowingFiles{*std::move(trials), *std::move(targets), *std::move(moving), simulated};
   }
-  if (auto synced = trials->sync(); !synced) return synced;
-  auto targets = folder.open_targets(SessionCurve::main);
-  if (!targets) return tl::unexpected(targets.error());
-  for (Presentation shown : measured.presentations) {
-    if (simulated) shown.host_time_ns.reset();
-    if (auto written = targets->append(shown); !written) return written;
+
+  [[nodiscard]] Result<void> append(const MovingAnswer& answer) {
+    if (auto written = moving_.append(moving_row(answer)); !written) return written;
+    return of_the_curve(answer) ? trials_.append(answer.trial) : Result<void>();
   }
-  if (auto synced = targets->sync(); !synced) return synced;
-  return write_file_atomically(folder.path() / "moving-trials.csv", moving_trials_csv(measured));
-}
+  [[nodiscard]] Result<void> append(Presentation shown) {
+    if (simulated_) shown.host_time_ns.reset();
+    return targets_.append(shown);
+  }
+  [[nodiscard]] Result<void> sync() {
+    for (auto done : {moving_.sync(), trials_.sync(), targets_.sync()}) {
+      if (!done) return done;
+    }
+    return {};
+  }
+
+ private:
+  GrowingFiles(TrialsWriter trials, TargetsWriter targets, AppendFile moving, bool simulated)
+      : trials_(std::move(trials)), targets_(std::move(targets)), moving_(std::move(moving)), simulated_(simulated) {}
+  TrialsWriter trials_;
+  TargetsWriter targets_;
+  AppendFile moving_;
+  bool simulated_;
+};
 
 std::string in_text(const std::optional<double>& value) {
   return value ? fmt::format("{:.3f}", *value) : "unknown";
@@ -102,11 +121,14 @@ class DynamicRun {
 
   Result<DynamicSession> operator()(const std::function<void(const MovingPassRecord&)>& on_pass, std::stop_token stop) {
     const Plan& plan = loaded_.plan();
-    auto found = measure_dynamic(loaded_,
-                                 {.on_pass = on_pass,
-                                  .on_open = [this](const OpenedBench& bench) { return begin(bench); },
-                                  .on_measured = [this](const MovingMeasurement& m) { return keep(m); }},
-                                 std::move(stop));
+    auto found =
+        measure_dynamic(loaded_,
+                        {.moving = {.on_presentation = [this](const Presentation& p) { return files_->append(p); },
+                                    .on_answer = [this](const MovingAnswer& a) { return files_->append(a); },
+                                    .on_pass = on_pass},
+                         .on_open = [this](const OpenedBench& bench) { return begin(bench); },
+                         .on_measured = [this](const MovingMeasurement& m) { return keep(m); }},
+                        std::move(stop));
     if (!found && !folder_) return tl::unexpected(found.error());
     const SessionFrame frame{*folder_, listener_};
     if (!found) return abandon(frame, plan, provenance_, found.error());
@@ -141,7 +163,6 @@ class DynamicRun {
  private:
   Result<void> begin(const OpenedBench& bench) {
     const Plan& plan = loaded_.plan();
-    simulated_ = bench.simulated;
     const SourceInfo& info = bench.camera->info();
     sensor_ = plan.camera.id.empty() ? loaded_.sensor().name : info.model + " " + info.serial;
     provenance_ = begin_provenance(plan, plan.camera.id.empty() ? Side::simulated : Side::measured);
@@ -151,6 +172,9 @@ class DynamicRun {
     auto folder = begin_session(loaded_, options_, provenance_);
     if (!folder) return tl::unexpected(folder.error());
     folder_.emplace(*std::move(folder));
+    auto files = GrowingFiles::open(*folder_, bench.simulated);
+    if (!files) return tl::unexpected(files.error());
+    files_.emplace(*std::move(files));
     if (listener_.on_session) listener_.on_session(folder_->path());
     for (const auto& warning : bench.camera->info().warnings) note(*folder_, listener_, warning);
     phase(*folder_, listener_, "measuring before a target that moves");
@@ -169,7 +193,7 @@ class DynamicRun {
     provenance_.run =
         run_record(result, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count());
     for (const std::string& sentence : measured.notes) note(*folder_, listener_, sentence);
-    return write_measured(*folder_, measured, simulated_);
+    return files_->sync();
   }
 
   const LoadedPlan& loaded_;
@@ -177,9 +201,9 @@ class DynamicRun {
   const ExperimentListener& listener_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::optional<SessionFolder> folder_;
+  std::optional<GrowingFiles> files_;
   Provenance provenance_;
   std::string sensor_;  ///< whose curve it is
-  bool simulated_ = false;
 };
 
 }  // namespace

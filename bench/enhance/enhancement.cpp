@@ -32,6 +32,8 @@ Result<ExperimentInputs> full_inputs(const LoadedPlan& loaded) {
   const Plan& plan = loaded.plan();
   auto accuracy = accuracy_of(plan);
   if (!accuracy) return tl::unexpected(accuracy.error());
+  if (auto possible = check_sensor_module(loaded.sensor(), plan.simulation.motion); !possible)
+    return tl::unexpected(possible.error());
   ExperimentInputs inputs;
   inputs.plates = loaded.plates();
   inputs.observer = loaded.observer();
@@ -55,40 +57,40 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
+void keep_line(PackageResult& result, std::string_view line) {
+  if (result.error_lines.size() < most_error_lines) result.error_lines.emplace_back(line);
+}
+
 /// One way through the chain behind a bench: into `result`, its error included.
 void run_one(SimulatedSetUp set_up, const Plan& plan, const ExperimentInputs& inputs,
              const std::vector<ModulePlan>& modules, const EnhancementPackage* package,
              const EnhancementOptions& options, PackageResult& result, std::stop_token stop) {
   // Where the plate is and which contrast it has is found in the pictures of the camera itself: a package may have a
   // scale of its own.
-  const auto shared_record = std::make_shared<ProcessingRecord>();
-  ProcessingRecord& record = *shared_record;
-  const auto on_error_line = [&result](std::string_view line) {
-    if (result.error_lines.size() < most_error_lines) result.error_lines.emplace_back(line);
-  };
+  const auto record = std::make_shared<ProcessingRecord>();
+  const auto on_error_line = [&result](std::string_view line) { keep_line(result, line); };
   auto stages = module_stages(modules, on_error_line);
   if (package != nullptr) std::ranges::move(made_stages(*package, on_error_line), std::back_inserter(stages));
-  const auto camera = processed_source(std::move(set_up.bench.camera), std::move(stages), picture_frame, record);
+  const auto camera =
+      processed_source(std::move(set_up.bench.camera), std::move(stages), ProcessedAs::judged, picture_frame, record);
   TemplateObserver observer(inputs.observer, triangle_alternatives());
   MeasurementListener listener;
   listener.on_progress = options.on_progress;
-  const auto target = watched_target(std::move(set_up.bench.target), shared_record);
-  listener.on_presentation = [&](const Presentation&) { record.handed_out = true; };
   listener.on_trial = [&, simulated = set_up.bench.simulated](Trial trial) {
     // A simulated exposure happens at no time of the host.
     if (simulated) trial.host_time_ns = trial.device_time_ns;
     result.trials.push_back(std::move(trial));
   };
-  const auto measured = measure(*camera, *target, observer, *set_up.schedule, set_up.options, *set_up.bench.host,
-                                listener, std::move(stop));
+  const auto measured = measure(*camera, *set_up.bench.target, observer, *set_up.schedule, set_up.options,
+                                *set_up.bench.host, listener, std::move(stop));
   if (!measured)
     result.error = measured.error();
   else
     result.error = measured->ended_by;
-  result.frame_ms = median_of(record.frame_ms);
-  result.frames = record.frame_ms.size();
-  result.clipped_pixels = record.clipped;
-  result.picture = record.picture;
+  result.frame_ms = median_of(record->frame_ms);
+  result.frames = record->frame_ms.size();
+  result.clipped_pixels = record->clipped;
+  result.picture = record->picture;
   if (result.trials.empty()) return;
   if (auto curve = tod_curve(result.trials, fit_options(plan))) {
     result.curve = std::move(*curve);
@@ -106,7 +108,8 @@ void run_one(SimulatedSetUp set_up, const Plan& plan, const ExperimentInputs& in
 void run_simulated_one(const LoadedPlan& loaded, const ExperimentInputs& inputs, const EnhancementPackage* package,
                        int settle_frames, const EnhancementOptions& options, PackageResult& result,
                        const std::stop_token& stop) {
-  auto set_up = simulated_set_up(loaded.plan(), inputs, {}, stop);
+  const auto on_error_line = [&result](std::string_view line) { keep_line(result, line); };
+  auto set_up = simulated_set_up(loaded.plan(), inputs, {}, stop, on_error_line);
   if (!set_up) {
     result.error = set_up.error();
     return;
@@ -141,9 +144,6 @@ void run_recorded_one(const std::filesystem::path& session, const LoadedPlan& lo
   }
   measuring.contrast_response = *std::move(response);
   measuring.free_running = !recording->bench.simulated;
-  // Frames change from those of the camera to those of the package and back, which looks like a correction. Where the
-  // run itself left frames out for that, the questions to the recording are others, and it says so.
-  measuring.integrity.reject_frozen = false;
   auto schedule =
       make_schedule(plan, inputs.plates, plan.camera.ifov_mrad, Side::measured, RandomStream(plan.seed, "schedule"));
   run_one({std::move(measuring), std::move(recording->bench), std::move(schedule)}, plan, inputs, {}, package, options,

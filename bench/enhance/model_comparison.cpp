@@ -14,6 +14,7 @@
 #include "bench/run/module_chain.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
+#include "sim_devices/prediction/module_response.h"
 #include "sim_devices/sensor/sensor_key.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "sim_devices/sensor/transfer_functions.h"
@@ -114,9 +115,12 @@ class Chain {
     scene_.delta_t_k = *std::ranges::max_element(contrasts, {}, [](double contrast) { return std::abs(contrast); });
     scene_.background_k = model_.spec().scene_temperature_k;
     scene_.distance_m = loaded.plan().target.distance_m;
+    if (sensor_module(loaded.sensor()) != nullptr) module_.emplace(loaded.sensor(), loaded.plan().seed, nullptr);
   }
 
   [[nodiscard]] bool staged() const { return !stages_.empty(); }
+  /// Whether the sensor is a program, of which no signal without noise is known.
+  [[nodiscard]] bool programmed() const { return module_.has_value(); }
   [[nodiscard]] double samples_per_mrad() const {
     return model_.spec().samples_per_pitch() / model_.spec().ifov_mrad();
   }
@@ -150,14 +154,21 @@ class Chain {
     for (int i = 0; i < frames_; ++i) {
       if (content == Content::flat)
         picture = cv::Mat1f(size, static_cast<float>(flat));
+      else if (auto counts = exposed(static_cast<std::uint64_t>(i)); !counts)
+        return tl::unexpected(counts.error());
       else
-        model_.expose(scene_, static_cast<std::uint64_t>(i)).convertTo(picture, CV_32F);
+        counts->convertTo(picture, CV_32F);
       picture.colRange(size.width / 2, size.width) += step_k / kelvin_per_count();
       if (auto done = through(picture); !done) return tl::unexpected(done.error());
     }
     cv::Mat1d kelvin;
     picture.convertTo(kelvin, CV_64F, kelvin_per_count());
     return kelvin;
+  }
+
+  Result<cv::Mat1w> exposed(std::uint64_t index) {
+    if (module_) return module_->expose(scene_, index);
+    return model_.expose(scene_, index);
   }
 
   Result<void> through(cv::Mat1f& picture) {
@@ -170,6 +181,7 @@ class Chain {
   }
 
   SensorModel model_;
+  std::optional<ModuleSensor> module_;
   std::vector<std::unique_ptr<ChainStage>> stages_;
   int frames_;
   PlateScene scene_;
@@ -217,8 +229,17 @@ Result<std::vector<double>> moduli_of(const ComparedModel& model, Chain& chain, 
   }
   const SensorSpec& spec = loaded.sensor();
   const TransferFunction transfer = sensor_transfer(spec, full_plan(spec, {}, {}), Accuracy::normal().wavelengths);
-  for (const double f : frequencies_per_mrad)
-    moduli.push_back(model.kind == ModelKind::sensor ? std::abs(transfer(f * spec.ifov_mrad(), 0)) : 1.0);
+  const bool programmed = model.kind == ModelKind::sensor && chain.programmed();
+  for (const double f : frequencies_per_mrad) {
+    if (!programmed)
+      moduli.push_back(model.kind == ModelKind::sensor ? std::abs(transfer(f * spec.ifov_mrad(), 0)) : 1.0);
+  }
+  if (programmed) {
+    ModuleSensor sensor(spec, loaded.plan().seed, nullptr);
+    auto measured = module_transfer(sensor, spec, cycles);
+    if (!measured) return tl::unexpected(measured.error());
+    moduli = *std::move(measured);
+  }
   if (!chain.staged()) return moduli;
   // A stage is linear when what else is in the picture makes no difference.
   const auto alone = chain.edge(Chain::Content::flat), over_plate = chain.edge(Chain::Content::plate);
@@ -242,7 +263,13 @@ Result<std::vector<double>> moduli_of(const ComparedModel& model, Chain& chain, 
 /// Pictures and transfer functions; what a module does wrong here it does wrong in its trials, where it is kept.
 Result<void> compare_pictures(ModelComparison& comparison, const LoadedPlan& plan_a, const LoadedPlan& plan_b) {
   Chain a(plan_a, comparison.a), b(plan_b, comparison.b);
-  if (comparison.a.kind == ModelKind::sensor)
+  if (comparison.a.kind == ModelKind::sensor && (a.programmed() || b.programmed()))
+    comparison.pixels.push_back({.what = "signal before noise",
+                                 .mean_k = {},
+                                 .rms_k = {},
+                                 .largest_k = {},
+                                 .reason = "a sensor that is a module shows nothing without its noise"});
+  else if (comparison.a.kind == ModelKind::sensor)
     comparison.pixels.push_back(difference_of("signal before noise", a.signal(), b.signal()));
   if (comparison.a.kind != ModelKind::observer) {
     const auto frame_a = a.frame(), frame_b = b.frame();
@@ -320,6 +347,10 @@ Result<ModelComparison> compare_models(const LoadedPlan& plan, ComparedModel a, 
   comparison.keys = key_differences(a, b);
   comparison.a = std::move(a);
   comparison.b = std::move(b);
+  for (const LoadedPlan* side : {&*plan_a, &*plan_b}) {
+    if (auto possible = check_sensor_module(side->sensor(), side->plan().simulation.motion); !possible)
+      return tl::unexpected(possible.error());
+  }
   const int settle = std::max(memory_frames(plan_a->sensor(), comparison.a.package),
                               memory_frames(plan_b->sensor(), comparison.b.package));
   const std::tuple<const LoadedPlan*, const ComparedModel*, PackageResult*> sides[] = {

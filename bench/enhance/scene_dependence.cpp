@@ -289,7 +289,6 @@ struct SimulatedBar {
   OpenedBench bench;
   MoveBar move;
   int memory = 0;
-  std::shared_ptr<ProcessingRecord> record = std::make_shared<ProcessingRecord>();
 };
 
 Result<SimulatedBar> simulated_bar(const LoadedPlan& loaded, const EnhancementPackage* package, double bar_k) {
@@ -297,6 +296,7 @@ Result<SimulatedBar> simulated_bar(const LoadedPlan& loaded, const EnhancementPa
   const SensorSpec& sensor = loaded.sensor();
   const auto accuracy = accuracy_of(plan);
   if (!accuracy) return tl::unexpected(accuracy.error());
+  if (auto possible = check_sensor_module(sensor); !possible) return tl::unexpected(possible.error());
   const auto model = std::make_shared<const SensorModel>(
       sensor, full_plan(sensor, plan.simulation.skip, plan.simulation.force), *accuracy, plan.seed);
   SimulatedBar out;
@@ -316,8 +316,10 @@ Result<SimulatedBar> simulated_bar(const LoadedPlan& loaded, const EnhancementPa
   auto stages = module_stages(sensor.modules, {});
   if (package != nullptr) std::ranges::move(made_stages(*package, {}), std::back_inserter(stages));
   for (const auto& stage : stages) out.memory += stage->memory_frames();
+  if (const ModulePlan* module = sensor_module(sensor)) out.memory += module->settle_frames;
   constexpr std::size_t no_picture = std::numeric_limits<std::size_t>::max();
-  out.bench.camera = processed_source(std::move(out.bench.camera), std::move(stages), no_picture, *out.record);
+  out.bench.camera = processed_source(std::move(out.bench.camera), std::move(stages), ProcessedAs::counts, no_picture,
+                                      std::make_shared<ProcessingRecord>());
   return out;
 }
 

@@ -156,8 +156,12 @@ Result<SensorSpec> parse_sensor(const Resource& resource) {
   auto modules = reader->sections("module");
   for (TomlReader& table : modules) {
     // A sensor has no observer.
-    (void)table.choice("place", std::vector<std::string>{std::string(to_string(ModulePlace::picture))}, "picture");
+    const std::vector<std::string> places{std::string(to_string(ModulePlace::picture)),
+                                          std::string(to_string(ModulePlace::sensor))};
+    const bool sensor = table.choice("place", places, places.front()) == places.back();
+    if (sensor && !spec.modules.empty()) table.reject("place", "the sensor itself is the first module of its file");
     spec.modules.push_back(read_module(table));
+    if (sensor) spec.modules.back().place = ModulePlace::sensor;
   }
   return checked(*reader, resource, std::move(spec));
 }

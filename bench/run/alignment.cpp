@@ -67,6 +67,7 @@ void add_remarks(Alignment& look, const TargetPlate& plate, const std::vector<in
 
 /// Blur that registration sees in a noise-free picture of the simulated sensor; 0 when it cannot be found there.
 double expected_blur_px(const ExperimentInputs& inputs, const TargetPlate& plate, const Plan& plan) {
+  if (sensor_module(inputs.sensor) != nullptr) return 0;
   const SensorModel model(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
   PlateScene scene;
   scene.plate = plate;

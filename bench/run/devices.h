@@ -25,15 +25,12 @@ using SayProgress = std::function<void(std::string_view sentence)>;
 /// of a camera that takes its time (`interrupted`), `on_progress` tells of it about once a second.
 [[nodiscard]] CameraRegistry camera_registry(std::stop_token stop = {}, const SayProgress& on_progress = {});
 
-struct ProcessingRecord;
-
 /// A camera, what changes the target before it, and who commands a measurement with them.
 struct OpenedBench {
   std::unique_ptr<FrameSource> camera;
   std::unique_ptr<Target> target;
-  bool simulated = false;                          ///< the camera is a sensor model, its clock that of the model
-  std::chrono::milliseconds patience{0};           ///< how long a camera that was lost is waited for; 0 in a replay
-  std::shared_ptr<ProcessingRecord> processing{};  ///< of the modules behind the camera; null: there are none
+  bool simulated = false;                 ///< the camera is a sensor model, its clock that of the model
+  std::chrono::milliseconds patience{0};  ///< how long a camera that was lost is waited for; 0 in a replay
   std::unique_ptr<MeasurementHost> host = std::make_unique<UnattendedHost>();  ///< may use `camera`
 };
 
@@ -45,9 +42,10 @@ struct OpenedBench {
                                              const OnTargetWait& on_wait = {});
 
 /// A simulated sensor behind a scene. `shown_delta_t_k`: set-point -> contrast really shown, so that a twin shows what
-/// a camera saw; set-points that are not in it are shown as they are.
+/// a camera saw; set-points that are not in it are shown as they are. `on_error_line`: of simulated_source().
 [[nodiscard]] OpenedBench simulated_bench(std::shared_ptr<const SensorModel> model,
                                           const std::vector<TargetPlate>& plates, double distance_m,
-                                          std::map<double, double> shown_delta_t_k, SceneMotion motion = {});
+                                          std::map<double, double> shown_delta_t_k, SceneMotion motion = {},
+                                          ModuleSensor::OnLine on_error_line = {});
 
 }  // namespace todbench

@@ -14,7 +14,6 @@
 #include "bench/run/observed_source.h"
 #include "bench/run/paired_comparison.h"
 #include "bench/run/physical_measures.h"
-#include "bench/run/processed_source.h"
 #include "bench/run/recorded_bench.h"
 #include "bench/run/session_frame.h"
 #include "bench/run/simulated_responses.h"
@@ -63,7 +62,6 @@ class Recorder {
       if (!write_error) ++on_disk;
     };
     events.on_presentation = [&](Presentation shown) {
-      if (bench.processing) bench.processing->handed_out = true;
       if (bench.simulated) shown.host_time_ns.reset();
       if (!write_error) keep(targets->append(shown));
     };
@@ -153,11 +151,11 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
                               const TodCurve* measured, const ExperimentHost& host, const ExperimentListener& listener,
                               std::stop_token stop) {
   const auto begin = Clock::now();
-  auto set_up = simulated_set_up(plan, inputs, shown_delta_t_k, stop);
+  const ModuleLine log_line = module_log(folder);
+  auto set_up = simulated_set_up(plan, inputs, shown_delta_t_k, stop, log_line);
   if (!set_up) return tl::unexpected(set_up.error());
   set_up->bench.host = bench_host({.pause = host.pause});
   const auto modules = picture_modules(plan, inputs.sensor, Side::simulated);
-  const ModuleLine log_line = module_log(folder);
   put_modules_behind(set_up->bench, modules, log_line);
   if (!modules.empty()) {
     set_up->options.frames_after_change = settle_frames(modules);
@@ -176,7 +174,8 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
   run.curve.observer = observer_name(plan, inputs);
   for (auto& point : run.curve.points) {
     // Of the sensor as it is: where the planner leaves the noise out, that says nothing about its counts.
-    point.noise_counts = noise_in_counts(inputs.sensor);
+    point.noise_counts =
+        sensor_module(inputs.sensor) != nullptr ? run.result.temporal_noise_counts : noise_in_counts(inputs.sensor);
     point.lag1_correlation = run.result.lag1_correlation;
   }
 

@@ -54,6 +54,16 @@ Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlann
       return fail(ErrorCode::invalid_input,
                   "graded answers are fitted with the function of the sensor, which is not that behind a module: "
                   "[schedule] answers must be 'binary'");
+    if (auto possible = check_sensor_module(loaded.sensor(), inputs.motion); !possible)
+      return tl::unexpected(possible.error());
+    if (const ModulePlan* module = sensor_module(loaded.sensor())) {
+      if (plan.measures.any())
+        return fail(ErrorCode::invalid_input,
+                    "physical measures are compared with the closed forms of the sensor, which a module in its place "
+                    "does not have: no [measures]");
+      inputs.warnings.push_back("the simulated sensor is the module '" + one_line(module->command) +
+                                "', which is told the keys of the sensor file");
+    }
     // What may be left out for the sensor alone may matter behind a module.
     inputs.effects = full_plan(loaded.sensor(), plan.simulation.skip, plan.simulation.force, inputs.motion);
     inputs.sensor = as_planned(loaded.sensor(), inputs.effects);

@@ -37,21 +37,6 @@ class PlannedModule final : public ChainStage {
   std::unique_ptr<ChainStage> stage_;
 };
 
-class WatchedTarget final : public Target {
- public:
-  WatchedTarget(std::unique_ptr<Target> target, std::shared_ptr<ProcessingRecord> record)
-      : target_(std::move(target)), record_(std::move(record)) {}
-  [[nodiscard]] const TargetCapabilities& capabilities() const override { return target_->capabilities(); }
-  [[nodiscard]] Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) override {
-    record_->handed_out = false;
-    return target_->present(state, std::move(stop));
-  }
-
- private:
-  std::unique_ptr<Target> target_;
-  std::shared_ptr<ProcessingRecord> record_;
-};
-
 /// Output of a command for a shell, its first line, within ten seconds.
 std::string first_line_of(const std::string& command) {
   std::string quoted = "'";
@@ -95,7 +80,9 @@ std::vector<ModulePlan> picture_modules(const Plan& plan, const SensorSpec& sens
 std::vector<std::unique_ptr<ChainStage>> module_stages(const std::vector<ModulePlan>& modules,
                                                        const ModuleLine& on_error_line) {
   std::vector<std::unique_ptr<ChainStage>> stages;
-  for (const ModulePlan& module : modules) stages.push_back(std::make_unique<PlannedModule>(module, on_error_line));
+  for (const ModulePlan& module : modules) {
+    if (module.place == ModulePlace::picture) stages.push_back(std::make_unique<PlannedModule>(module, on_error_line));
+  }
   return stages;
 }
 
@@ -108,15 +95,9 @@ int settle_frames(const std::vector<ModulePlan>& modules) {
 void put_modules_behind(OpenedBench& bench, const std::vector<ModulePlan>& modules, const ModuleLine& on_error_line) {
   if (modules.empty()) return;
   auto stages = module_stages(modules, on_error_line);
-  bench.processing = std::make_shared<ProcessingRecord>();
-  bench.processing->handed_out = false;
   constexpr std::size_t no_picture = std::numeric_limits<std::size_t>::max();
-  bench.camera = processed_source(std::move(bench.camera), std::move(stages), no_picture, *bench.processing);
-  bench.target = watched_target(std::move(bench.target), bench.processing);
-}
-
-std::unique_ptr<Target> watched_target(std::unique_ptr<Target> target, std::shared_ptr<ProcessingRecord> record) {
-  return std::make_unique<WatchedTarget>(std::move(target), std::move(record));
+  bench.camera = processed_source(std::move(bench.camera), std::move(stages), ProcessedAs::judged, no_picture,
+                                  std::make_shared<ProcessingRecord>());
 }
 
 std::unique_ptr<Observer> observer_of(const Plan& plan, const ExperimentInputs& inputs,

@@ -21,16 +21,16 @@ using ModuleLine = std::function<void(std::string_view line)>;
 /// Success where there is none; `invalid_input`: what follows from sensor and observer alone leaves modules out.
 [[nodiscard]] Result<void> refuse_modules(const Plan& plan, const SensorSpec& sensor);
 
-/// In the order of the chain: of the simulated sensor its own, then those of the plan; of the camera those of the plan.
+/// In the order of the chain: of the simulated sensor its own, the sensor itself included, then those of the plan; of
+/// the camera those of the plan.
 [[nodiscard]] std::vector<ModulePlan> picture_modules(const Plan& plan, const SensorSpec& sensor, Side side);
-/// Ready for the first picture; their errors are those of the run.
+/// Those that are picture to picture, ready for the first one; their errors are those of the run.
 [[nodiscard]] std::vector<std::unique_ptr<ChainStage>> module_stages(const std::vector<ModulePlan>& modules,
                                                                      const ModuleLine& on_error_line);
 /// What is left out after a change of the target: what one remembers the next remembers again.
 [[nodiscard]] int settle_frames(const std::vector<ModulePlan>& modules);
-/// Every frame of the bench goes through the modules. Those for registration and contrast are handed out as they came,
-/// those that are judged as the modules made them, once `bench.processing->handed_out` says so; a change of the target
-/// takes it back. Without modules nothing changes.
+/// Every frame of the bench goes through the modules; what they made of it is judged (ProcessedAs::judged). Without
+/// modules nothing changes.
 void put_modules_behind(OpenedBench& bench, const std::vector<ModulePlan>& modules, const ModuleLine& on_error_line);
 
 /// The observer of a plan: its templates, or the module in their place.
@@ -45,9 +45,5 @@ void put_modules_behind(OpenedBench& bench, const std::vector<ModulePlan>& modul
 [[nodiscard]] std::string text_of(const ModuleRecord& record);
 /// Of all modules of a run, the observer last.
 [[nodiscard]] std::vector<ModuleRecord> module_records(const Plan& plan, const SensorSpec& sensor, Side side);
-
-/// A target whose changes let the record hand out frames as they came.
-[[nodiscard]] std::unique_ptr<Target> watched_target(std::unique_ptr<Target> target,
-                                                     std::shared_ptr<ProcessingRecord> record);
 
 }  // namespace todbench

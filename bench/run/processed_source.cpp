@@ -1,38 +1,36 @@
 #include "bench/run/processed_source.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <utility>
 
-#include "acquisition/core/correction_watch.h"
 #include "acquisition/core/forwarding_source.h"
+#include "acquisition/core/judged_picture.h"
 
 namespace todbench {
 namespace {
 
 class ProcessedSource final : public ForwardingSource {
  public:
-  ProcessedSource(std::unique_ptr<FrameSource> camera, std::vector<std::unique_ptr<ChainStage>> stages,
-                  std::size_t picture_frame, ProcessingRecord& record)
+  ProcessedSource(std::unique_ptr<FrameSource> camera, std::vector<std::unique_ptr<ChainStage>> stages, ProcessedAs as,
+                  std::size_t picture_frame, std::shared_ptr<ProcessingRecord> record)
       : ForwardingSource(std::move(camera)),
         stages_(std::move(stages)),
+        as_(as),
         picture_frame_(picture_frame),
-        record_(record) {}
+        record_(std::move(record)) {}
 
   [[nodiscard]] Result<Frame> next(std::chrono::milliseconds timeout) override {
     auto frame = ForwardingSource::next(timeout);
     if (!frame || frame->status != FrameStatus::complete) return frame;
     auto counts = processed(*frame);
     if (!counts) return tl::unexpected(counts.error());
-    if (record_.frame_ms.size() == picture_frame_ + 1) record_.picture = counts->clone();
-    if (!record_.handed_out) {
-      watch_.scene_changed();
-      return frame;
-    }
-    // Corrections are seen in the camera's own pictures: where answers begin the pictures differ in everything.
-    if (frame->correction == CorrectionState::unknown)
-      frame->correction = watch_.see(*frame) ? CorrectionState::running : CorrectionState::idle;
-    frame->counts = *counts;
+    if (record_->frame_ms.size() == picture_frame_ + 1) record_->picture = counts->clone();
+    if (as_ == ProcessedAs::judged)
+      frame->judged = std::make_shared<const JudgedPicture>(JudgedPicture{.counts = *std::move(counts)});
+    else
+      frame->counts = *std::move(counts);
     return frame;
   }
 
@@ -50,7 +48,7 @@ class ProcessedSource final : public ForwardingSource {
       }
       counts = counts_of(picture, frame.significant_bits);
     }
-    record_.frame_ms.push_back(
+    record_->frame_ms.push_back(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
     return counts;
   }
@@ -59,24 +57,24 @@ class ProcessedSource final : public ForwardingSource {
     cv::Mat1w counts(picture.size());
     std::transform(picture.begin(), picture.end(), counts.begin(), [&](float value) {
       const float rounded = std::nearbyint(value);
-      if (rounded < 0 || rounded > full) ++record_.clipped;
+      if (rounded < 0 || rounded > full) ++record_->clipped;
       return static_cast<std::uint16_t>(std::clamp(rounded, 0.0F, full));
     });
     return counts;
   }
 
   std::vector<std::unique_ptr<ChainStage>> stages_;
+  ProcessedAs as_;
   std::size_t picture_frame_;
-  ProcessingRecord& record_;
-  CorrectionWatch watch_{CorrectionWatchOptions{}};
+  std::shared_ptr<ProcessingRecord> record_;
 };
 
 }  // namespace
 
 std::unique_ptr<FrameSource> processed_source(std::unique_ptr<FrameSource> camera,
-                                              std::vector<std::unique_ptr<ChainStage>> stages,
-                                              std::size_t picture_frame, ProcessingRecord& record) {
-  return std::make_unique<ProcessedSource>(std::move(camera), std::move(stages), picture_frame, record);
+                                              std::vector<std::unique_ptr<ChainStage>> stages, ProcessedAs as,
+                                              std::size_t picture_frame, std::shared_ptr<ProcessingRecord> record) {
+  return std::make_unique<ProcessedSource>(std::move(camera), std::move(stages), as, picture_frame, std::move(record));
 }
 
 }  // namespace todbench

@@ -219,6 +219,9 @@ Result<RunnableSweep> load_sweep(const std::filesystem::path& path) {
   // What files say that are named decides results as well.
   std::string fingerprint = "plan " + sha256_of(to_toml(loaded->plan())) + "\n";
   for (const auto& [name, source] : loaded->parts().sources) fingerprint += sha256_of(source.text) + "\n";
+  for (const auto* modules : {&loaded->plan().modules, &loaded->sensor().modules}) {
+    for (const ModulePlan& module : *modules) fingerprint += text_of(module_record(module)) + "\n";
+  }
   const SensorSpec sensor = loaded->sensor();
   const auto number_of = [&sensor](std::string_view name) -> std::optional<double> {
     const auto key = sensor_key(name);

@@ -7,21 +7,23 @@
 namespace todbench {
 
 std::string_view to_string(ModulePlace place) {
-  return place == ModulePlace::observer ? "observer" : "picture";
+  constexpr std::string_view names[] = {"picture", "observer", "sensor"};
+  return names[static_cast<std::size_t>(place)];
 }
 
-ModuleStageOptions stage_options(const ModulePlan& plan) {
+ModuleStageOptions stage_options(const ModulePlan& plan, std::span<const SensorFact> sensor) {
   nlohmann::json parameters = nlohmann::json::object();
   for (const auto& [key, value] : plan.parameters) parameters[key] = value;
+  nlohmann::json header{{"protocol", "todbench-module"},
+                        {"version", 1},
+                        {"place", std::string(to_string(plan.place))},
+                        {"parameters", parameters}};
+  for (const auto& [name, value] : sensor)
+    std::visit([&, &key = name](auto number) { header["sensor"][key] = number; }, value);
   ModuleStageOptions options;
   options.process.command = plan.command;
   // A text that is no UTF-8 is handed over with its broken bytes replaced, not refused in the middle of a run.
-  options.process.header = nlohmann::json{
-      {"protocol", "todbench-module"},
-      {"version", 1},
-      {"place", std::string(to_string(plan.place))},
-      {"parameters",
-       parameters}}.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  options.process.header = header.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   options.process.limit = std::chrono::milliseconds(plan.limit_ms);
   options.process.memory_limit_mib = static_cast<std::size_t>(plan.memory_mib);
   options.process.network = plan.network ? ModuleNetwork::ours : ModuleNetwork::cut;

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "acquisition/core/result.h"
@@ -16,7 +19,9 @@ namespace todbench {
 enum class ModulePlace {
   picture,   ///< picture to picture, behind the sensor
   observer,  ///< patch to scores, in place of the templates of the observer
+  sensor,    ///< scene to frame: the sensor itself, in a sensor file only
 };
+/// Those that a plan knows.
 inline constexpr std::array all_module_places{ModulePlace::picture, ModulePlace::observer};
 [[nodiscard]] std::string_view to_string(ModulePlace place);
 
@@ -39,8 +44,13 @@ struct ModuleRanges {
 };
 inline constexpr ModuleRanges module_ranges{};
 
-/// How its process is started; the header says place and parameters.
-[[nodiscard]] ModuleStageOptions stage_options(const ModulePlan& plan);
+/// A number that the header says of the sensor.
+struct SensorFact {
+  std::string name;
+  std::variant<double, std::int64_t, std::uint64_t> value;
+};
+/// How its process is started; the header says place, parameters and, where there are any, facts of the sensor.
+[[nodiscard]] ModuleStageOptions stage_options(const ModulePlan& plan, std::span<const SensorFact> sensor = {});
 
 /// What went wrong with a module as an error of the run: it is not the camera that was lost.
 [[nodiscard]] Error module_error(const ModulePlan& plan, const Error& error);

@@ -159,6 +159,10 @@ const SensorPlan& SensorModel::plan() const {
   return state_->plan;
 }
 
+std::uint64_t SensorModel::seed() const {
+  return state_->seed;
+}
+
 cv::Size SensorModel::size() const {
   return state_->size();
 }

@@ -27,6 +27,7 @@ class SensorModel {
   /// The sensor as planned: parameters of skipped effects at their neutral values.
   [[nodiscard]] const SensorSpec& spec() const;
   [[nodiscard]] const SensorPlan& plan() const;
+  [[nodiscard]] std::uint64_t seed() const;
 
   /// Picture elements: detectors times samples per pitch.
   [[nodiscard]] cv::Size size() const;

@@ -14,9 +14,11 @@ namespace {
 
 class SimulatedSource final : public FrameSource {
  public:
-  SimulatedSource(std::shared_ptr<const SensorModel> model, std::shared_ptr<SceneHolder> scene, std::string serial)
+  SimulatedSource(std::shared_ptr<const SensorModel> model, std::shared_ptr<SceneHolder> scene, std::string serial,
+                  ModuleSensor::OnLine on_error_line)
       : model_(std::move(model)), scene_(std::move(scene)) {
     const SensorSpec& spec = model_->spec();
+    if (sensor_module(spec) != nullptr) module_.emplace(spec, model_->seed(), std::move(on_error_line));
     const auto scale = RadiometricScale::linear({.kelvin_per_count = spec.kelvin_per_count, .offset_k = spec.offset_k});
     CV_Assert(scale.has_value());
     scale_ = std::make_shared<const RadiometricScale>(*scale);
@@ -45,7 +47,14 @@ class SimulatedSource final : public FrameSource {
     if (stopped_) return fail(ErrorCode::interrupted, "simulated camera " + info_.id + " is stopped");
     Frame frame;
     const double time_s = static_cast<double>(index_) / info_.frame_rate_hz;
-    frame.counts = model_->expose(scene_->scene_at(time_s, model_->spec()), index_);
+    const PlateScene scene = scene_->scene_at(time_s, model_->spec());
+    if (module_) {
+      auto counts = module_->expose(scene, index_);
+      if (!counts) return tl::unexpected(counts.error());
+      frame.counts = *std::move(counts);
+    } else {
+      frame.counts = model_->expose(scene, index_);
+    }
     frame.sequence = index_;
     // The simulated clock ticks once per exposure, so that a run repeats bit for bit.
     frame.device_time_ns = static_cast<std::int64_t>(static_cast<double>(index_) * 1e9 / info_.frame_rate_hz);
@@ -76,6 +85,7 @@ class SimulatedSource final : public FrameSource {
  private:
   std::shared_ptr<const SensorModel> model_;
   std::shared_ptr<SceneHolder> scene_;
+  std::optional<ModuleSensor> module_;
   std::shared_ptr<const RadiometricScale> scale_;
   SourceInfo info_;
   std::uint64_t index_ = 0;
@@ -162,8 +172,10 @@ PlateRun SceneHolder::run_along_x(double to_mm, double speed_mm_s) {
 }
 
 std::unique_ptr<FrameSource> simulated_source(std::shared_ptr<const SensorModel> model,
-                                              std::shared_ptr<SceneHolder> scene, std::string serial) {
-  return std::make_unique<SimulatedSource>(std::move(model), std::move(scene), std::move(serial));
+                                              std::shared_ptr<SceneHolder> scene, std::string serial,
+                                              ModuleSensor::OnLine on_error_line) {
+  return std::make_unique<SimulatedSource>(std::move(model), std::move(scene), std::move(serial),
+                                           std::move(on_error_line));
 }
 
 std::unique_ptr<Target> scene_target(std::shared_ptr<SceneHolder> scene, std::vector<TargetPlate> plates) {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "acquisition/core/frame_source.h"
+#include "sim_devices/sensor/module_sensor.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "tod/presentation/target.h"
 
@@ -30,9 +31,11 @@ class SceneHolder {
   double time_s_ = 0;
 };
 
-/// Exposes as fast as it is asked: frame k is expose(scene at that moment, k). `serial` distinguishes twins.
+/// Exposes as fast as it is asked: frame k is expose(scene at that moment, k), of the model or of the program that is
+/// the sensor, whose lines on standard error are told to `on_error_line`. `serial` distinguishes twins.
 [[nodiscard]] std::unique_ptr<FrameSource> simulated_source(std::shared_ptr<const SensorModel> model,
-                                                            std::shared_ptr<SceneHolder> scene, std::string serial);
+                                                            std::shared_ptr<SceneHolder> scene, std::string serial,
+                                                            ModuleSensor::OnLine on_error_line = {});
 
 /// Puts states into the scene at once. Plates in identity mounting.
 [[nodiscard]] std::unique_ptr<Target> scene_target(std::shared_ptr<SceneHolder> scene, std::vector<TargetPlate> plates);

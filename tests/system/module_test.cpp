@@ -1,4 +1,7 @@
 // Modules in plans and sensor files, as a user runs them: what changes nothing, what breaks in the middle of a run.
+#include <cmath>
+#include <numbers>
+
 #include "tests/support/source_file.h"
 #include "tests/system/system_test_support.h"
 
@@ -96,6 +99,101 @@ TEST_F(Modules, OfASensorFileAreBehindItsPictures) {
   EXPECT_TRUE(completed(same));
   EXPECT_EQ(Json::parse(content_of(at("s") / "provenance.json"))["modules"].size(), 1u);
   EXPECT_EQ(elsewhere.code, 2) << "a transfer function without the module would be that of another camera";
+}
+
+/// The SC2000 with detectors of a pitch, as a program where `section` says so.
+std::string full_pitch_sensor(const std::string& section) {
+  std::string sensor = content_of(source_file("sim_devices/sensors/sc2000.toml"));
+  const std::string key = "detector_um = 42.5";
+  return sensor.replace(sensor.find(key), key.size(), "detector_um = 47.5") + section;
+}
+std::string sensor_section(const std::string& arguments, const std::string& more = "") {
+  return "[[module]]\nplace = \"sensor\"\ncommand = \"" + example + " sensor " + arguments + "\"\n" + more;
+}
+
+TEST_F(Modules, ThatAreTheSensorHaveTheAcuityAndTheTransferOfTheBuiltInOne) {
+  folder_.write("built-in.toml", full_pitch_sensor(""));
+  folder_.write("program.toml", full_pitch_sensor(sensor_section("identity")));
+  const auto simulated = [&](const std::string& name) {
+    folder_.write(name + "-plan.toml", small_plan(2, "phases = 10\nsensor = \"./" + name +
+                                                         ".toml\"\nskip = [\"diffraction\"]\n[fit]\nestimator = "
+                                                         "\"weibull\"\n"));
+    const Ended ended = run({"simulate", "./" + name + "-plan.toml", "--out", name, "--json"});
+    EXPECT_TRUE(completed(ended)) << ended.err;
+    return one_object(ended)["points"][0];
+  };
+
+  const Json built_in = simulated("built-in"), program = simulated("program");
+  folder_.write("plan.toml", small_plan(2, "phases = 2\n"));
+  const Ended compared =
+      run({"compare-models", "./built-in.toml", "./program.toml", "--plan", "./plan.toml", "--out", "c", "--json"});
+
+  // The noise is other noise: each lies in the interval of the other.
+  for (const auto& [one, other] : {std::pair(&built_in, &program), std::pair(&program, &built_in)}) {
+    EXPECT_GT((*one)["s75_mrad"], (*other)["s75_ci95_mrad"][0]);
+    EXPECT_LT((*one)["s75_mrad"], (*other)["s75_ci95_mrad"][1]);
+  }
+  const Json record = Json::parse(content_of(at("program") / "provenance.json"));
+  EXPECT_EQ(record["modules"][0]["place"], "sensor");
+  ASSERT_EQ(compared.code, 0) << compared.err;
+  const Json models = one_object(compared);
+  EXPECT_TRUE(models["pixels"][0]["rms_k"].is_null()) << "a program shows no signal without its noise";
+  EXPECT_LT(models["pixels"][1]["rms_k"], 0.5);
+  for (const Json& point : models["transfer"]) {
+    const double f = point["frequency_per_mrad"].get<double>() * 47.5 / 36.3, x = std::numbers::pi * f;
+    EXPECT_NEAR(point["b"].get<double>(), f > 0 ? std::abs(std::sin(x) / x) : 1.0, 2e-4) << f;
+  }
+}
+
+TEST_F(Modules, ThatAreTheSensorAndBreakAreNamedAndTheTrialsKept) {
+  // The response takes 36 frames of a process of its own, the run 32 and 16 before its first presentation.
+  const struct {
+    const char* name;
+    std::string arguments, more, sentence;
+    int code;
+    bool trials;
+  } cases[] = {{"ends", "ends 49", "", "that is enough", 5, true},
+               {"nan", "nan 49", "", "not finite", 5, true},
+               {"shape", "shape 49", "", "shape", 5, true},
+               {"text", "text 49", "", "no .npy array", 5, true},
+               {"hang", "hang 49", "limit_ms = 3000\n", "3000 ms", 5, true},
+               {"endless", "endless", "", "", 5, false}};
+  for (const auto& [name, arguments, more, sentence, code, trials] : cases) {
+    folder_.write("sensor.toml", full_pitch_sensor(sensor_section(arguments, more)));
+    const Ended ended = simulate(name, "sensor = \"./sensor.toml\"\n");
+
+    EXPECT_EQ(ended.code, code) << name << ended.err;
+    EXPECT_THAT(ended.err, HasSubstr(sentence)) << name;
+    EXPECT_THAT(ended.err, HasSubstr(example)) << name;
+    const auto rows = rows_in(at(name) / "trials.csv");
+    EXPECT_TRUE(trials ? rows > 0 && rows < 40 : rows == 0) << name << " " << rows;
+  }
+  EXPECT_THAT(content_of(at("ends") / "log.txt"), HasSubstr("module: that is enough"));
+}
+
+TEST_F(Modules, ThatAreTheSensorAreRefusedInASentenceWhereTheyCannotBe) {
+  folder_.write("sensor.toml", full_pitch_sensor(sensor_section("identity")));
+  folder_.write("second.toml", full_pitch_sensor(module_section("identity") + sensor_section("identity")));
+  const auto refusal = [&](const std::string& more, const std::string& sentence) {
+    folder_.write("bad.toml", small_plan(1, "sensor = \"./sensor.toml\"\n" + more));
+    expect_refused(run({"simulate", "./bad.toml", "--out", "bad"}), 2, sentence);
+  };
+  refusal("microscan = 2\n", "microscan");
+  refusal("[measures]\nnoise = true\n", "[measures]");
+  refusal("[[module]]\nplace = \"sensor\"\ncommand = \"cat\"\n", "place");
+  expect_refused(run({"simulate", "--sensor", "./second.toml", "--out", "bad"}), 2, "first");
+  folder_.write("good.toml", small_plan(1, "sensor = \"./sensor.toml\"\n"));
+  expect_refused(run({"plan", "./good.toml"}), 2, "[[module]]");
+  const Ended kept = run({"module", "check", example + " sensor identity", "--place", "sensor", "--json"});
+  const Ended broken = run({"module", "check", example + " sensor shape", "--place", "sensor"});
+
+  ASSERT_EQ(kept.code, 0) << kept.err;
+  const Json json = one_object(kept);
+  EXPECT_NEAR(json["response"].get<double>(), 1, 1e-6);
+  // 3072 pixels: a relative standard error of 1 / sqrt(2 * 3072) = 1.3 %.
+  EXPECT_NEAR(json["noise_k"].get<double>() / 0.07, 1, 0.05);
+  EXPECT_TRUE(json["linear"]);
+  EXPECT_EQ(broken.code, 5) << broken.err;
 }
 
 TEST_F(Modules, ThatBreakInTheMiddleOfARunAreNamedAndTheTrialsKept) {

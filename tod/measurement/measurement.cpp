@@ -7,6 +7,7 @@
 #include <span>
 #include <tuple>
 
+#include "acquisition/core/judged_picture.h"
 #include "tod/measurement/frame_taker.h"
 #include "tod/measurement/prepared_plate.h"
 #include "tod/measurement/set_up_step.h"
@@ -276,22 +277,23 @@ class Run {
     std::vector<Patch> patches;
     std::vector<double> probabilities(count);
     for (int k = 0; k < options_.frames_per_presentation; ++k) {
-      auto frame = taker_.next(stop_);
-      if (!frame) return tl::unexpected(frame.error());
-      const auto unit_per_k = of_a_kelvin(*frame, mounted_plate, registration, state);
+      auto taken = taker_.next(stop_);
+      if (!taken) return tl::unexpected(taken.error());
+      const Frame frame = as_judged(*std::move(taken));
+      const auto unit_per_k = of_a_kelvin(frame, mounted_plate, registration, state);
       if (!unit_per_k) return tl::unexpected(unit_per_k.error());
       for (std::size_t i = 0; i < count; ++i) {
         const PlateTriangle& t = mounted_plate.triangles[i];
         const auto window = patch_window(registration.pixel(t.position_mm), plate.observers[i]->window_samples());
-        auto kelvin = window_kelvin(*frame, window.pixels);
+        auto kelvin = window_kelvin(frame, window.pixels);
         if (!kelvin) return tl::unexpected(kelvin.error());
         if (*unit_per_k != 1) *kelvin /= *unit_per_k;
         Patch patch{.kelvin = *std::move(kelvin), .phase = window.phase, .noise_k = seen_.noise_k};
         const GradedChoice judged = judge(*plate.observers[i], patch, i, k);
-        const int saturated = step_.saturated_pixels(*frame, window.pixels);
+        const int saturated = step_.saturated_pixels(frame, window.pixels);
         probabilities[i] += judged.answers.probability[static_cast<std::size_t>(t.apex)];
         if (k == 0) {
-          Trial trial = first_answer(t, state, *frame, judged.choice, window.phase);
+          Trial trial = first_answer(t, state, frame, judged.choice, window.phase);
           trial.size_px = plate.size_px[i];
           trials.push_back(std::move(trial));
           patches.push_back(std::move(patch));

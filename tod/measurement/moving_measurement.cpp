@@ -69,13 +69,13 @@ cv::Point2d mass_from_place(const cv::Mat1d& kelvin, const TargetPlate& plate, c
 class MovingRun {
  public:
   MovingRun(FrameSource& source, Target& target, TemplateObserver& observer, const MovingMeasurementOptions& options,
-            MeasurementHost& host, const std::function<void(const MovingPassRecord&)>& on_pass, std::stop_token stop)
+            MeasurementHost& host, const MovingListener& listener, std::stop_token stop)
       : source_(source),
         target_(target),
         observer_(observer),
         options_(options),
         host_(host),
-        on_pass_(on_pass),
+        listener_(listener),
         stop_(std::move(stop)),
         taker_(source, taker_options(options.measurement, source.info())),
         step_(options_.measurement, source, taker_, [this](const std::string& sentence) { note(sentence); }),
@@ -190,6 +190,9 @@ class MovingRun {
                                      .delta_t_k = seen_.contrast_k,
                                      .air_transmittance = at_rest().air_transmittance,
                                      .host_time_ns = there_ns_});
+    if (listener_.on_presentation) {
+      if (auto kept = listener_.on_presentation(result_.presentations.back()); !kept) return kept;
+    }
     for (int phase = 0; phase < options_.passes; ++phase, ++pairs_) {
       for (const double speed : options_.speeds_mrad_s) {
         MovingPassRecord pass{.pass = static_cast<int>(result_.passes.size()),
@@ -204,7 +207,7 @@ class MovingRun {
                               .dropped = {}};
         if (auto done = one_pass(set_up, pass); !done) return done;
         dropped_ += pass.dropped.empty() ? 0 : 1;
-        if (on_pass_) on_pass_(pass);
+        if (listener_.on_pass) listener_.on_pass(pass);
         result_.passes.push_back(std::move(pass));
         // A handful may have bad luck; a third of a dozen and more is the bench.
         if (dropped_ >= 4 && 3 * dropped_ >= result_.passes.size())
@@ -228,8 +231,7 @@ class MovingRun {
         pass.speed_mrad_s == 0 ? frames_at_rest() : frames_of_run(set_up, begin, phase_mm.x + half_mm, pass);
     if (!frames) return tl::unexpected(frames.error());
     if (!pass.dropped.empty()) return {};
-    answer(set_up, begin, *frames, pass);
-    return {};
+    return answer(set_up, begin, *frames, pass);
   }
 
   Result<std::vector<LocatedFrame>> frames_at_rest() {
@@ -335,8 +337,8 @@ class MovingRun {
     pass.measured_px_s = variance > 0 ? covariance / variance : pass.said_px_s;
   }
 
-  void answer(const MovingSetUp& set_up, const Registration& begin, const std::vector<LocatedFrame>& frames,
-              MovingPassRecord& pass) {
+  Result<void> answer(const MovingSetUp& set_up, const Registration& begin, const std::vector<LocatedFrame>& frames,
+                      MovingPassRecord& pass) {
     const PreparedJudge& prepared = judges_.at(set_up.name);
     std::vector<cv::Mat1f> pictures;
     for (const LocatedFrame& frame : frames) pictures.emplace_back(frame.kelvin);
@@ -375,9 +377,14 @@ class MovingRun {
         trial.phase_x_px = window.phase.x;
         trial.phase_y_px = window.phase.y;
         trial.frame = frames.front().sequence;
-        result_.answers.push_back({kind, pass.speed_mrad_s, std::move(trial)});
+        MovingAnswer given{kind, pass.speed_mrad_s, std::move(trial)};
+        if (listener_.on_answer) {
+          if (auto kept = listener_.on_answer(given); !kept) return kept;
+        }
+        result_.answers.push_back(std::move(given));
       }
     }
+    return {};
   }
 
   struct PreparedJudge {
@@ -391,7 +398,7 @@ class MovingRun {
   TemplateObserver& observer_;
   MovingMeasurementOptions options_;
   MeasurementHost& host_;
-  const std::function<void(const MovingPassRecord&)>& on_pass_;
+  const MovingListener& listener_;
   std::stop_token stop_;
   FrameTaker taker_;
   SetUpStep step_;
@@ -428,9 +435,8 @@ Result<void> check_moving(const SourceInfo& camera, Target& target, TemplateObse
 
 Result<MovingMeasurement> measure_moving(FrameSource& source, Target& target, TemplateObserver& observer,
                                          const MovingMeasurementOptions& options, MeasurementHost& host,
-                                         const std::function<void(const MovingPassRecord&)>& on_pass,
-                                         std::stop_token stop) {
-  return MovingRun(source, target, observer, options, host, on_pass, std::move(stop))();
+                                         const MovingListener& listener, std::stop_token stop) {
+  return MovingRun(source, target, observer, options, host, listener, std::move(stop))();
 }
 
 }  // namespace todbench

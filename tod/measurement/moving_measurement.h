@@ -64,6 +64,15 @@ struct MovingMeasurement {
   std::vector<Presentation> presentations;  ///< of the contrasts at rest, in the order of the run
 };
 
+/// What the run says while it goes on, on the measuring thread. Every function may be empty; an error of one ends the
+/// run with it.
+struct MovingListener {
+  /// The plate was there at rest and its contrast is known; before the passes of this contrast.
+  std::function<Result<void>(const Presentation&)> on_presentation{};
+  std::function<Result<void>(const MovingAnswer&)> on_answer{};  ///< each at once, in the order of the result
+  std::function<void(const MovingPassRecord&)> on_pass{};        ///< after its answers
+};
+
 /// What measure_moving() refuses before it starts the camera: `invalid_input` (a target that cannot run, speeds beyond
 /// 5 pixels a frame, displayed samples finer than the detectors, contrasts in grey levels, sizes that do not fit),
 /// `calibration` (no temperature scale).
@@ -77,7 +86,6 @@ struct MovingMeasurement {
 /// `ended_by`.
 [[nodiscard]] Result<MovingMeasurement> measure_moving(FrameSource& source, Target& target, TemplateObserver& observer,
                                                        const MovingMeasurementOptions& options, MeasurementHost& host,
-                                                       const std::function<void(const MovingPassRecord&)>& on_pass,
-                                                       std::stop_token stop);
+                                                       const MovingListener& listener, std::stop_token stop);
 
 }  // namespace todbench

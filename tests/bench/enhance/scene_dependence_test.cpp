@@ -3,10 +3,12 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "bench/enhance/dynamic_session.h"
 #include "bench/plan/plan.h"
+#include "bench/text/text.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "tests/support/temporary_folder.h"
 #include "tod/registration/registration.h"
@@ -138,6 +140,12 @@ TEST(SceneDependence, OfACameraHasItsBarMovedByTheOperator) {
   EXPECT_FALSE(plan_scene_dependence(*loaded, &package, 40, quick, host, {})) << "a package behind a camera";
 }
 
+/// Rows that are on the disk, without the header.
+std::size_t rows_of(const std::filesystem::path& csv) {
+  const auto text = read_text_file(csv).value_or("");
+  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, std::count(text.begin(), text.end(), '\n'))) - 1;
+}
+
 TEST(DynamicSession, ThatIsStoppedKeepsItsTrialsAndSaysSo) {
   const testing::TemporaryFolder folder;
   Plan plan = bar_plan().plan();
@@ -146,7 +154,10 @@ TEST(DynamicSession, ThatIsStoppedKeepsItsTrialsAndSaysSo) {
   const auto loaded = LoadedPlan::load(plan);
   ASSERT_TRUE(loaded) << loaded.error().message;
   std::stop_source stop;
+  std::vector<std::size_t> moving_rows, rows;
   const auto on_pass = [&](const MovingPassRecord& pass) {
+    moving_rows.push_back(rows_of(folder.path() / "stopped" / "moving-trials.csv"));
+    rows.push_back(rows_of(folder.path() / "stopped" / "trials.csv"));
     if (pass.pass == 3) stop.request_stop();
   };
 
@@ -159,6 +170,9 @@ TEST(DynamicSession, ThatIsStoppedKeepsItsTrialsAndSaysSo) {
   ASSERT_TRUE(kept) << kept.error().message;
   EXPECT_EQ(kept->provenance.state, SessionState::interrupted);
   EXPECT_EQ(kept->trials.size(), 2u * 20) << "two passes at rest before the fourth pass of all";
+  // Twenty triangles and three observers a pass, on the disk when the pass is over; at rest every second pass.
+  EXPECT_THAT(moving_rows, ::testing::ElementsAre(60, 120, 180, 240));
+  EXPECT_THAT(rows, ::testing::ElementsAre(20, 20, 40, 40));
 }
 
 TEST(DynamicSession, RefusesInOneSentenceWhatItDoesNotMeasure) {

@@ -1,5 +1,6 @@
-// A module: picture in, picture out, or patch in, scores out. The first argument says what it does with it, or how it
-// breaks the contract; the second after how many answers; "hvs" is the observer hvs-1.
+// A module: picture in, picture out, or patch in, scores out, or scene in, frame out. The first argument says what it
+// does with it, or how it breaks the contract; the second after how many answers; "hvs" is the observer hvs-1, "sensor"
+// a detector of the size of a pitch with a noise of 70 mK.
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -53,6 +54,21 @@ std::vector<double> scores(const todbench::NpyMessage& conditions, const todbenc
   return best;
 }
 
+/// What detectors of the size of a pitch see of a scene with four samples a pitch, with noise of their own.
+todbench::NpyMessage frame_of(const todbench::NpyMessage& scene, double index) {
+  constexpr std::size_t fine = 4;
+  const std::size_t rows = scene.shape[0] / fine, columns = scene.shape[1] / fine;
+  todbench::NpyMessage frame{.shape = {rows, columns}, .values = std::vector<double>(rows * columns)};
+  for (std::size_t i = 0; i < scene.values.size(); ++i) {
+    const std::size_t row = i / scene.shape[1] / fine, column = i % scene.shape[1] / fine;
+    frame.values[row * columns + column] += scene.values[i] / (fine * fine);
+  }
+  std::mt19937_64 numbers(static_cast<std::uint64_t>(index));
+  std::normal_distribution<double> noise(0, 0.07);
+  for (double& value : frame.values) value += noise(numbers);
+  return frame;
+}
+
 /// Whether this computer answers at the port.
 bool reaches(int port) {
   const int end = ::socket(AF_INET, SOCK_STREAM, 0);
@@ -69,7 +85,8 @@ bool reaches(int port) {
 
 int main(int argc, char** argv) {
   const bool observes = argc > 1 && std::string(argv[1]) == "hvs";
-  if (observes) --argc, ++argv;
+  const bool senses = argc > 1 && std::string(argv[1]) == "sensor";
+  if (observes || senses) --argc, ++argv;
   const std::string planned = argc > 1 ? argv[1] : "identity";
   const int healthy = argc > 2 && planned != "connect" && planned != "ends" ? std::atoi(argv[2]) : 0;
   std::string mode = healthy > 0 ? "identity" : planned;
@@ -91,16 +108,17 @@ int main(int argc, char** argv) {
       stream.append(buffer, static_cast<std::size_t>(got));
       continue;
     }
-    const todbench::NpyMessage message = *found->message;
+    todbench::NpyMessage message = *found->message;
     stream.erase(0, found->bytes);
     if (!header_read) {
       header_read = true;
       continue;
     }
-    if (observes && message.shape.size() == 1) {
+    if ((observes || senses) && message.shape.size() == 1) {
       conditions = message;
       continue;
     }
+    if (senses) message = frame_of(message, conditions.values[0]);
     if (healthy > 0 && answered == healthy) mode = planned;
     if (mode == "hang") ::pause();
     if (mode == "ends" && answered == std::atoi(argv[2])) {

@@ -1,0 +1,96 @@
+#include "sim_devices/prediction/module_response.h"
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <utility>
+
+namespace todbench {
+namespace {
+
+/// Averaged, after the frames that the program remembers.
+constexpr int averaged_frames = 4;
+
+Result<cv::Mat1d> settled_mean(ModuleSensor& sensor, const cv::Mat1f& scene_k, int settle_frames,
+                               const std::stop_token& stop) {
+  cv::Mat1d sum;
+  for (int i = 0; i < settle_frames + averaged_frames; ++i) {
+    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+    const auto picture = sensor.picture(scene_k, static_cast<std::uint64_t>(i));
+    if (!picture) return tl::unexpected(picture.error());
+    if (i < settle_frames) continue;
+    cv::Mat1d now;
+    picture->convertTo(now, CV_64F, 1.0 / averaged_frames);
+    if (sum.empty())
+      sum = now;
+    else
+      sum += now;
+  }
+  return sum;
+}
+
+}  // namespace
+
+Result<double> module_response(const SensorSpec& spec, std::uint64_t seed, const TargetPlate& plate,
+                               const ModuleResponseOptions& options, std::stop_token stop) {
+  ModuleSensor sensor(spec, seed, {});
+  const int settle_frames = sensor_module(spec)->settle_frames;
+  PlateScene scene;
+  scene.distance_m = options.distance_m;
+  scene.background_k = spec.scene_temperature_k;
+  const auto empty = settled_mean(sensor, scene_picture_k(scene, spec), settle_frames, stop);
+  if (!empty) return tl::unexpected(empty.error());
+  scene.delta_t_k = options.delta_t_k;
+  double sum = 0;
+  int count = 0;
+  // The mountings and phases of contrast_response().
+  for (const Mounting mounting : all_mountings) {
+    for (const double phase : {0.0, 0.5}) {
+      scene.plate = mounted(plate, mounting);
+      scene.centre_px = {phase, -phase};
+      const auto picture = settled_mean(sensor, scene_picture_k(scene, spec), settle_frames, stop);
+      if (!picture) return tl::unexpected(picture.error());
+      const cv::Mat1d signal = (*picture - *empty) / options.delta_t_k;
+      const auto found = register_plate(signal, scene.plate, options.registration);
+      if (!found) return fail("simulating the contrast of plate " + plate.name, found.error());
+      const auto contrast = effective_contrast(signal, scene.plate, *found, options.min_reference_px, options.level);
+      if (!contrast) return fail("simulating the contrast of plate " + plate.name, contrast.error());
+      sum += contrast->value;
+      ++count;
+    }
+  }
+  return sum / count;
+}
+
+Result<std::vector<double>> module_transfer(ModuleSensor& sensor, const SensorSpec& spec,
+                                            const std::vector<double>& cycles_per_pitch) {
+  constexpr int fine = scene_samples_per_pitch;
+  const int settle_frames = sensor_module(spec)->settle_frames, middle = spec.width / 2;
+  const cv::Size size(spec.width * fine, spec.height * fine);
+  const auto empty = settled_mean(sensor, cv::Mat1f(size, 0.0F), settle_frames, {});
+  if (!empty) return tl::unexpected(empty.error());
+  // By the distance of the edge left of the first sample of a pitch, in scene samples, from -fine middle - fine + 1.
+  std::vector<double> response(static_cast<std::size_t>(size.width));
+  for (int shift = 0; shift < fine; ++shift) {
+    cv::Mat1f edge(size, 0.0F);
+    edge.colRange(middle * fine + shift, size.width) = 1.0F;
+    const auto seen = settled_mean(sensor, edge, settle_frames, {});
+    if (!seen) return tl::unexpected(seen.error());
+    const cv::Mat1d added = *seen - *empty;
+    for (int column = 0; column < spec.width; ++column)
+      response[static_cast<std::size_t>(column * fine + fine - 1 - shift)] = cv::mean(added.col(column))[0];
+  }
+  std::vector<double> moduli;
+  for (const double f : cycles_per_pitch) {
+    std::complex<double> sum = 0;
+    for (std::size_t i = 1; i < response.size(); ++i)
+      sum +=
+          (response[i] - response[i - 1]) * std::polar(1.0, -2 * std::numbers::pi * f / fine * static_cast<double>(i));
+    // A sample of the scene is the mean over its square.
+    const double half = std::numbers::pi * f / fine;
+    moduli.push_back(std::abs(sum) * (f == 0 ? 1 : std::abs(std::sin(half) / half)));
+  }
+  return moduli;
+}
+
+}  // namespace todbench
