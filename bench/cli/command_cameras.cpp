@@ -110,6 +110,19 @@ void add_emulate_command(CLI::App& app, Program& program) {
       ->check(number_in(0, 10))
       ->capture_default_str();
   command->add_flag("!--no-trigger", a->trigger, "the stage does not tell when a run began in the camera's clock");
+  command->add_option(
+      "--monitor", a->monitor_file,
+      "a monitor before the camera that shows the levels of this .npy file, as 'todbench-gui --pictures "
+      "--copy' writes it; in place of the plates");
+  command->add_option("--monitor-pixel-mm", a->monitor_pixel_mm, "of the monitor, centre to centre")
+      ->check(number_in(0.001, 100))
+      ->capture_default_str();
+  command->add_option("--monitor-span-k", a->monitor_span_k, "contrast of white beside black as the camera sees it")
+      ->check(number_in(0.001, 10000))
+      ->capture_default_str();
+  command->add_option("--monitor-gamma", a->monitor_gamma, "light of the monitor is its level to this power")
+      ->check(number_in(0.2, 5))
+      ->capture_default_str();
   finish_command(*command, program, [a, &program](Console& console) {
     a->seed = program.common.seed;
     return run_emulate(console, *a, *program.stop);

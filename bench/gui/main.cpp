@@ -88,6 +88,7 @@ QList<QCommandLineOption> known_options() {
       {"pictures",
        "Shows the pictures that come on standard input and answers with what is on the screen: the display of a "
        "bench."},
+      {"copy", "File for what is on the screen after every picture of --pictures, in the .npy format.", "FILE"},
       {"screen", "Number of the monitor for test pictures, from 0.", "NUMBER"},
       manual};
 }
@@ -101,6 +102,13 @@ int main(int argc, char** argv) {
   };
   if (std::any_of(argv + 1, argv + argc, needs_no_screen) && !qEnvironmentVariableIsSet("QT_QPA_PLATFORM"))
     qputenv("QT_QPA_PLATFORM", "offscreen");
+  const auto needs_a_screen = [](const char* argument) {
+    return std::string_view(argument).starts_with("--pattern") || std::string_view(argument).starts_with("--pictures");
+  };
+  if (std::any_of(argv + 1, argv + argc, needs_a_screen) && !todbench::has_screen()) {
+    std::fprintf(stderr, "todbench-gui: there is no screen: neither DISPLAY nor WAYLAND_DISPLAY is set\n");
+    return todbench::exit_code(todbench::ErrorCode::not_found);
+  }
   // A program behind the camera or on a display that has ended is an error in words.
   std::signal(SIGPIPE, SIG_IGN);
   const QApplication application(argc, argv);
@@ -123,7 +131,8 @@ int main(int argc, char** argv) {
 
   if (options.isSet("pattern"))
     return todbench::show_patterns(options.value("pattern"), options.value("screen"), options.value("truth"));
-  if (options.isSet("pictures")) return todbench::show_pictures_of_input(options.value("screen"));
+  if (options.isSet("pictures"))
+    return todbench::show_pictures_of_input(options.value("screen"), options.value("copy"));
 
   const QStringList arguments = options.positionalArguments();
   const auto shown = arguments.isEmpty() ? std::filesystem::path() : session_folder(arguments.constFirst());

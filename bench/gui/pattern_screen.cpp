@@ -55,7 +55,7 @@ bool write_all(std::string_view bytes) {
 }
 
 /// Pictures from standard input, on a thread of its own; ends the application with the input or with an error.
-void serve(PatternWindow& window) {
+void serve(PatternWindow& window, const std::string& copy) {
   const auto end = [](int code) {
     QMetaObject::invokeMethod(
         qApp, [code] { QCoreApplication::exit(code); }, Qt::QueuedConnection);
@@ -87,7 +87,11 @@ void serve(PatternWindow& window) {
         },
         Qt::BlockingQueuedConnection);
     if (!shown) return end(refused(shown.error()));
-    if (!write_all(to_message(*shown))) return end(0);
+    const std::string answer = to_message(*shown);
+    if (!copy.empty()) {
+      if (auto copied = write_file_atomically(copy, answer); !copied) return end(refused(copied.error()));
+    }
+    if (!write_all(answer)) return end(0);
   }
 }
 
@@ -118,13 +122,18 @@ int show_patterns(const QString& kinds, const QString& screen, const QString& tr
   return QApplication::exec();
 }
 
-int show_pictures_of_input(const QString& screen) {
+bool has_screen() {
+  return qEnvironmentVariableIsSet("QT_QPA_PLATFORM") || !qEnvironmentVariableIsEmpty("DISPLAY") ||
+         !qEnvironmentVariableIsEmpty("WAYLAND_DISPLAY");
+}
+
+int show_pictures_of_input(const QString& screen, const QString& copy) {
   const auto where = screen_of(screen);
   if (!where) return refused(where.error());
   PatternWindow window(**where);
   // Escape would end a measurement: the bench that began it ends it.
   window.fill_screen();
-  std::thread reader([&] { serve(window); });
+  std::thread reader([&window, file = copy.toStdString()] { serve(window, file); });
   const int code = QApplication::exec();
   // Where the application was ended by the window system the reader still waits for input that nobody needs.
   ::close(STDIN_FILENO);

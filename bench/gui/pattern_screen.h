@@ -10,7 +10,11 @@ namespace todbench {
 [[nodiscard]] int show_patterns(const QString& kinds, const QString& screen, const QString& truth);
 
 /// Shows what comes on standard input as arrays in the .npy format and answers each with what is on the screen then
-/// (docs/modules.md); ends with the input. The exit code.
-[[nodiscard]] int show_pictures_of_input(const QString& screen);
+/// (docs/modules.md); ends with the input. With `copy` every answer is in that file, too, before it is given. The exit
+/// code.
+[[nodiscard]] int show_pictures_of_input(const QString& screen, const QString& copy);
+
+/// Whether there is a window system to show something on, as far as the environment says.
+[[nodiscard]] bool has_screen();
 
 }  // namespace todbench

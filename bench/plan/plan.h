@@ -57,7 +57,7 @@ struct TargetPlan {
   /// Of kind display: the program that shows pictures, the screen, and the contrast of black beside white.
   std::string display = "todbench-gui --pictures";
   int display_width_px = 1920, display_height_px = 1080;
-  double display_pixel_mm = 0, display_span_k = 0, display_settle_s = 0.2;
+  double display_pixel_mm = 0, display_span_k = 0, display_gamma = 1, display_settle_s = 0.2;
   double distance_m = 2;                                ///< entrance pupil to plate; required in a file
   std::vector<std::string> plates{"tcat-a", "tcat-b"};  ///< names or files
   std::vector<Mounting> mountings{all_mountings.begin(), all_mountings.end()};

@@ -79,15 +79,16 @@ Result<std::unique_ptr<Target>> open_target(const LoadedPlan& loaded, std::stop_
   const Plan& plan = loaded.plan();
   if (plan.target.kind == TargetKind::prompt) return prompt_target(ask_operator ? ask_operator : ask_at_terminal());
   if (plan.target.kind == TargetKind::display) {
-    auto show = shown_by_program(plan.target.display);
-    if (!show) return tl::unexpected(show.error());
-    return display_target({.plates = loaded.shown_plates(),
-                           .display = {.size_px = {plan.target.display_width_px, plan.target.display_height_px},
-                                       .pixel_mm = plan.target.display_pixel_mm},
-                           .span_k = plan.target.display_span_k,
-                           .settle = std::chrono::milliseconds(static_cast<long>(1000 * plan.target.display_settle_s)),
-                           .description = "display: " + plan.target.display},
-                          *std::move(show));
+    return open_display_target(
+        {.plates = loaded.shown_plates(),
+         .display = {.size_px = {plan.target.display_width_px, plan.target.display_height_px},
+                     .pixel_mm = plan.target.display_pixel_mm},
+         .span_k = plan.target.display_span_k,
+         .gamma = plan.target.display_gamma,
+         .delta_t_k = plan.target.delta_t_k,
+         .settle = std::chrono::milliseconds(static_cast<long>(1000 * plan.target.display_settle_s)),
+         .description = "display: " + plan.target.display},
+        plan.target.display);
   }
   ScpiTargetOptions options;
   options.black_body = plan.target.black_body;

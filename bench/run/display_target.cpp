@@ -14,16 +14,41 @@ namespace todbench {
 namespace {
 
 constexpr double screen_levels = 255;
-constexpr double least_levels = 16;
+constexpr int least_levels = 16;
 
-struct DisplayLevels {
-  double ground = 0, pattern = 0;
-};
+double light_of(double level, double gamma) {
+  return gamma == 1 ? level : std::pow(level, gamma);
+}
 
-/// Whole levels round the middle of the screen.
-DisplayLevels display_levels_of(double steps) {
-  const double ground = std::round((screen_levels - steps) / 2);
-  return {ground / screen_levels, (ground + steps) / screen_levels};
+double level_of(double light, double gamma) {
+  return gamma == 1 ? light : std::pow(light, 1 / gamma);
+}
+
+/// Shares of the pattern to levels whose light is in proportion to them.
+cv::Mat1f levels_of(const cv::Mat1d& shares, const DisplayLevels& ends, double gamma) {
+  const double ground = light_of(ends.ground / screen_levels, gamma);
+  cv::Mat1f levels(shares.size());
+  for (int row = 0; row < shares.rows; ++row) {
+    for (int column = 0; column < shares.cols; ++column) {
+      const double share = shares(row, column);
+      // Most of a picture is ground: its level needs no power.
+      const double level =
+          share == 0 ? ends.ground / screen_levels : level_of(ground + ends.light_difference * share, gamma);
+      levels(row, column) = static_cast<float>(level);
+    }
+  }
+  return levels;
+}
+
+Result<DisplayLevels> levels_of_contrast(double delta_t_k, const DisplayTargetOptions& options) {
+  const double contrast = delta_t_k / options.span_k;
+  const DisplayLevels ends = display_levels(std::clamp(contrast, -1.0, 1.0), options.gamma);
+  const int steps = ends.pattern - ends.ground;
+  if (std::abs(contrast) <= 1 && std::abs(steps) >= least_levels) return ends;
+  return fail(ErrorCode::invalid_input,
+              fmt::format("a contrast of {:g} K is {:.3g} of the {:g} K that the display spans, {} of its {:g} levels: "
+                          "from {} levels on edges can be drawn",
+                          delta_t_k, contrast, options.span_k, steps, screen_levels, least_levels));
 }
 
 class DisplayTarget final : public Target {
@@ -41,20 +66,12 @@ class DisplayTarget final : public Target {
                                     [&](const TargetPlate& known) { return known.name == state.plate; });
     if (plate == options_.plates.end())
       return fail(ErrorCode::invalid_input, "the display knows no plate '" + state.plate + "'");
-    const double steps = std::round(screen_levels * state.delta_t_k / options_.span_k);
-    if (!(std::abs(steps) >= least_levels && std::abs(steps) <= screen_levels)) {
-      return fail(
-          ErrorCode::invalid_input,
-          fmt::format("a contrast of {:g} K is {:g} of the {:g} levels of a display that spans {:g} K: from {:g} "
-                      "levels on edges can be drawn",
-                      state.delta_t_k, steps, screen_levels, options_.span_k, least_levels));
-    }
-    const auto [ground, pattern] = display_levels_of(steps);
-    const auto drawn =
-        plate_picture(mounted(*plate, state.mounting), state.shift_mm, options_.display, ground, pattern);
-    if (!drawn) return tl::unexpected(drawn.error());
-    cv::Mat1f levels;
-    drawn->convertTo(levels, CV_32F);
+    const auto shown_levels = levels_of_contrast(state.delta_t_k, options_);
+    if (!shown_levels) return tl::unexpected(shown_levels.error());
+    const DisplayLevels ends = *shown_levels;
+    const auto shares = plate_picture(mounted(*plate, state.mounting), state.shift_mm, options_.display, 0, 1);
+    if (!shares) return tl::unexpected(shares.error());
+    const cv::Mat1f levels = levels_of(*shares, ends, options_.gamma);
     const auto shown = show_(levels);
     if (!shown) return fail("the display", shown.error());
     if (auto same = is_shown(levels, *shown); !same) return tl::unexpected(same.error());
@@ -62,7 +79,7 @@ class DisplayTarget final : public Target {
     if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped while the display changed");
     PresentedTarget presented;
     presented.state = state;
-    presented.state.delta_t_k = steps / screen_levels * options_.span_k;
+    presented.state.delta_t_k = ends.light_difference * options_.span_k;
     presented.settling_s = std::chrono::duration<double>(options_.settle).count();
     return presented;
   }
@@ -96,6 +113,18 @@ class DisplayTarget final : public Target {
 
 }  // namespace
 
+DisplayLevels display_levels(double contrast, double gamma) {
+  const auto nearest = [&](double light) {
+    return static_cast<int>(std::lround(screen_levels * level_of(std::clamp(light, 0.0, 1.0), gamma)));
+  };
+  DisplayLevels out{.ground = nearest((1 - contrast) / 2)};
+  const double ground_light = light_of(out.ground / screen_levels, gamma);
+  out.pattern = nearest(ground_light + contrast);
+  out.light_difference = gamma == 1 ? (out.pattern - out.ground) / screen_levels
+                                    : light_of(out.pattern / screen_levels, gamma) - ground_light;
+  return out;
+}
+
 std::unique_ptr<Target> display_target(DisplayTargetOptions options, ShowLevels show) {
   return std::make_unique<DisplayTarget>(std::move(options), std::move(show));
 }
@@ -107,7 +136,33 @@ Result<ShowLevels> shown_by_program(const std::string& command) {
                                        .network = ModuleNetwork::ours});
   if (!process) return tl::unexpected(process.error());
   auto shared = std::make_shared<ModuleProcess>(*std::move(process));
-  return ShowLevels([shared](const cv::Mat1f& levels) { return shared->exchange(levels); });
+  return ShowLevels([shared](const cv::Mat1f& levels) -> Result<cv::Mat1f> {
+    auto shown = shared->exchange(levels);
+    if (shown || shown.error().code != ErrorCode::disconnected) return shown;
+    const int code = shared->exit_code().value_or(0);
+    if (code == 2) return tl::unexpected(with_code(ErrorCode::invalid_input, shown.error()));
+    if (code == 4 || code == 127) return tl::unexpected(with_code(ErrorCode::not_found, shown.error()));
+    return shown;
+  });
+}
+
+Result<std::unique_ptr<Target>> open_display_target(DisplayTargetOptions options, const std::string& command) {
+  // Mountings turn and mirror a plate about its middle: what fits once, fits always.
+  for (const TargetPlate& plate : options.plates) {
+    if (auto fits = plate_picture(plate, {0, 0}, options.display, 0, 1); !fits) return tl::unexpected(fits.error());
+  }
+  for (const double delta_t_k : options.delta_t_k) {
+    if (auto can = levels_of_contrast(delta_t_k, options); !can) return tl::unexpected(can.error());
+  }
+  auto show = shown_by_program(command);
+  if (!show) return tl::unexpected(show.error());
+  const auto first = (*show)(cv::Mat1f(options.display.size_px, static_cast<float>(level_of(0.5, options.gamma))));
+  if (!first) {
+    // It never showed anything: what is missing is a screen, not a device that was lost.
+    const ErrorCode code = first.error().code;
+    return fail("the display", with_code(code == ErrorCode::disconnected ? ErrorCode::not_found : code, first.error()));
+  }
+  return display_target(std::move(options), *std::move(show));
 }
 
 }  // namespace todbench

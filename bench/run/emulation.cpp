@@ -1,11 +1,20 @@
 #include "bench/run/emulation.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "acquisition/core/camera_id.h"
 #include "bench/plan/descriptions.h"
+#include "bench/text/text.h"
+#include "sim_devices/module/npy_message.h"
 #ifdef TODBENCH_WITH_ARAVIS
 #include "sim_devices/lab/gvsp_laboratory.h"
 #endif
@@ -27,6 +36,35 @@ std::optional<CameraModel> gvsp_model(std::string_view camera) {
   constexpr std::string_view prefix = "gige-";
   return camera.starts_with(prefix) ? camera_model(camera.substr(prefix.size())) : std::nullopt;
 }
+#endif
+
+#ifdef TODBENCH_WITH_ARAVIS
+/// Levels in a file that another program writes again and again, whole each time.
+class LevelsInFile {
+ public:
+  explicit LevelsInFile(std::string file) : file_(std::move(file)) {}
+
+  std::shared_ptr<const cv::Mat1f> operator()() {
+    struct stat now {};
+    if (::stat(file_.c_str(), &now) != 0) return levels_ = nullptr;
+    // Replaced files are other files: two of the same moment differ.
+    const std::array<std::int64_t, 4> version{static_cast<std::int64_t>(now.st_ino), now.st_mtim.tv_sec,
+                                              now.st_mtim.tv_nsec, now.st_size};
+    if (version == version_) return levels_;
+    constexpr std::size_t most_values = std::size_t{1} << 26;
+    const auto content = read_text_file(file_);
+    const auto place = content ? find_message(*content, most_values) : tl::unexpected(content.error());
+    // What cannot be read stays what it was; the next change is looked at again.
+    if (!place || !*place || (*place)->shape.size() != 2 || (*place)->count == 0) return levels_;
+    version_ = version;
+    return levels_ = std::make_shared<const cv::Mat1f>(picture_at(*content, **place));
+  }
+
+ private:
+  std::string file_;
+  std::array<std::int64_t, 4> version_{};
+  std::shared_ptr<const cv::Mat1f> levels_;
+};
 #endif
 
 #ifdef TODBENCH_WITH_EMULATED_VIDEO
@@ -115,6 +153,12 @@ Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& a
     options.connect = connect_seek(MockSystem::create(), camera);
   }
 #endif
+  if (!arguments.monitor_file.empty()) {
+    options.monitor = Monitor{.pixel_mm = arguments.monitor_pixel_mm,
+                              .span_k = arguments.monitor_span_k,
+                              .gamma = arguments.monitor_gamma,
+                              .levels = LevelsInFile(arguments.monitor_file)};
+  }
   options.plan = full_plan(options.sensor, {}, {}, any_motion);  // the stage may run
   for (const auto& name : arguments.plates) {
     auto plate = load_plate(name);

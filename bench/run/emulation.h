@@ -32,6 +32,10 @@ struct EmulationArguments {
   std::uint16_t black_body_port = 5025, stage_port = 5026;  ///< 0: the system chooses
   double stage_jitter_mm = 0;                               ///< standard deviation of the place while the stage runs
   bool trigger = true;  ///< the stage tells when a run began in the clock of the camera
+  /// A picture in the .npy format, levels from 0 to 1, that a monitor before the camera shows, anew with every change
+  /// of the file; black where there is none. Empty: the plates are before the camera.
+  std::string monitor_file{};
+  double monitor_pixel_mm = 0.25, monitor_span_k = 20, monitor_gamma = 1;  ///< Monitor
   std::uint64_t seed = 1;
   bool operator==(const EmulationArguments&) const = default;
 };

@@ -35,6 +35,7 @@ ConnectCamera connect_gige(EmulatedGigeCameraConfig config) {
 struct Laboratory::State {
   LaboratoryOptions options;
   std::unique_ptr<SensorModel> model;
+  std::optional<MonitorView> monitor;
   std::unique_ptr<BlackBody> black_body;
   std::unique_ptr<PlateStage> stage;
   std::string camera_id, camera_address;
@@ -47,6 +48,7 @@ struct Laboratory::State {
     auto connected = options.connect(options.sensor, [this, first = next_exposure.load()](std::uint64_t index) {
       next_exposure = first + index + 1;
       since_power_up = index + 1;
+      if (monitor) return monitor->expose(first + index);
       return model->expose(scene_at(frame_time_s(index)), first + index);
     });
     if (!connected) return tl::unexpected(connected.error());
@@ -85,6 +87,12 @@ Result<std::unique_ptr<Laboratory>> Laboratory::start(LaboratoryOptions options)
   state->options = std::move(options);
   LaboratoryOptions& o = state->options;
   state->model = std::make_unique<SensorModel>(o.sensor, o.plan, o.accuracy, o.seed);
+
+  if (o.monitor) {
+    auto view = MonitorView::make(*o.monitor, *state->model, o.accuracy, o.distance_m, o.centre_px);
+    if (!view) return tl::unexpected(view.error());
+    state->monitor = *std::move(view);
+  }
 
   auto black_body = BlackBody::start(o.black_body);
   if (!black_body) return tl::unexpected(black_body.error());

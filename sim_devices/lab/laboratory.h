@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "sim_devices/lab/instruments/black_body.h"
 #include "sim_devices/lab/instruments/plate_stage.h"
 #include "sim_devices/lab/laboratory_camera.h"
+#include "sim_devices/lab/monitor_view.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "tod/plate/target_plate.h"
 
@@ -32,6 +34,8 @@ struct LaboratoryOptions {
   EmulatedGigeCameraConfig camera;  ///< geometry, rate and scale are filled in from the sensor
   BlackBodyOptions black_body;
   PlateStageOptions stage;  ///< plates are filled in
+  /// In place of black body and plate before the camera, upright. The instruments are there and show nothing.
+  std::optional<Monitor> monitor{};
   std::uint64_t seed = 1;
 };
 

@@ -121,6 +121,7 @@ Result<ModuleProcess> ModuleProcess::start(const ModuleOptions& options) {
 ModuleProcess::ModuleProcess(ModuleProcess&& other) noexcept
     : options_(std::move(other.options_)),
       process_(std::exchange(other.process_, -1)),
+      exit_code_(other.exit_code_),
       in_(std::exchange(other.in_, -1)),
       out_(std::exchange(other.out_, -1)),
       err_(std::exchange(other.err_, -1)),
@@ -141,8 +142,11 @@ void ModuleProcess::end() {
   if (process_ < 0) return;
   // Everything that it started belongs to its group.
   ::kill(-process_, SIGKILL);
-  while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
+  int status = 0;
+  pid_t ended = -1;
+  while ((ended = ::waitpid(process_, &status, 0)) < 0 && errno == EINTR) {
   }
+  if (ended == process_ && WIFEXITED(status)) exit_code_ = WEXITSTATUS(status);
   process_ = -1;
 }
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <functional>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -50,6 +51,8 @@ class ModuleProcess {
   [[nodiscard]] Result<cv::Mat1f> exchange(const cv::Mat1f& picture);
   /// Any messages, answered by one array of this shape; its numbers, last index fastest. Errors as exchange().
   [[nodiscard]] Result<std::vector<double>> ask(const std::string& messages, const std::vector<std::size_t>& shape);
+  /// After an error: what it ended with. Nothing: it was still there, or a signal ended it.
+  [[nodiscard]] std::optional<int> exit_code() const { return exit_code_; }
 
  private:
   explicit ModuleProcess(const ModuleOptions& options) : options_(options) {}
@@ -64,6 +67,7 @@ class ModuleProcess {
 
   ModuleOptions options_;
   pid_t process_ = -1;
+  std::optional<int> exit_code_;
   int in_ = -1, out_ = -1, err_ = -1;  ///< our ends of its standard streams
   std::string to_write_, read_, errors_, error_line_;
   std::vector<char> buffer_ = std::vector<char>(1 << 20);  ///< for reading

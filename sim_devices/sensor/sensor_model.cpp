@@ -220,8 +220,13 @@ cv::Mat1f SensorModel::picture(const cv::Mat1f& unit_signal, double delta_t_k, d
 }
 
 cv::Mat1w SensorModel::expose(const PlateScene& scene, std::uint64_t index) const {
-  const cv::Mat1f kelvin = state_->analog(*unit_signal(scene), scene.delta_t_k, index);
-  const Quantiser quantiser(state_->spec, scene.background_k);
+  return expose(*unit_signal(scene), scene.delta_t_k, scene.background_k, index);
+}
+
+cv::Mat1w SensorModel::expose(const cv::Mat1f& unit_signal, double delta_t_k, double background_k,
+                              std::uint64_t index) const {
+  const cv::Mat1f kelvin = state_->analog(unit_signal, delta_t_k, index);
+  const Quantiser quantiser(state_->spec, background_k);
   cv::Mat1w counts(kelvin.size());
   const auto* from = kelvin.ptr<float>();
   auto* to = counts.ptr<std::uint16_t>();

@@ -43,6 +43,9 @@ class SensorModel {
   /// Frame `index` as the camera delivers it: the picture in counts, rounded and clipped to the significant bits.
   /// Rounds also where the plan skips quantisation, because a frame holds whole counts.
   [[nodiscard]] cv::Mat1w expose(const PlateScene& scene, std::uint64_t index) const;
+  /// The same for a signal that comes from elsewhere, as for picture().
+  [[nodiscard]] cv::Mat1w expose(const cv::Mat1f& unit_signal, double delta_t_k, double background_k,
+                                 std::uint64_t index) const;
 
  private:
   struct State;

@@ -76,6 +76,61 @@ TEST(DisplayTarget, SaysTheContrastOfTheLevelsThatItShows) {
   EXPECT_NEAR(std::round(255 * low), 255 * low, 1e-4) << "a whole level";
 }
 
+// Light is what a camera sees: of a monitor with gamma the light has the area of the triangles and the contrast stated.
+TEST(DisplayTarget, DrawsLightByAreaOnAMonitorWithGamma) {
+  cv::Mat1f last;
+  auto options = options_of(0.2);
+  options.gamma = 2.2;
+  const auto target = display_target(options, [&](const cv::Mat1f& levels) -> Result<cv::Mat1f> {
+    last = levels.clone();
+    return last;
+  });
+  for (const double contrast_k : {10.0, 5.0, -2.5}) {
+    const auto said = target->present({.plate = "two", .delta_t_k = contrast_k, .shift_mm = {0.07, -0.03}}, {});
+    ASSERT_TRUE(said) << said.error().message;
+    cv::Mat1d light;
+    cv::pow(cv::Mat1d(last), 2.2, light);
+    const double area = cv::sum(light - light(0, 0))[0] * 0.2 * 0.2 / (said->state.delta_t_k / 10);
+    EXPECT_NEAR(area, 100 + 25, 1e-3) << contrast_k << ": single precision";
+    // Half a level of light at the bright end, 2.2 / 255 / 2 of the span.
+    EXPECT_NEAR(said->state.delta_t_k, contrast_k, 10 * 2.2 / 255 / 2);
+  }
+  const DisplayLevels all = display_levels(1, 2.2);
+  EXPECT_EQ(all.ground, 0);
+  EXPECT_EQ(all.pattern, 255);
+}
+
+// What docs/instruments.md says of a gamma that nobody stated: at gamma 2 the contrast c stays, and the edges of the
+// bright side go back by c / 6 of a pixel.
+TEST(DisplayTarget, WithoutItsGammaIsOffByAPartOfAPixelAtTheEdges) {
+  cv::Mat1f last;
+  const double pixel_mm = 0.1;
+  auto options = options_of(pixel_mm);
+  options.display.size_px = {512, 512};
+  const auto target = display_target(options, [&](const cv::Mat1f& levels) -> Result<cv::Mat1f> {
+    last = levels.clone();
+    return last;
+  });
+  // Equilateral triangles of area s^2 have a perimeter of 4.559 s. Upright edges meet all pixels alike: the mean over
+  // eight places in a pixel.
+  constexpr double perimeter_mm = 4.559 * (10 + 5);
+  constexpr int places = 8;
+  for (const double c : {1.0, 0.6}) {
+    double back_px = 0;
+    for (int place = 0; place < places; ++place) {
+      const double shift_mm = pixel_mm * place / places;
+      ASSERT_TRUE(target->present({.plate = "two", .delta_t_k = 10 * c, .shift_mm = {shift_mm, shift_mm}}, {}));
+      const cv::Mat1d light = cv::Mat1d(last).mul(cv::Mat1d(last));
+      double low = 0, high = 0;
+      cv::minMaxLoc(light, &low, &high);
+      EXPECT_NEAR(high - low, c, 1e-5);
+      const double area = cv::sum(light - low)[0] * pixel_mm * pixel_mm / (high - low);
+      back_px += (125 - area) / perimeter_mm / pixel_mm / places;
+    }
+    EXPECT_NEAR(back_px, c / 6, 0.03 * c / 6) << "slanted edges 1 % less, corners and levels";
+  }
+}
+
 // A camera before the monitor sees what it sees of the plate, but for the size of the monitor's pixels: squares of a
 // tenth of a pitch blur by a variance of 1 / 1200 pitches squared, 1 / 130 of the detector's.
 TEST(DisplayTarget, IsToACameraWhatThePlateIs) {
