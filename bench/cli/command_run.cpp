@@ -218,10 +218,13 @@ Result<ExperimentOutcome> measure_shown(Console& console, const Plan& plan, Expe
   options.host.ask_operator = asking_on_page_too(live);
   auto outcome = measure(options, live.listening(shown.listener()));
   const bool whole = outcome && !outcome->ended_by;
+  const auto reason = whole     ? std::nullopt
+                      : outcome ? std::optional(outcome->ended_by->message)
+                                : std::optional(outcome.error().message);
   live.end(whole     ? "the run is over"
-           : outcome ? "ended early: " + outcome->ended_by->message
-                     : "ended: " + outcome.error().message,
-           whole ? std::optional(std::string(to_string(outcome->verdict.decision))) : std::nullopt);
+           : outcome ? "the trials so far are in the session"
+                     : "there is no result",
+           whole ? std::optional(std::string(to_string(outcome->verdict.decision))) : std::nullopt, reason);
   (*server)->wait_until_seen(std::chrono::seconds(3));
   return outcome;
 }

@@ -50,9 +50,13 @@ IndexRange chunk_of(std::size_t number, std::size_t chunk) {
   return {number * chunk, number * chunk + chunk - 1};
 }
 
+/// Numbers as numbers, as the table of the results has them.
 Json parameters_json(const SweepTask& task) {
   Json json = Json::object();
-  for (const auto& [key, value] : task.parameters) json[key] = value;
+  for (const auto& [key, value] : task.parameters) {
+    const auto number = parse_number(value);
+    json[key] = number ? Json(*number) : Json(value);
+  }
   return json;
 }
 

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "bench/session/manifest.h"
 #include "bench/text/csv_table.h"
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
@@ -222,6 +223,8 @@ Result<Adding> HistoryIndex::add(const HistorySession& session) {
     const int found = known.bind(session.manifest_sha256).step();
     if (found != SQLITE_ROW && found != SQLITE_DONE) return refused(database, file_);
     if (found == SQLITE_ROW && known.text(0) == session.path) return Adding::known;
+    // A copy: the session is still where it was.
+    if (found == SQLITE_ROW && manifest_digest(known.text(0)) == session.manifest_sha256) return Adding::known;
     if (found == SQLITE_ROW) {
       if (Statement(database, "UPDATE session SET path = ? WHERE manifest_sha256 = ?")
               .bind(session.path)

@@ -21,8 +21,8 @@ struct HistoryEvent {
 
 enum class Adding {
   added,
-  known,  ///< the same manifest at the same place
-  moved,  ///< the same manifest at another place
+  known,  ///< the same manifest at the same place, or a copy of the session that is still there
+  moved,  ///< the same manifest at another place, and no longer where it was
 };
 
 /// Events are kept in FILE.events.csv beside the index, which no session folder holds; an index that is made again

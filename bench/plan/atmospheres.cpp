@@ -18,6 +18,7 @@ namespace todbench {
 namespace {
 
 constexpr double band_reach_um = 0.6;
+constexpr double longest_um = 1000;  // of a spectrum: beyond any thermal camera
 
 struct ShippedRow {
   std::string model, haze;
@@ -140,7 +141,18 @@ Result<std::vector<std::pair<double, double>>> pairs_of(const CsvTable& table, s
   return pairs;
 }
 
-Result<Transmittance> air_of_csv(const CsvTable& table, const AtmosphereRequest& request) {
+/// What to say of a spectrum that is not that of the camera's band: all of it is averaged.
+std::optional<std::string> spectrum_note(const std::vector<SpectralExtinction>& spectrum, const SpectralBand& band) {
+  if (spectrum.empty() || !(band.high_um > band.low_um)) return std::nullopt;
+  const SpectralBand own{spectrum.front().wavelength_um, spectrum.back().wavelength_um};
+  if (own.low_um >= band.low_um - band_reach_um && own.high_um <= band.high_um + band_reach_um) return std::nullopt;
+  const bool apart = own.high_um <= band.low_um || own.low_um >= band.high_um;
+  return fmt::format("the spectrum of the air, {}, {} the camera's band, {}: the air is that of the whole spectrum",
+                     band_text(own), apart ? "has nothing of" : "reaches beyond", band_text(band));
+}
+
+Result<Transmittance> air_of_csv(const CsvTable& table, const AtmosphereRequest& request,
+                                 std::vector<std::string>& notes) {
   const auto kilometres = column_of(table, "range_km"), metres = column_of(table, "range_m");
   const auto transmittance = column_of(table, "transmittance"), tau = column_of(table, "tau");
   const auto wavelength = column_of(table, "wavelength_um"), extinction = column_of(table, "extinction_per_km");
@@ -155,7 +167,13 @@ Result<Transmittance> air_of_csv(const CsvTable& table, const AtmosphereRequest&
     const auto pairs = pairs_of(table, *wavelength, *extinction);
     if (!pairs) return tl::unexpected(pairs.error());
     std::vector<SpectralExtinction> spectrum;
-    for (const auto& [at, per_km] : *pairs) spectrum.push_back({at, per_km});
+    for (std::size_t i = 0; i < pairs->size(); ++i) {
+      const auto& [at, per_km] = (*pairs)[i];
+      if (at > longest_um)
+        return table.wrong(table.rows[i].line, fmt::format("a wavelength of {:g} um; is it in nm?", at));
+      spectrum.push_back({at, per_km});
+    }
+    if (auto note = spectrum_note(spectrum, request.band)) notes.push_back(*std::move(note));
     return air_of_spectrum(spectrum, request.weight_temperature_k);
   }
   return table.wrong(1,
@@ -191,7 +209,7 @@ Result<Atmosphere> parse_atmosphere(std::string_view text, const std::string& fi
   if (csv) {
     const auto table = parse_csv(without_remarks(text), file);
     if (!table) return tl::unexpected(table.error());
-    air = air_of_csv(*table, request);
+    air = air_of_csv(*table, request, found.notes);
   } else {
     const auto runs = parse_tape7(text);
     if (!runs) return fail(file, runs.error());

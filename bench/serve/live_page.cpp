@@ -16,6 +16,7 @@ std::string_view live_html() {
 <body>
 <header>
 <h1 id="name">todbench</h1>
+<p id="state" role="status"></p>
 <p id="verdict" role="status"></p>
 </header>
 <main>
@@ -40,6 +41,9 @@ std::string_view live_css() {
 body { margin: 0 auto; max-width: 62rem; padding: 0 1rem 2rem; font: 1rem/1.4 sans-serif; color: var(--ink); background: var(--ground); }
 h1 { font-size: 1.4rem; overflow-wrap: anywhere; }
 p { overflow-wrap: anywhere; }
+#state { display: inline-block; margin: 0; padding: 0.2rem 0.8rem; border: 2px solid currentColor; border-radius: 0.4rem; font-weight: bold; }
+#state:empty { display: none; }
+#state.ask { color: var(--ask); }
 #verdict { font-weight: bold; font-size: 1.2rem; }
 #step { font-weight: bold; font-size: 1.6rem; color: var(--ask); white-space: pre-line; }
 #waiting, #count, #link { color: var(--muted); }
@@ -56,9 +60,14 @@ std::string_view live_js() {
 const part = (id) => document.getElementById(id);
 let curve = 0, picture = 0, over = false;
 const say = (id, text) => { if (part(id).textContent !== text) part(id).textContent = text; };
+const words = {'running': 'running', 'settling': 'settling', 'plate-change': 'plate change', 'operator': 'the operator is needed',
+  'camera-lost': 'the camera is lost and waited for', 'finished': 'finished', 'stopped': 'stopped'};
 function show(state) {
-  document.title = state.name + ' – todbench';
+  const word = words[state.state] || state.state;
+  document.title = word + ' – ' + state.name + ' – todbench';
   say('name', state.name);
+  say('state', word + (state.reason === null ? '' : ': ' + state.reason));
+  part('state').className = ['operator', 'camera-lost', 'stopped'].includes(state.state) ? 'ask' : '';
   say('phase', state.phase);
   say('waiting', state.waiting);
   say('step', state.step);

@@ -27,8 +27,30 @@ std::string svg_of(const FittedCurves& curves, const Plan& plan) {
 
 }  // namespace
 
+std::string_view to_string(LiveStatus status) {
+  switch (status) {
+    case LiveStatus::running:
+      return "running";
+    case LiveStatus::settling:
+      return "settling";
+    case LiveStatus::plate_change:
+      return "plate-change";
+    case LiveStatus::operator_needed:
+      return "operator";
+    case LiveStatus::camera_lost:
+      return "camera-lost";
+    case LiveStatus::finished:
+      return "finished";
+    case LiveStatus::stopped:
+      return "stopped";
+  }
+  return "running";
+}
+
 std::string to_json(const LiveState& state) {
-  return to_line(Json{{"name", state.name},
+  return to_line(Json{{"state", to_string(state.status)},
+                      {"reason", state.reason ? Json(*state.reason) : Json()},
+                      {"name", state.name},
                       {"phase", state.phase},
                       {"waiting", state.waiting},
                       {"step", state.step},
@@ -85,13 +107,25 @@ ExperimentListener LiveRun::listening(ExperimentListener listener) {
     {
       const std::lock_guard lock(mutex_);
       state_.waiting = wait ? sentence(*wait) : std::string();
+      target_ = !wait ? LiveStatus::running : wait->plate_there ? LiveStatus::settling : LiveStatus::plate_change;
+      set_status();
     }
     if (next) next(wait);
+  };
+  out.on_lost = [this, next = listener.on_lost](const SourceInfo& camera, std::chrono::milliseconds patience) {
+    if (patience.count() > 0) {
+      const std::lock_guard lock(mutex_);
+      lost_ = true;
+      set_status();
+    }
+    if (next) next(camera, patience);
   };
   out.on_frame = [this, next = listener.on_frame](const Frame& frame) {
     if (frame.status == FrameStatus::complete) {
       const std::lock_guard lock(mutex_);
       frame_ = frame;
+      lost_ = false;
+      set_status();
     }
     if (next) next(frame);
   };
@@ -101,15 +135,24 @@ ExperimentListener LiveRun::listening(ExperimentListener listener) {
 void LiveRun::ask(const std::string& step) {
   const std::lock_guard lock(mutex_);
   state_.step = step;
+  set_status();
 }
 
-void LiveRun::end(const std::string& phase, const std::optional<std::string>& verdict) {
+void LiveRun::set_status() {
+  if (state_.over) return;
+  state_.status = !state_.step.empty() ? LiveStatus::operator_needed : lost_ ? LiveStatus::camera_lost : target_;
+}
+
+void LiveRun::end(const std::string& phase, const std::optional<std::string>& verdict,
+                  const std::optional<std::string>& reason) {
   {
     const std::lock_guard lock(mutex_);
     state_.phase = phase;
     state_.waiting.clear();
     state_.step.clear();
     state_.verdict = verdict;
+    state_.reason = reason;
+    state_.status = reason ? LiveStatus::stopped : LiveStatus::finished;
     state_.over = true;
   }
   render();

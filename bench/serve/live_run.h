@@ -8,6 +8,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #include "acquisition/core/frame.h"
@@ -17,12 +18,27 @@
 
 namespace todbench {
 
-/// What state.json says: one object with these names, numbers and texts; `verdict` is null until there is one.
+/// What a run is about, for who looks once in a while.
+enum class LiveStatus {
+  running,
+  settling,         ///< plate, mounting and place are there, the contrast is not
+  plate_change,     ///< the stage is on its way
+  operator_needed,  ///< somebody has to do the step
+  camera_lost,      ///< waited for
+  finished,
+  stopped,  ///< before its end, with the reason
+};
+/// "running", "settling", "plate-change", "operator", "camera-lost", "finished", "stopped".
+[[nodiscard]] std::string_view to_string(LiveStatus status);
+
+/// What state.json says: one object with these names, numbers and texts (`status` as "state"); `verdict` is null until
+/// there is one, `reason` unless the run stopped.
 struct LiveState {
+  LiveStatus status = LiveStatus::running;
   std::string name, phase, waiting;
   std::string step{};  ///< what the operator is asked to do, a line a step
   std::uint64_t done = 0, planned = 0;
-  std::optional<std::string> verdict{};
+  std::optional<std::string> verdict{}, reason{};
   std::uint64_t curve = 0, picture = 0;  ///< change with curve.svg and picture.png; 0: there is none
   bool over = false;
 };
@@ -41,12 +57,15 @@ class LiveRun {
   [[nodiscard]] ExperimentListener listening(ExperimentListener listener);
   /// What the operator is asked; empty: nothing any more.
   void ask(const std::string& step);
-  /// The last state: hands it over before it returns.
-  void end(const std::string& phase, const std::optional<std::string>& verdict);
+  /// The last state: hands it over before it returns. `reason`: why the run stopped before its end.
+  void end(const std::string& phase, const std::optional<std::string>& verdict,
+           const std::optional<std::string>& reason = std::nullopt);
 
  private:
   void work(const std::stop_token& stop);
   void render();
+  /// With the lock: what matters most of what goes on.
+  void set_status();
 
   LiveServer& server_;
   const LiveCurve& curve_;
@@ -54,6 +73,8 @@ class LiveRun {
   std::mutex mutex_;
   std::condition_variable_any wake_;
   LiveState state_;
+  LiveStatus target_ = LiveStatus::running;  ///< what the target is waited for
+  bool lost_ = false;
   std::optional<Frame> frame_;
   std::mutex rendering_;  ///< one at a time: the thread's or that of end()
   std::string curve_svg_, picture_png_;

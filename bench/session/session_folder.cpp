@@ -196,6 +196,8 @@ Result<SessionFolder> SessionFolder::create(const std::filesystem::path& folder,
     return fail(ErrorCode::invalid_input, folder.string() + ": is a file, expected a folder");
   }
   if (auto made = make_folder(folder); !made) return tl::unexpected(made.error());
+  auto claim = claim_folder(folder);
+  if (!claim) return tl::unexpected(claim.error());
   const bool empty = std::filesystem::is_empty(folder, problem);
   if (problem) return fail(code_of_path(problem), folder.string() + ": cannot be read: " + problem.message());
   if (!empty && existing == ExistingFolder::refuse) {
@@ -204,7 +206,7 @@ Result<SessionFolder> SessionFolder::create(const std::filesystem::path& folder,
   }
   if (auto open = require_unsigned(folder); !open) return tl::unexpected(open.error());
   if (const Result<void> removed = remove_session_files(folder); !removed) return tl::unexpected(removed.error());
-  return SessionFolder(folder, clocks);
+  return SessionFolder(folder, clocks, *std::move(claim));
 }
 
 Result<SessionFolder> SessionFolder::create_numbered(const std::filesystem::path& folder, const HostClocks& clocks) {
@@ -212,7 +214,11 @@ Result<SessionFolder> SessionFolder::create_numbered(const std::filesystem::path
   for (int number = 2;; ++number) {
     std::error_code problem;
     // Only one of several programs creates a folder.
-    if (std::filesystem::create_directory(name, problem)) return SessionFolder(name, clocks);
+    if (std::filesystem::create_directory(name, problem)) {
+      auto claim = claim_folder(name);
+      if (!claim) return tl::unexpected(claim.error());
+      return SessionFolder(name, clocks, *std::move(claim));
+    }
     if (problem && problem != std::errc::file_exists)
       return fail(code_of_path(problem), name.string() + ": cannot be created: " + problem.message());
     name = folder.string() + "-" + std::to_string(number);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,6 +18,7 @@
 #include "bench/session/session_clock.h"
 #include "bench/session/targets_csv.h"
 #include "bench/session/trials_csv.h"
+#include "bench/text/folders.h"
 #include "sim_devices/prediction/cost_frontier.h"
 #include "tod/comparison/comparison.h"
 #include "tod/psychometric/tod_curve.h"
@@ -36,12 +38,14 @@ enum class ExistingFolder {
 /// Which of the two curves of a session: the one that the session is about, or its simulated twin.
 enum class SessionCurve { main, twin };
 
-/// Writes a session. Everything but trials, targets and log is written atomically. One thread at a time.
+/// Writes a session. Everything but trials, targets and log is written atomically. One thread at a time. Nobody else
+/// begins a session in the folder until the last copy of this value is gone.
 /// Every function fails with `io` and the path when the disk refuses.
 class SessionFolder {
  public:
   /// Creates the folder with its parents; the session begins now. `invalid_input` when it exists, is not empty and may
-  /// not be overwritten, or is a file or below one. `io` when it cannot be created or written to.
+  /// not be overwritten, when another session is being written into it, or when it is a file or below one. `io` when it
+  /// cannot be created or written to.
   [[nodiscard]] static Result<SessionFolder> create(const std::filesystem::path& folder, ExistingFolder existing,
                                                     const HostClocks& clocks = host_clocks());
 
@@ -79,9 +83,11 @@ class SessionFolder {
  private:
   [[nodiscard]] static Result<SessionFolder> create_numbered(const std::filesystem::path& folder,
                                                              const HostClocks& clocks);
-  SessionFolder(std::filesystem::path folder, const HostClocks& clocks) : folder_(std::move(folder)), clock_(clocks) {}
+  SessionFolder(std::filesystem::path folder, const HostClocks& clocks, std::shared_ptr<const FolderClaim> claim)
+      : folder_(std::move(folder)), clock_(clocks), claim_(std::move(claim)) {}
   std::filesystem::path folder_;
   SessionClock clock_;
+  std::shared_ptr<const FolderClaim> claim_;
 };
 
 /// A session as values.

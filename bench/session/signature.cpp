@@ -59,7 +59,7 @@ std::string argument(const std::filesystem::path& path) {
 Result<void> require_file(const std::filesystem::path& file) {
   std::error_code problem;
   if (std::filesystem::is_regular_file(file, problem)) return {};
-  return fail(ErrorCode::not_found, file.string() + ": no such key");
+  return fail(ErrorCode::invalid_input, file.string() + ": no such key");
 }
 
 /// Success, or the last line that the program said.

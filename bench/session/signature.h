@@ -31,8 +31,8 @@ struct SessionSignature {
 [[nodiscard]] Result<void> require_unsigned(const std::filesystem::path& folder);
 
 /// Signs an intact session with a secret key; `signed_utc` is the time to be stated. The program asks for a passphrase
-/// on the terminal. `invalid_input`: not intact, signed already, or the program refuses the key, with its words.
-/// `not_found`: no such key or program.
+/// on the terminal. `invalid_input`: not intact, signed already, there is no such key, or the
+/// program refuses it, with its words. `not_found`: no such program.
 [[nodiscard]] Result<SessionSignature> sign_session(const std::filesystem::path& folder, SigningProgram with,
                                                     const std::filesystem::path& secret_key,
                                                     const std::string& signed_utc);
@@ -50,7 +50,8 @@ struct SignatureCheck {
   std::string sentence;  ///< why it is not valid
 };
 /// Nothing: the session is not signed. Checks the signature of manifest.json and the digests of revisions; whether the
-/// files are those of the manifest is check_session(). `not_found`: no such key or program.
+/// files are those of the manifest is check_session(). `invalid_input`:
+/// no such key. `not_found`: no such program.
 [[nodiscard]] Result<std::optional<SignatureCheck>> check_signature(
     const std::filesystem::path& folder, const std::optional<std::filesystem::path>& public_key);
 

@@ -48,10 +48,13 @@ std::vector<std::vector<double>> sobol(std::size_t n, std::size_t dimensions, st
   boost::random::sobol engine(dimensions);
   const RandomStream shifts(seed, "sweep.sobol");
   std::vector<std::vector<double>> rows(n, std::vector<double>(dimensions));
-  for (auto& row : rows) {
+  for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t d = 0; d < dimensions; ++d) {
-      const double u = std::ldexp(static_cast<double>(engine() >> 11), -53) + shifts.uniform(d);
-      row[d] = std::clamp(u - std::floor(u), 1e-16, 1 - 1e-16);
+      // The engine leaves out the origin, without which 2^m draws are no net: one cell would be empty, another have
+      // two.
+      const std::uint64_t bits = i == 0 ? 0 : engine() >> 11;
+      const auto shift = static_cast<std::uint64_t>(std::ldexp(shifts.uniform(d), 53));
+      rows[i][d] = std::clamp(std::ldexp(static_cast<double>(bits ^ shift), -53), 1e-16, 1 - 1e-16);
     }
   }
   return rows;

@@ -56,8 +56,9 @@ class Sweep {
   std::size_t refused_ = 0;
 };
 
-/// Draws in the unit cube: a Latin hypercube, or the Sobol sequence (directions of Joe and Kuo 2008) with a shift by
-/// the seed. `n` rows of `dimensions` numbers in (0, 1).
+/// Draws in the unit cube: a Latin hypercube, or the Sobol sequence (directions of Joe and Kuo 2008) from its origin
+/// on, with a digital shift by the seed: of 2^m draws one is in each of 2^m equal parts of every axis. `n` rows of
+/// `dimensions` numbers in (0, 1).
 [[nodiscard]] std::vector<std::vector<double>> unit_sample(SampleKind kind, std::size_t n, std::size_t dimensions,
                                                            std::uint64_t seed);
 

@@ -107,22 +107,51 @@ std::map<std::string, std::string> classes_of(const Observations& rows, std::siz
   return names;
 }
 
-/// The correlation ratio less what so many classes explain of nothing: 1 - (1 - eta^2) (n - 1) / (n - classes).
-std::optional<double> sampled_first_order(const Observations& rows, std::size_t parameter) {
+/// What scatters between repeats of the same parameters, but for what all of a repeat have in common (its random
+/// numbers, where tasks are paired); 0 where there are none.
+double variance_of_repeats(const std::map<std::size_t, Observations>& by_repeat) {
+  std::map<std::string, std::vector<double>> same;
+  for (const auto& [repeat, rows] : by_repeat) {
+    double sum = 0;
+    for (const auto& row : rows) sum += row.response;
+    for (const auto& row : rows)
+      same[others(row, row.values.size())].push_back(row.response - sum / static_cast<double>(rows.size()));
+  }
+  double squares = 0, freedom = 1 - static_cast<double>(by_repeat.size());
+  for (const auto& [values, responses] : same) {
+    const double m = mean(responses);
+    for (const double response : responses) squares += (response - m) * (response - m);
+    freedom += static_cast<double>(responses.size()) - 1;
+  }
+  return freedom > 0 ? squares / freedom : 0;
+}
+
+/// The correlation ratio less what so many classes explain of nothing. Of independent draws that is
+/// 1 - (1 - eta^2) (n - 1) / (n - classes). A Sobol sequence has the other parameters alike in all classes, so that
+/// only the scatter of repeats explains something by chance.
+std::optional<double> sampled_first_order(const Observations& rows, std::size_t parameter, SampleKind kind,
+                                          double repeat_variance) {
   const auto classes = classes_of(rows, parameter);
   std::set<std::string> used;
   for (const auto& [value, name] : classes) used.insert(name);
   const double n = static_cast<double>(rows.size()), count = static_cast<double>(used.size());
   const auto ratio = explained(rows, [&](const Observation& row) { return classes.at(row.values[parameter]); });
   if (!ratio || n <= count) return std::nullopt;
-  return 1 - (1 - *ratio) * (n - 1) / (n - count);
+  if (kind != SampleKind::sobol) return 1 - (1 - *ratio) * (n - 1) / (n - count);
+  std::vector<double> responses;
+  for (const auto& row : rows) responses.push_back(row.response);
+  const double m = mean(responses);
+  double total = 0;
+  for (const double response : responses) total += (response - m) * (response - m);
+  return *ratio - repeat_variance * (count - 1) / total;
 }
 
 void add_indices(ParameterEffect& effect, const std::map<std::size_t, Observations>& by_repeat, std::size_t parameter,
-                 bool drawn) {
+                 const std::optional<SampleKind>& drawn) {
   std::vector<double> first, total;
+  const double repeat_variance = variance_of_repeats(by_repeat);
   for (const auto& [repeat, rows] : by_repeat) {
-    const auto s = drawn ? sampled_first_order(rows, parameter)
+    const auto s = drawn ? sampled_first_order(rows, parameter, *drawn, repeat_variance)
                          : explained(rows, [&](const Observation& row) { return row.values[parameter]; });
     if (s) first.push_back(*s);
     if (drawn) continue;
@@ -244,7 +273,8 @@ std::vector<ResponseEffects> sweep_effects(const Sweep& sweep, const SweepTable&
       effect.levels = i < fixed ? levels_of(rows, i) : class_levels(rows, i);
       // Beside a grid the plane would have to hold the grid as well.
       if (i >= fixed && fixed == 0) effect.ends = ends_of(by_repeat, sweep.file().sample, fixed, i - fixed);
-      add_indices(effect, by_repeat, i, i >= fixed || !sweep.file().sample.empty());
+      add_indices(effect, by_repeat, i,
+                  sweep.file().sample.empty() ? std::nullopt : std::optional(sweep.file().sample_kind));
       found.parameters.push_back(std::move(effect));
     }
     effects.push_back(std::move(found));

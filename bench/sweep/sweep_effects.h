@@ -25,7 +25,7 @@ struct ParameterEffect {
   std::vector<EffectLevel> ends{};
   /// Share of the variance of the response that the parameter alone explains, and with all its interactions; of each
   /// repeat, averaged, with the interval of that mean. In a full factorial exact sums of squares; of a drawn sample the
-  /// correlation ratio over classes of equal count, corrected for their number (no total).
+  /// correlation ratio over classes of equal count, corrected for what they explain by chance (no total).
   std::optional<double> first_order{}, total{};
   Interval first_order_ci95{}, total_ci95{};
 };

@@ -1,5 +1,7 @@
 #include "bench/text/folders.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -22,6 +24,27 @@ Result<void> make_folder(const std::filesystem::path& folder) {
   if (problem) return fail(code_of_path(problem), folder.string() + ": cannot be created: " + problem.message());
   if (::access(folder.c_str(), W_OK | X_OK) == 0) return {};
   return fail(ErrorCode::io, folder.string() + ": cannot be written to: " + system_reason());
+}
+
+class FolderClaim {
+ public:
+  explicit FolderClaim(int descriptor) : descriptor_(descriptor) {}
+  FolderClaim(const FolderClaim&) = delete;
+  FolderClaim& operator=(const FolderClaim&) = delete;
+  ~FolderClaim() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+
+ private:
+  int descriptor_;
+};
+
+Result<std::shared_ptr<const FolderClaim>> claim_folder(const std::filesystem::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  auto claim = std::make_shared<const FolderClaim>(descriptor);
+  if (descriptor >= 0 && ::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    return fail(ErrorCode::invalid_input, folder.string() + ": another program is writing into this folder");
+  return claim;
 }
 
 }  // namespace todbench

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace todbench {
 namespace {
@@ -59,26 +60,65 @@ double corner_slope(const Side& side, double stretch_pitch) {
   return way > 0 ? rise / way : 0;
 }
 
+/// The place where a falling function passes a value.
+template <typename Function>
+double falling_through(Function function, double value, double low, double high) {
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (function(middle) > value ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+/// What an edge lacks of its bright level at t, of the step: a detector of full fill behind a normal blur.
+double lacking(double t, double blur) {
+  const auto integral = [&](double z) {
+    const double density = std::exp(-0.5 * z * z / (blur * blur)) / std::sqrt(2 * std::numbers::pi);
+    return z * 0.5 * std::erfc(-z / (blur * std::numbers::sqrt2)) + blur * density;
+  };
+  return 1 - (integral(t + 0.5) - integral(t - 0.5));
+}
+
+/// corner_slope() over the steepest slope of such an edge that is not clipped but rounded: the last count of the step
+/// is cut off. A detector makes more of a corner than any blur of the same width.
+double rounded_corner(double width_pitch, double count_over_step, double stretch_pitch) {
+  const double blur = falling_through([&](double s) { return -lacking(width_pitch / 2, s); }, -0.1, 0.05, width_pitch);
+  const double first =
+      falling_through([&](double t) { return lacking(t, blur); }, count_over_step, 0, 10 * width_pitch + 10);
+  constexpr int places = 20;
+  double rise = 0, way = 0;
+  for (int i = 0; i < places; ++i) {
+    const double before = stretch_pitch * (i + 0.5) / places;
+    rise += lacking(first - before, blur), way += before;
+  }
+  constexpr double close = 1e-3;
+  return rise / way / ((0.5 - lacking(close, blur)) / close);
+}
+
 }  // namespace
 
 std::optional<std::string_view> clipped_side(const std::vector<EdgeSample>& samples, const EdgeLevels& levels) {
   const double step = levels.bright - levels.dark;
   const double from = 2 * levels.width_pitch + 1;
+  const double stretch = 0.3 * levels.width_pitch, count = levels.count_step / step;
+  const double cornered =
+      std::max(0.1 + 6 * count, count > 0 ? 1.1 * rounded_corner(levels.width_pitch, count, stretch) : 0);
   const Side bright = side_of(samples, 1), dark = side_of(samples, -1);
   const Plateau of_bright = plateau_of(bright, from), of_dark = plateau_of(dark, from);
   const auto cut = [&](const Side& side, const Plateau& own, const Plateau& other) {
     // Values that scatter meet their largest once in a while, not in every tenth pixel.
     const double negligible = 1e-6 * step;
+    // A level between two counts is rounded to either, half a count from their middle.
+    const double rounding = 0.52 * levels.count_step;
     if (own.count >= 20 && own.share_at_highest > 0.1 && own.sd > negligible && own.share_at_highest < 0.9 &&
-        own.sd > 0.5 * levels.count_step)
+        own.sd > rounding)
       return true;
     if (own.count >= 20 && own.share_at_highest > 0.25 && own.sd < 0.2 * other.sd &&
-        other.sd > std::max(negligible, 0.5 * levels.count_step))
+        other.sd > std::max(negligible, rounding))
       return true;
     // A detector of full fill makes a ramp 0.8 pitch wide from 10 to 90 %, whose ends coarse counts turn into corners.
     const bool detector = levels.width_pitch <= 0.88 && levels.count_step > 1e-3 * step;
-    return !detector && own.share_at_highest > 0.25 &&
-           corner_slope(side, 0.3 * levels.width_pitch) > (0.1 + 6 * levels.count_step / step) * levels.steepest;
+    return !detector && own.share_at_highest > 0.25 && corner_slope(side, stretch) > cornered * levels.steepest;
   };
   if (cut(bright, of_bright, of_dark)) return "bright";
   if (cut(dark, of_dark, of_bright)) return "dark";

@@ -53,6 +53,9 @@ class Transform {
   std::vector<std::complex<double>> factors_;
 };
 
+/// Rounding counts fully from here on: the sum of the derivative, at frequency 0, does not change.
+constexpr double rounding_full_from_per_pitch = 0.05;
+
 /// What the method itself may be wrong by: twice the largest error over 30 blurs and 3 angles without noise, and more
 /// beyond half a cycle per pitch.
 double method_error(double frequency_per_pitch) {
@@ -78,7 +81,7 @@ EdgeGroups grouped(const std::vector<EdgeSample>& samples, const SplineGrid& gri
 }
 
 EdgeTransfer edge_transfer(const EdgeGroups& groups, const EdgeWindow& window,
-                           const std::vector<double>& frequency_per_pitch) {
+                           const std::vector<double>& frequency_per_pitch, double rounding) {
   const auto profile = groups.all.solve();
   if (!profile) return {};
   const Transform transform(profile->grid, window, frequency_per_pitch);
@@ -108,8 +111,9 @@ EdgeTransfer edge_transfer(const EdgeGroups& groups, const EdgeWindow& window,
   for (std::size_t k = 0; k < whole.size(); ++k) {
     const double noise = variance(across[k], across_square[k]);
     const double mtf = std::sqrt(std::max(0.0, std::norm(whole[k]) - noise));
+    const double rounded = rounding * std::min(1.0, frequency_per_pitch[k] / rounding_full_from_per_pitch);
     const double half =
-        std::hypot(t * std::sqrt(variance(along[k], along_square[k])), method_error(frequency_per_pitch[k]));
+        std::hypot(t * std::sqrt(variance(along[k], along_square[k])), method_error(frequency_per_pitch[k]), rounded);
     found.mtf.push_back(mtf);
     found.low.push_back(std::max(0.0, mtf - half));
     found.high.push_back(mtf + half);

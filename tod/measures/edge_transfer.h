@@ -24,8 +24,9 @@ struct EdgeTransfer {
   std::vector<double> mtf, low, high;
 };
 /// The modulus of the transform of the profile's derivative, 1 at frequency 0, corrected for what noise adds to a
-/// modulus; 95 % intervals by leaving out one group after the other. Empty where a part cannot be fitted.
+/// modulus; 95 % intervals by leaving out one group after the other. `rounding` joins them: what counts that no noise
+/// spreads do to the profile, as a share of the step, alike in all groups. Empty where a part cannot be fitted.
 [[nodiscard]] EdgeTransfer edge_transfer(const EdgeGroups& groups, const EdgeWindow& window,
-                                         const std::vector<double>& frequency_per_pitch);
+                                         const std::vector<double>& frequency_per_pitch, double rounding = 0);
 
 }  // namespace todbench

@@ -227,8 +227,10 @@ SidePlane side_plane(const std::vector<EdgeSample>& samples, double from, double
 double remove_shading(cv::Mat1d& picture, const Found& found, const Spline& profile) {
   const double step = found.levels.bright - found.levels.dark;
   const double from = 2 * found.levels.width_pitch + 2;
-  const SidePlane dark = side_plane(found.samples, from, -1, 1e-4 * step);
-  const SidePlane bright = side_plane(found.samples, from, 1, 1e-4 * step);
+  // Less than a count is what rounding makes of a field that is flat.
+  const double least = std::max(1e-4 * step, found.levels.count_step);
+  const SidePlane dark = side_plane(found.samples, from, -1, least);
+  const SidePlane bright = side_plane(found.samples, from, 1, least);
   if (dark.along == 0 && dark.across == 0 && bright.along == 0 && bright.across == 0) return 0;
   for (int row = 0; row < picture.rows; ++row) {
     for (int x = 0; x < picture.cols; ++x) {
@@ -253,6 +255,31 @@ EdgeWindow window_for(const Found& found, int rows) {
   const double affordable = noise > 0 ? 0.5 * rows * std::pow(allowed / noise, 2) : longest;
   const double flat = std::min(std::max(needed, affordable), longest);
   return {flat, std::min(1.5 * flat, found.reach)};
+}
+
+/// A flat field beyond the profile that is not one count alone: its level lies between two, and where it changes from
+/// one to the other is chance.
+bool between_counts(const Found& found) {
+  const double from = 2 * found.levels.width_pitch + 1;
+  std::array<std::pair<double, double>, 2> ends{std::pair(HUGE_VAL, -HUGE_VAL), std::pair(HUGE_VAL, -HUGE_VAL)};
+  for (const EdgeSample& sample : found.samples) {
+    if (std::abs(sample.t) < from) continue;
+    auto& [low, high] = ends[sample.t > 0 ? 1 : 0];
+    low = std::min(low, sample.value), high = std::max(high, sample.value);
+  }
+  return std::any_of(ends.begin(), ends.end(), [](const auto& end) { return end.second > end.first; });
+}
+
+/// What rounding may do to the profile, as a share of the step, where nothing spreads it: half a count of each tail is
+/// cut off; a flat field that changes by a count adds that to the edge, and as much to the step. Noise takes the
+/// systematic part out, as exp(-2 pi^2 sd^2) of it with the standard deviation in counts.
+double rounding_of(const Found& found) {
+  if (!(found.levels.count_step > 0)) return 0;
+  const double sd = found.residual_sd / found.levels.count_step;
+  const double variance = std::max(0.0, sd * sd - 1.0 / 12);
+  const double counts = between_counts(found) ? 3 : 1;
+  return counts * found.levels.count_step / (found.levels.bright - found.levels.dark) *
+         std::exp(-2 * std::numbers::pi * std::numbers::pi * variance);
 }
 
 Result<void> check_profile(const Found& found) {
@@ -328,8 +355,8 @@ Result<SlantedEdge> slanted_edge(const cv::Mat1d& picture, const SlantedEdgeOpti
   edge.window_pitch = 2 * window.flat;
   constexpr int frequencies = 100;
   for (int k = 0; k <= frequencies; ++k) edge.frequency_per_pitch.push_back(k / static_cast<double>(frequencies));
-  EdgeTransfer transfer =
-      edge_transfer(grouped(found->samples, found->profile.grid, edge.rows), window, edge.frequency_per_pitch);
+  EdgeTransfer transfer = edge_transfer(grouped(found->samples, found->profile.grid, edge.rows), window,
+                                        edge.frequency_per_pitch, rounding_of(*found));
   if (transfer.mtf.empty()) return fail(ErrorCode::invalid_input, "the picture has too few lines for its edge");
   edge.mtf = std::move(transfer.mtf), edge.mtf_low = std::move(transfer.low), edge.mtf_high = std::move(transfer.high);
   edge.mtf50_per_pitch = mtf50_of(edge);

@@ -133,6 +133,8 @@ TEST_F(History, KnowsASessionByItsManifestAndFindsItWhereItWasMoved) {
 
   EXPECT_EQ(index->add(*read_history_session(found->front())).value(), Adding::added);
   EXPECT_EQ(index->add(*read_history_session(found->front())).value(), Adding::known);
+  EXPECT_EQ(index->add(*read_history_session(session("copy"))).value(), Adding::known);
+  EXPECT_THAT(index->sessions(std::nullopt)->front().path, HasSubstr("all/a"));
   std::filesystem::rename(folder, folder_.path() / "all/b");
   EXPECT_EQ(index->add(*read_history_session(folder_.path() / "all/b")).value(), Adding::moved);
 

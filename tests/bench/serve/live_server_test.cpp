@@ -197,7 +197,6 @@ TEST(LiveRun, ShowsWhatTheRunLeaves) {
   frame.counts = cv::Mat1w(24, 32, static_cast<std::uint16_t>(1000));
   frame.counts(3, 4) = 9000;
   listener.on_frame(frame);
-  live.ask("put in plate a");
   live.end("the run is over", "pass");
 
   EXPECT_EQ(heard, "measuring") << "who listened before still does";
@@ -207,7 +206,8 @@ TEST(LiveRun, ShowsWhatTheRunLeaves) {
   EXPECT_EQ(state["done"], 3);
   EXPECT_EQ(state["planned"], 8);
   EXPECT_EQ(state["verdict"], "pass");
-  EXPECT_EQ(state["step"], "");
+  EXPECT_EQ(state["state"], "finished");
+  EXPECT_EQ(state["reason"], nullptr);
   EXPECT_EQ(state["curve"], 0);
   EXPECT_GT(state["picture"], 0);
   EXPECT_EQ(state["over"], true);
@@ -217,6 +217,54 @@ TEST(LiveRun, ShowsWhatTheRunLeaves) {
   EXPECT_EQ(picture.at<unsigned char>(3, 4), 255);
   EXPECT_EQ(picture.at<unsigned char>(0, 0), 0);
   EXPECT_EQ(s.get(s.path + "curve.svg").status, 404);
+}
+
+TEST(LiveRun, SaysWhatTheRunIsWaitingFor) {
+  Served s;
+  const Plan plan;
+  const LiveCurve curve(plan);
+  LiveRun live(*s.server, curve, plan);
+  const ExperimentListener listener = live.listening({});
+  // The page is drawn about twice a second.
+  const auto says = [&](const std::string& word) {
+    const auto deadline =
+        std::chrono::steady_clock::now() + testing_support::patience(std::chrono::milliseconds(60'000));
+    Json state;
+    do {
+      state = Json::parse(s.get(s.path + "state.json").body);
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    } while (state["state"] != word && std::chrono::steady_clock::now() < deadline);
+    EXPECT_EQ(state["state"], word);
+    return state;
+  };
+  TargetWait wait;
+  wait.plate_there = true;
+
+  EXPECT_FALSE(says("running")["over"]);
+  listener.on_wait(wait);
+  says("settling");
+  wait.plate_there = false;
+  listener.on_wait(wait);
+  EXPECT_NE(says("plate-change")["waiting"], "");
+  live.ask("put in plate a");
+  EXPECT_EQ(says("operator")["step"], "put in plate a");
+  live.ask("");
+  listener.on_wait(std::nullopt);
+  says("running");
+  listener.on_lost({}, std::chrono::milliseconds(1000));
+  says("camera-lost");
+  Frame frame;
+  frame.counts = cv::Mat1w(24, 32, static_cast<std::uint16_t>(1000));
+  listener.on_frame(frame);
+  says("running");
+  live.ask("put in plate b");
+  live.end("there is no result", std::nullopt, "the camera was lost");
+
+  const Json state = Json::parse(s.get(s.path + "state.json").body);
+  EXPECT_EQ(state["state"], "stopped");
+  EXPECT_EQ(state["reason"], "the camera was lost");
+  EXPECT_EQ(state["step"], "");
+  EXPECT_EQ(state["verdict"], nullptr);
 }
 
 }  // namespace

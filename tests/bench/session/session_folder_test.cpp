@@ -265,6 +265,24 @@ TEST(SessionFolder, ANonEmptyFolderIsRefusedUnlessItMayBeOverwritten) {
   EXPECT_EQ(testing::content_of(path / "mine.txt"), "keep me");
 }
 
+// Two runs in one folder would leave the trials of both under a manifest that vouches for them.
+TEST(SessionFolder, OfARunThatIsBeingWrittenIsNotOverwrittenByAnother) {
+  const testing::TemporaryFolder parent;
+  auto running = std::optional(SessionFolder::create(parent.path() / "s", ExistingFolder::refuse));
+  ASSERT_TRUE(*running) << running->error().message;
+
+  const auto beside = SessionFolder::create(parent.path() / "s", ExistingFolder::overwrite);
+  const auto numbered = SessionFolder::create(parent.path() / "s", ExistingFolder::number);
+  running.reset();
+  const auto after = SessionFolder::create(parent.path() / "s", ExistingFolder::overwrite);
+
+  ASSERT_FALSE(beside);
+  EXPECT_EQ(beside.error().code, ErrorCode::invalid_input);
+  ASSERT_TRUE(numbered) << numbered.error().message;
+  EXPECT_EQ(numbered->path(), parent.path() / "s-2");
+  EXPECT_TRUE(after) << after.error().message;
+}
+
 TEST(SessionFolder, AFileInTheWayIsRefused) {
   const testing::TemporaryFolder parent;
 

@@ -118,7 +118,8 @@ TEST_F(SignedSession, IsRefusedWithOneSentence) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::invalid_input);
   EXPECT_EQ(refused.error().message.find('\n'), std::string::npos);
-  EXPECT_EQ(sign_session(session_, SigningProgram::openssl, key("none.pem"), utc).error().code, ErrorCode::not_found);
+  EXPECT_EQ(sign_session(session_, SigningProgram::openssl, key("none.pem"), utc).error().code,
+            ErrorCode::invalid_input);
   EXPECT_FALSE(is_signed(session_));
   EXPECT_TRUE(check_session(session_)->files.intact());
   std::ofstream(session_ / "trials.csv", std::ios::app) << "1\n";

@@ -15,6 +15,7 @@
 #include <stop_token>
 #include <thread>
 
+#include "acquisition/core/rng.h"
 #include "bench/report/html.h"
 #include "bench/sweep/processes.h"
 #include "bench/sweep/result_store.h"
@@ -128,6 +129,24 @@ TEST(SweepSample, OfSobolFillsTheCubeMoreEvenlyThanChance) {
   double sum = 0;
   for (const auto& row : rows) sum += row[1] * row[3] / static_cast<double>(n);
   EXPECT_NEAR(sum, 0.25, 0.0069 / 5);
+}
+
+// A (0, m, 2)-net for the first two axes (Sobol 1967), a (0, m, 1)-net for each; the shift keeps both.
+TEST(SweepSample, OfSobolHasOneDrawInEveryElementaryPart) {
+  for (const std::uint64_t seed : {1u, 7u}) {
+    for (const int m : {3, 6}) {
+      const auto rows = unit_sample(SampleKind::sobol, std::size_t{1} << m, 3, seed);
+      for (int i = 0; i <= m; ++i) {
+        std::set<std::pair<int, int>> parts;
+        for (const auto& row : rows)
+          parts.insert({static_cast<int>(std::ldexp(row[0], i)), static_cast<int>(std::ldexp(row[1], m - i))});
+        EXPECT_EQ(parts.size(), rows.size()) << seed << " " << m << " " << i;
+      }
+      std::set<int> third;
+      for (const auto& row : rows) third.insert(static_cast<int>(std::ldexp(row[2], m)));
+      EXPECT_EQ(third.size(), rows.size()) << seed << " " << m;
+    }
+  }
 }
 
 TEST(SweepConstraint, DecidesWhichCombinationsThereAre) {
@@ -322,14 +341,34 @@ TEST(SweepEffects, OfADrawnSampleComeFromClasses) {
 
   const auto effects = sweep_effects(sweep, table, "y");
 
-  // Shares 4/5 and 1/5; sixteen classes leave 1/256 of a's own variance within them.
-  EXPECT_NEAR(effects[0].parameters[0].first_order.value(), 0.8, 0.02);
-  EXPECT_NEAR(effects[0].parameters[1].first_order.value(), 0.2, 0.02);
+  // Shares 4/5 and 1/5; sixteen classes leave 1/256 of a parameter's own variance within them. In a net the other
+  // parameter is alike in all classes: nothing is taken off for chance.
+  EXPECT_NEAR(effects[0].parameters[0].first_order.value(), 0.8 * 255 / 256, 1e-4);
+  EXPECT_NEAR(effects[0].parameters[1].first_order.value(), 0.2 * 255 / 256, 1e-4);
   // The response is a plane: its ends are exact, b at its middle.
   ASSERT_EQ(effects[0].parameters[0].ends.size(), 2u);
   EXPECT_NEAR(effects[0].parameters[0].ends[0].mean, 0.5, 1e-9);
   EXPECT_NEAR(effects[0].parameters[0].ends[1].mean, 2.5, 1e-9);
   EXPECT_GT(effects[0].parameters[0].levels.size(), 2u);
+}
+
+// Scatter of repeats alone: sixteen classes of 512 draws would explain 3 % of it by chance.
+TEST(SweepEffects, OfNothingAreNothing) {
+  const Sweep sweep =
+      expanded("[sample]\nkind = \"sobol\"\nn = 512\nranges = { a = [0, 1], b = [0, 1] }\n[repeat]\nseeds = 4\n");
+  SweepTable table;
+  table.columns = {"a", "b", "repeat", "y"};
+  const RandomStream noise(5, "sweep_test.noise");
+  for (std::size_t i = 0; i < sweep.count(); ++i) {
+    const auto values = values_of(sweep, i);
+    table.rows.push_back({*parse_number(values[0]), *parse_number(values[1]), sweep.task(i).repeat, noise.normal(i)});
+  }
+
+  const auto effects = sweep_effects(sweep, table, "y");
+
+  // eta^2 (n - 1) is chi-squared with 15 degrees of freedom: standard deviation sqrt(30) / 511 of one repeat.
+  for (const auto& parameter : effects[0].parameters)
+    EXPECT_NEAR(parameter.first_order.value(), 0, 3 * std::sqrt(30.0) / 511 / 2);
 }
 
 /// A grid whose response is a function of its two parameters.

@@ -193,5 +193,32 @@ TEST(SlantedEdge, TakesRoundedPicturesForWhatTheyAre) {
   }
 }
 
+// Levels between two counts and steps of few counts: rounding leaves corners, plateaus of two counts, and far fields
+// that change by a count, none of which is clipping or shading.
+TEST(SlantedEdge, KnowsWhatRoundingDoesToALevelBetweenTwoCounts) {
+  for (const double step : {20.0, 50.0, 204.0}) {
+    for (const double low : {25.5, 25.2, 25.0}) {
+      for (const auto& [blur, angle] : {std::pair(0.25, 8.0), std::pair(0.35, 5.0), std::pair(0.8, 5.0)}) {
+        const EdgePicture made{.blur_sigma_pitch = blur, .angle_deg = angle};
+        cv::Mat1d picture = step * made.picture() + low;
+        for (double& value : picture) value = std::round(value);
+
+        const auto edge = slanted_edge(picture, {});
+
+        ASSERT_TRUE(edge) << step << " " << low << " " << blur << ": " << edge.error().message;
+        // Half counts: a bright field that is rounded up only where nothing at all is missing from its level.
+        EXPECT_LT(error_of(*edge, made, 0.5), (low == 25.5 ? 3.3 : 1.3) / step) << step << " " << low << " " << blur;
+        EXPECT_EQ(edge->shading_percent, 0) << step << " " << low << " " << blur;
+        int held = 0;
+        for (std::size_t i = 1; i <= 50; ++i) {
+          const double truth = made.mtf(edge->frequency_per_pitch[i]);
+          held += edge->mtf_low[i] <= truth && truth <= edge->mtf_high[i] ? 1 : 0;
+        }
+        EXPECT_GE(held, 45) << step << " " << low << " " << blur;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace todbench
