@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "acquisition/core/accuracy.h"
+#include "sim_devices/lab/correction_drift.h"
 #include "sim_devices/lab/gige/gige_camera.h"
 #include "sim_devices/lab/instruments/black_body.h"
 #include "sim_devices/lab/instruments/plate_stage.h"
@@ -32,6 +33,8 @@ struct LaboratoryOptions {
   EmulatedGigeCameraConfig camera;  ///< geometry, rate and scale are filled in from the sensor
   BlackBodyOptions black_body;
   PlateStageOptions stage;  ///< plates are filled in
+  /// In the time of the camera; from a correction of the GigE Vision camera on, of others from power-up on.
+  CorrectionDrift drift;
   std::uint64_t seed = 1;
 };
 
