@@ -109,6 +109,22 @@ void add_emulate_command(CLI::App& app, Program& program) {
   command->add_option("--stage-jitter-mm", a->stage_jitter_mm, "standard deviation of the place while the stage runs")
       ->check(number_in(0, 10))
       ->capture_default_str();
+  command
+      ->add_option("--black-body-time-constant-s", a->black_body_time_constant_s,
+                   "of the black body's approach to a contrast")
+      ->check(number_in(1e-4, 1000))
+      ->capture_default_str();
+  command->add_option("--drift-k-per-min", a->drift_k_per_min, "of the mean after a correction, at first")
+      ->check(number_in(-100, 100))
+      ->capture_default_str();
+  command
+      ->add_option("--drift-pattern-k-per-min", a->drift_pattern_k_per_min,
+                   "of the fixed pattern after a correction, standard deviation over the pixels, at first")
+      ->check(number_in(0, 100))
+      ->capture_default_str();
+  command->add_option("--drift-time-constant-s", a->drift_time_constant_s, "of both; 0: they are linear")
+      ->check(number_in(0, 1e6))
+      ->capture_default_str();
   command->add_flag("!--no-trigger", a->trigger, "the stage does not tell when a run began in the camera's clock");
   command->add_option(
       "--monitor", a->monitor_file,

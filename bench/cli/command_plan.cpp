@@ -33,6 +33,28 @@ void print_plan(const Console& console, const ExperimentInputs& inputs, const Pl
                     : ""));
 }
 
+Json fleet_json(const FleetForecast& fleet) {
+  return {{"units", fleet.units},
+          {"p_good", json_number(fleet.p_good)},
+          {"good_rejected", json_number(fleet.good_rejected)},
+          {"good_rejected_most", json_number(fleet.good_rejected_most)},
+          {"bad_accepted", json_number(fleet.bad_accepted)},
+          {"bad_accepted_most", json_number(fleet.bad_accepted_most)}};
+}
+
+Json measure_limits_json(const std::vector<MeasureForecast>& forecasts) {
+  Json limits = Json::array();
+  for (const MeasureForecast& forecast : forecasts) {
+    limits.push_back({{"measure", to_string(forecast.measure)},
+                      {"at_least", json_number(forecast.at_least)},
+                      {"at_most", json_number(forecast.at_most)},
+                      {"u", json_number(forecast.u)},
+                      {"as_before", fleet_json(forecast.as_before)},
+                      {"half_u", fleet_json(forecast.half_u)}});
+  }
+  return limits;
+}
+
 Json outlook_json(const LimitOutlook& outlook) {
   Json json{{"u_ln_acuity", json_number(outlook.u_ln_acuity)},
             {"guard_band_ln", json_number(outlook.guard_band_ln)},
@@ -42,6 +64,7 @@ Json outlook_json(const LimitOutlook& outlook) {
     json["consumer_risk"] = json_number(outlook.fleet->consumer_risk);
     json["producer_risk"] = json_number(outlook.fleet->producer_risk);
   }
+  if (outlook.earlier) json["fleet"] = fleet_json(*outlook.earlier);
   return json;
 }
 
@@ -76,15 +99,19 @@ int run_plan(Console& console, SimulationOverrides overrides, const Program& pro
   if (!frontier && frontier.error().code == ErrorCode::interrupted) return report_error(console, frontier.error());
   const auto limits = limit_forecasts(plan, *prediction);
   if (!limits) return report_error(console, limits.error());
+  const auto measure_limits = measure_forecasts(plan.limits);
+  if (!measure_limits) return report_error(console, measure_limits.error());
   if (console.json()) {
     Json json = plan_json(inputs->effects, prediction->figures);
     if (!plan.limits.acuity.empty()) json["limits"] = limits_json(*limits);
+    if (!measure_limits->empty()) json["measure_limits"] = measure_limits_json(*measure_limits);
     if (frontier) json["frontier"] = frontier_json(*frontier);
     console.object(json);
   } else {
     print_plan(console, *inputs, *prediction);
     if (frontier) print_frontier(console, *frontier);
     for (const LimitForecast& limit : *limits) console.text("limit at " + in_words(limit));
+    for (const MeasureForecast& limit : *measure_limits) console.text("limit on " + in_words(limit));
   }
   for (const auto& warning : prediction->warnings) console.note(warning);
   // Without a camera nothing will be compared.

@@ -358,6 +358,7 @@ const auto& table() {
       measure_row(DemandKind::distortion),
       measure_row(DemandKind::drift_rate),
       measure_row(DemandKind::drift_pattern_rate),
+      measure_row(DemandKind::response_time),
       zone_row(DemandKind::zone_bad_pixels),
       zone_row(DemandKind::zone_substituted_pixels),
       zone_row(DemandKind::zone_clusters),

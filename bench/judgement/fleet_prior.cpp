@@ -113,6 +113,23 @@ Result<FleetRisks> fleet_risks(const FleetPrior& prior, const MeasuredValue& mea
   return out;
 }
 
+Result<FleetForecast> fleet_forecast(const FleetPrior& prior, double u, const ToleranceLimits& tolerance,
+                                     const ToleranceLimits& acceptance) {
+  FleetForecast out{.units = prior.units};
+  const SpreadInterval spread = spread_interval(prior);
+  for (const double sd : {prior.sd, spread.low, spread.high}) {
+    const auto risks =
+        global_risks({.mean = prior.mean, .sd = std::sqrt(predictive_variance(prior, sd))}, u, tolerance, acceptance);
+    if (!risks) return tl::unexpected(risks.error());
+    const double rejected = risks->p_conforming > 0 ? std::min(1.0, risks->producer_risk / risks->p_conforming) : 0;
+    if (sd == prior.sd)
+      out.p_good = risks->p_conforming, out.good_rejected = rejected, out.bad_accepted = risks->consumer_risk;
+    out.good_rejected_most = std::max(out.good_rejected_most, rejected);
+    out.bad_accepted_most = std::max(out.bad_accepted_most, risks->consumer_risk);
+  }
+  return out;
+}
+
 const FleetRow* fleet_of(const LimitsPlan& limits, const Demand& demand) {
   for (const FleetRow& row : limits.fleets) {
     if (demand.kind == DemandKind::acuity) {

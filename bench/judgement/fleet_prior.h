@@ -49,6 +49,20 @@ struct FleetRisks {
 [[nodiscard]] Result<FleetRisks> fleet_risks(const FleetPrior& prior, const MeasuredValue& measured,
                                              const ToleranceLimits& tolerance, const ToleranceLimits& acceptance);
 
+/// What a limit will do to units of a fleet that are yet to be measured. `most`: the largest with the ends of the
+/// spread's interval.
+struct FleetForecast {
+  int units = 0;             ///< that the prior is of
+  double p_good = 0;         ///< inside the tolerance
+  double good_rejected = 0;  ///< share of the good ones that are not accepted
+  double good_rejected_most = 0;
+  double bad_accepted = 0;  ///< share of all units: accepted and outside
+  double bad_accepted_most = 0;
+};
+/// Of units that are measured with standard uncertainty `u`, on the scale of the prior. Errors: global_risks().
+[[nodiscard]] Result<FleetForecast> fleet_forecast(const FleetPrior& prior, double u, const ToleranceLimits& tolerance,
+                                                   const ToleranceLimits& acceptance);
+
 /// The row of the plan that a demand is about; null: there is none.
 [[nodiscard]] const FleetRow* fleet_of(const LimitsPlan& limits, const Demand& demand);
 /// The prior of a row, on its scale.

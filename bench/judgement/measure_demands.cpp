@@ -65,6 +65,8 @@ constexpr std::array measure_demands{
                   "drift of the mean after a correction, of either sign, at most "},
     MeasureDemand{DemandKind::drift_pattern_rate, LimitedMeasure::drift_pattern_rate, LimitSide::at_most,
                   "drift_pattern_rate", "K/min", "growth of the spatial noise after a correction at most "},
+    MeasureDemand{DemandKind::response_time, LimitedMeasure::response_time, LimitSide::at_most, "response_time", "ms",
+                  "response time at most "},
 };
 
 const MeasureDemand& demand_of(DemandKind kind) {
@@ -79,6 +81,7 @@ double stated_u(LimitedMeasure measure, const CurveUncertainty* uncertainty) {
   if (uncertainty == nullptr) return 0;
   // A ratio of contrasts in one picture: what is common to both cancels.
   if (is_modulation(measure) || measure == LimitedMeasure::distortion) return 0;
+  if (measure == LimitedMeasure::response_time) return 0;
   if (is_ifov(measure)) return uncertainty->u_distance;
   const bool of_scale = measure == LimitedMeasure::transfer_slope || measure == LimitedMeasure::netd;
   return of_scale ? uncertainty->u_scale : uncertainty->u_camera_scale;
@@ -218,6 +221,8 @@ DemandKindRow measure_row(DemandKind kind) {
       return row<DemandKind::drift_rate>();
     case DemandKind::drift_pattern_rate:
       return row<DemandKind::drift_pattern_rate>();
+    case DemandKind::response_time:
+      return row<DemandKind::response_time>();
     case DemandKind::acuity:
     case DemandKind::identified:
     case DemandKind::equivalence:

@@ -107,7 +107,8 @@ PlanSection measure_limits_section() {
                     .sentence = "upper limit; MTF and CTF have none",
                     .place = in_row(rows, &MeasureLimit::at_most),
                     .check = check_measure_limits}},
-          .rows = rows_of(rows)};
+          .rows = rows_of(rows),
+          .form = {"Limits on measures", "planMeasureLimits"}};
 }
 
 PlanSection zone_limits_section() {

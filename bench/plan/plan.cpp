@@ -89,6 +89,8 @@ std::string_view to_string(LimitedMeasure measure) {
       return "drift_rate";
     case LimitedMeasure::drift_pattern_rate:
       return "drift_pattern_rate";
+    case LimitedMeasure::response_time:
+      return "response_time";
   }
   return "";
 }

@@ -150,6 +150,7 @@ enum class DemandKind {
   distortion,
   drift_rate,
   drift_pattern_rate,
+  response_time,
   // Pixels of a zone, [[limits.zone]].
   zone_bad_pixels,
   zone_substituted_pixels,
@@ -185,6 +186,7 @@ enum class LimitedMeasure {
   distortion,          ///< at the corner, of either sign
   drift_rate,          ///< of the mean, of either sign
   drift_pattern_rate,  ///< of the spatial noise
+  response_time,
 };
 inline constexpr std::array limited_measures{LimitedMeasure::netd,
                                              LimitedMeasure::temporal_noise,
@@ -204,7 +206,8 @@ inline constexpr std::array limited_measures{LimitedMeasure::netd,
                                              LimitedMeasure::ifov_y,
                                              LimitedMeasure::distortion,
                                              LimitedMeasure::drift_rate,
-                                             LimitedMeasure::drift_pattern_rate};
+                                             LimitedMeasure::drift_pattern_rate,
+                                             LimitedMeasure::response_time};
 [[nodiscard]] std::string_view to_string(LimitedMeasure measure);
 /// An MTF or a CTF.
 [[nodiscard]] bool is_modulation(LimitedMeasure measure);
@@ -304,24 +307,31 @@ struct MeasuresPlan {
   double pixels_blinking = 3;     ///< change of level above so many medians of it
   bool transfer = false;          ///< contrast seen over contrast shown
   std::vector<double> transfer_steps_k{-4, -2, -1, 1, 2, 4};
-  bool drift = false;                     ///< growth of mean and spatial noise after a correction
-  double drift_s = 20;                    ///< watched
-  bool geometry = false;                  ///< IFOV and distortion, from the places of the triangles
-  bool triangles = false;                 ///< pictures of the smallest ones at every contrast
-  bool mtf = false;                       ///< along both axes, from the edges of a plate of its own
-  std::string mtf_plate = "edge";         ///< name or file
-  double mtf_delta_t_k = 10;              ///< at which it is shown
-  int mtf_frames = 64;                    ///< averaged
-  double mtf_frequency_per_pitch = 0.25;  ///< at which the MTF is stated and limited
-  bool ctf = false;                       ///< along both axes, from the bars of a plate of its own
-  std::string ctf_plate = "bars";         ///< name or file
-  double ctf_delta_t_k = 10;              ///< at which it is shown
-  int ctf_frames = 64;                    ///< averaged
-  double ctf_frequency_per_pitch = 0.4;   ///< the group nearest to it is stated and limited
+  bool drift = false;                            ///< growth of mean and spatial noise after a correction
+  double drift_s = 20;                           ///< watched
+  bool response = false;                         ///< time constant, from steps of the first plate's contrast
+  double response_delta_t_k = 10;                ///< between which and 0 it steps
+  int response_steps = 16;                       ///< to and fro in turn
+  int response_frames = 24;                      ///< behind each
+  std::optional<double> response_settling_ms{};  ///< of the target's step; nothing: a simulated one steps at once
+  bool geometry = false;                         ///< IFOV and distortion, from the places of the triangles
+  bool triangles = false;                        ///< pictures of the smallest ones at every contrast
+  bool mtf = false;                              ///< along both axes, from the edges of a plate of its own
+  std::string mtf_plate = "edge";                ///< name or file
+  double mtf_delta_t_k = 10;                     ///< at which it is shown
+  int mtf_frames = 64;                           ///< averaged
+  double mtf_frequency_per_pitch = 0.25;         ///< at which the MTF is stated and limited
+  bool ctf = false;                              ///< along both axes, from the bars of a plate of its own
+  std::string ctf_plate = "bars";                ///< name or file
+  double ctf_delta_t_k = 10;                     ///< at which it is shown
+  int ctf_frames = 64;                           ///< averaged
+  double ctf_frequency_per_pitch = 0.4;          ///< the group nearest to it is stated and limited
   bool operator==(const MeasuresPlan&) const = default;
 
   /// Whether any is on.
-  [[nodiscard]] bool any() const { return noise || transfer || drift || geometry || triangles || mtf || ctf; }
+  [[nodiscard]] bool any() const {
+    return noise || transfer || drift || response || geometry || triangles || mtf || ctf;
+  }
 };
 
 /// [motion]: passes of a plate that a stage moves, for `todbench dynamic PLAN`.

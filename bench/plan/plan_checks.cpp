@@ -168,6 +168,18 @@ ValueMistakes check_ctf_contrast(const Plan& plan, std::size_t /*row*/) {
   return {{std::nullopt, "bars without contrast have no CTF"}};
 }
 
+ValueMistakes check_response(const Plan& plan, std::size_t /*row*/) {
+  if (!plan.measures.response) return {};
+  ValueMistakes mistakes;
+  if (plan.measures.response_delta_t_k == 0)
+    mistakes.push_back({std::nullopt, "a step without contrast has no response time"});
+  if (plan.target.kind != TargetKind::scene && !plan.measures.response_settling_ms)
+    mistakes.push_back({std::nullopt,
+                        "a response time needs response_settling_ms: a target that takes long for its "
+                        "step covers the camera's"});
+  return mistakes;
+}
+
 ValueMistakes check_limit_contrast(const Plan& plan, std::size_t row) {
   ValueMistakes mistakes;
   const double limit = plan.limits.acuity[row].delta_t_k;
@@ -198,7 +210,8 @@ ValueMistakes check_limited_measure(const Plan& plan, std::size_t row) {
   const bool ctf = measure == LimitedMeasure::ctf_x || measure == LimitedMeasure::ctf_y;
   const bool geometry = is_ifov(measure) || measure == LimitedMeasure::distortion;
   const bool drift = measure == LimitedMeasure::drift_rate || measure == LimitedMeasure::drift_pattern_rate;
-  const bool noise = !mtf && !ctf && !geometry && !drift && measure != LimitedMeasure::transfer_slope;
+  const bool response = measure == LimitedMeasure::response_time;
+  const bool noise = !mtf && !ctf && !geometry && !drift && !response && measure != LimitedMeasure::transfer_slope;
   const bool transfer = measure == LimitedMeasure::transfer_slope || measure == LimitedMeasure::netd;
   ValueMistakes mistakes;
   if (noise && !plan.measures.noise)
@@ -219,6 +232,9 @@ ValueMistakes check_limited_measure(const Plan& plan, std::size_t row) {
   if (drift && !plan.measures.drift)
     mistakes.push_back(
         {std::nullopt, "a limit on " + std::string(to_string(measure)) + " needs drift = true in [measures]"});
+  if (response && !plan.measures.response)
+    mistakes.push_back(
+        {std::nullopt, "a limit on " + std::string(to_string(measure)) + " needs response = true in [measures]"});
   for (std::size_t other = 0; other < row; ++other) {
     if (plan.limits.measures[other].measure == measure)
       mistakes.push_back({std::nullopt, "a second row for " + std::string(to_string(measure))});

@@ -46,6 +46,8 @@ using ValueMistakes = std::vector<ValueMistake>;
 /// Not 0 where an MTF is asked for.
 [[nodiscard]] ValueMistakes check_mtf_contrast(const Plan& plan, std::size_t row);
 [[nodiscard]] ValueMistakes check_ctf_contrast(const Plan& plan, std::size_t row);
+/// A step that can be seen, of a target whose settling is known, where a response time is asked for.
+[[nodiscard]] ValueMistakes check_response(const Plan& plan, std::size_t row);
 /// Among the contrasts of the target, and not in an earlier row.
 [[nodiscard]] ValueMistakes check_limit_contrast(const Plan& plan, std::size_t row);
 /// Above what the rows of the budget that do not cancel between camera and twin make of a ratio.

@@ -20,7 +20,7 @@ struct FormLine {
   std::string_view label{};        ///< without the unit
   std::string_view object_name{};  ///< of the part of the window
   /// Of a repeated section: path of the list of numbers whose elements its first key repeats. Its other keys are
-  /// columns beside that list.
+  /// columns beside that list. Without it the rows are a table of their own, of names and numbers.
   std::string_view beside{};
 };
 

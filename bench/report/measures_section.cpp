@@ -13,12 +13,13 @@
 #include "bench/report/pixel_figures.h"
 #include "bench/report/plot.h"
 #include "bench/report/report_pieces.h"
+#include "bench/report/response_figure.h"
 #include "bench/report/transfer_figures.h"
 
 namespace todbench {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 47> names{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 51> names{{
     {"transfer_slope", "Temperature scale: contrast seen over contrast shown"},
     {"transfer_offset", "Temperature scale: offset"},
     {"transfer_nonlinearity", "Temperature scale: nonlinearity"},
@@ -41,6 +42,10 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 47> names{{
     {"drift_time_constant", "Drift of the mean: time constant"},
     {"drift_pattern_rate", "Growth of the spatial noise after a correction"},
     {"drift_pattern_time_constant", "Growth of the spatial noise: time constant"},
+    {"response_time", "Response time: time constant of steps"},
+    {"response_time_rise", "Response time of rises"},
+    {"response_time_fall", "Response time of falls"},
+    {"response_time_model", "Response time of the sensor model"},
     {"noise_t", "3-D noise t: whole frames"},
     {"noise_v", "3-D noise v: fixed rows"},
     {"noise_h", "3-D noise h: fixed columns"},
@@ -252,6 +257,8 @@ std::optional<Section> measures_section(const ReportData& data) {
   if (auto figures = mtf_figures(*data.measures, data.camera.has_value()))
     section.blocks.emplace_back(*std::move(figures));
   if (auto figures = drift_figures(*data.measures)) section.blocks.emplace_back(*std::move(figures));
+  if (auto figures = response_figure(*data.measures, data.camera.has_value()))
+    section.blocks.emplace_back(*std::move(figures));
   if (auto figures = geometry_figures(*data.measures, data.camera.has_value()))
     section.blocks.emplace_back(*std::move(figures));
   if (auto figures = ctf_figures(*data.measures, data.camera.has_value()))

@@ -64,6 +64,12 @@ class Walk {
       change(target.contrast_change_s, 0);
       time_.changes_s += plan_.camera.nuc_wait_s + measures.drift_s;
     }
+    if (measures.response) {
+      constexpr int before_step = 8;
+      for (int i = 0; i < 2; ++i) change(target.contrast_change_s, plan_.measurement.contrast_frames);
+      for (int i = 0; i < measures.response_steps; ++i)
+        change(target.contrast_change_s, before_step + measures.response_frames);
+    }
     if (measures.triangles) {
       for (std::size_t i = 0; i < target.delta_t_k.size(); ++i)
         change(target.contrast_change_s, plan_.measurement.contrast_frames);

@@ -172,7 +172,10 @@ Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& a
   options.camera.model = "Emulated " + sensor->name;
   options.black_body.server.address = arguments.interface_address;
   options.black_body.server.port = arguments.black_body_port;
-  options.black_body.time_constant_s = 0.05;
+  options.black_body.time_constant_s = arguments.black_body_time_constant_s;
+  options.drift = {.level_k_per_min = arguments.drift_k_per_min,
+                   .pattern_k_per_min = arguments.drift_pattern_k_per_min,
+                   .time_constant_s = arguments.drift_time_constant_s};
   options.black_body.stable_dwell_s = 0.05;
   options.stage.server.address = arguments.interface_address;
   options.stage.server.port = arguments.stage_port;

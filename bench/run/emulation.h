@@ -31,6 +31,10 @@ struct EmulationArguments {
   double distance_m = 2;
   std::uint16_t black_body_port = 5025, stage_port = 5026;  ///< 0: the system chooses
   double stage_jitter_mm = 0;                               ///< standard deviation of the place while the stage runs
+  double black_body_time_constant_s = 0.05;                 ///< of its approach to a set-point, > 0
+  /// Of a camera after a correction, K/min at first: mean of the picture, standard deviation over the pixels; their
+  /// time constant, 0: linear.
+  double drift_k_per_min = 0, drift_pattern_k_per_min = 0, drift_time_constant_s = 0;
   bool trigger = true;  ///< the stage tells when a run began in the clock of the camera
   /// A picture in the .npy format, levels from 0 to 1, that a monitor before the camera shows, anew with every change
   /// of the file; black where there is none. Empty: the plates are before the camera.

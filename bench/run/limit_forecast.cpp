@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
@@ -35,7 +36,14 @@ double guard_of(const LimitsPlan& limits) {
   return limits.guard_band_risk ? guard_band_for_risk(*limits.guard_band_risk, {.value = 0, .u = 1}) : normal_z95;
 }
 
-Result<LimitOutlook> outlook(const LimitsPlan& limits, double u, double ln_acuity, double ln_limit) {
+const FleetRow* row_of_acuity(const LimitsPlan& limits, double delta_t_k) {
+  for (const FleetRow& row : limits.fleets)
+    if (row.measure == fleet_acuity && row.delta_t_k && same_contrast(*row.delta_t_k, delta_t_k)) return &row;
+  return nullptr;
+}
+
+Result<LimitOutlook> outlook(const LimitsPlan& limits, const FleetRow* row, double u, double ln_acuity,
+                             double ln_limit) {
   const boost::math::normal normal;
   LimitOutlook out{.u_ln_acuity = u, .guard_band_ln = guard_of(limits) * u};
   const double accepted_from = ln_limit + out.guard_band_ln;
@@ -47,11 +55,25 @@ Result<LimitOutlook> outlook(const LimitsPlan& limits, double u, double ln_acuit
     if (!risks) return tl::unexpected(risks.error());
     out.fleet = *risks;
   }
+  if (row != nullptr) {
+    const auto earlier = fleet_forecast(prior_of(*row), u, {.at_least = ln_limit}, {.at_least = accepted_from});
+    if (!earlier) return tl::unexpected(earlier.error());
+    out.earlier = *earlier;
+  }
   return out;
 }
 
 std::string percent(double share) {
   return fmt::format("{:.{}f} %", 100 * share, share < 0.1 ? 1 : 0);
+}
+
+std::string words_of_fleet(const FleetForecast& now, const FleetForecast& better, std::string_view with) {
+  return fmt::format(
+      "of the good ones in the fleet of {} earlier units {} will not pass (at most {}), {} {} ({}); bad and accepted "
+      "{} "
+      "({})",
+      now.units, percent(now.good_rejected), percent(now.good_rejected_most), with, percent(better.good_rejected),
+      percent(better.good_rejected_most), percent(now.bad_accepted), percent(better.bad_accepted));
 }
 
 }  // namespace
@@ -69,8 +91,9 @@ Result<std::vector<LimitForecast>> limit_forecasts(const Plan& plan, const PlanP
     const PointUncertainty* stated = *budget ? point_at(**budget, limit.delta_t_k) : nullptr;
     const double u_stated = stated != nullptr ? stated->u_stated : 0;
     const double ln_acuity = -std::log(*point->fit.threshold), ln_limit = std::log(limit.least_acuity_per_mrad);
-    const auto planned = outlook(plan.limits, std::hypot(trials, u_stated), ln_acuity, ln_limit);
-    const auto fourfold = outlook(plan.limits, std::hypot(trials / 2, u_stated), ln_acuity, ln_limit);
+    const FleetRow* row = row_of_acuity(plan.limits, limit.delta_t_k);
+    const auto planned = outlook(plan.limits, row, std::hypot(trials, u_stated), ln_acuity, ln_limit);
+    const auto fourfold = outlook(plan.limits, row, std::hypot(trials / 2, u_stated), ln_acuity, ln_limit);
     if (!planned) return tl::unexpected(planned.error());
     if (!fourfold) return tl::unexpected(fourfold.error());
     forecasts.push_back({.delta_t_k = limit.delta_t_k,
@@ -96,7 +119,46 @@ std::string in_words(const LimitForecast& forecast) {
                     percent(forecast.planned.fleet->producer_risk), percent(forecast.fourfold.fleet->producer_risk),
                     percent(forecast.planned.fleet->consumer_risk), percent(forecast.fourfold.fleet->consumer_risk));
   }
+  if (forecast.planned.earlier && forecast.fourfold.earlier)
+    text += "; " + words_of_fleet(*forecast.planned.earlier, *forecast.fourfold.earlier, "with four times");
   return text;
+}
+
+Result<std::vector<MeasureForecast>> measure_forecasts(const LimitsPlan& limits) {
+  std::vector<MeasureForecast> forecasts;
+  for (const MeasureLimit& limit : limits.measures) {
+    // Of a size without its sign the fleet is not normal.
+    if (limit.measure == LimitedMeasure::distortion || limit.measure == LimitedMeasure::drift_rate) continue;
+    const auto row = std::find_if(limits.fleets.begin(), limits.fleets.end(),
+                                  [&](const FleetRow& one) { return one.measure == to_string(limit.measure); });
+    if (row == limits.fleets.end() || !(row->u > 0)) continue;
+    MeasureForecast forecast{.measure = limit.measure,
+                             .at_least = limit.at_least,
+                             .at_most = limit.at_most,
+                             .u = row->u,
+                             .as_before = {},
+                             .half_u = {}};
+    for (const double part : {1.0, 0.5}) {
+      const double u = part * row->u, guard_band = guard_of(limits) * u;
+      ToleranceLimits acceptance;
+      if (limit.at_least) acceptance.at_least = *limit.at_least + guard_band;
+      if (limit.at_most) acceptance.at_most = *limit.at_most - guard_band;
+      const auto found =
+          fleet_forecast(prior_of(*row), u, {.at_least = limit.at_least, .at_most = limit.at_most}, acceptance);
+      if (!found) return tl::unexpected(found.error());
+      (part == 1 ? forecast.as_before : forecast.half_u) = *found;
+    }
+    forecasts.push_back(forecast);
+  }
+  return forecasts;
+}
+
+std::string in_words(const MeasureForecast& forecast) {
+  std::string text(to_string(forecast.measure));
+  if (forecast.at_least) text += ", at least " + number_text(*forecast.at_least);
+  if (forecast.at_most) text += ", at most " + number_text(*forecast.at_most);
+  return text + fmt::format(", measured as before with u {:.3g}: ", forecast.u) +
+         words_of_fleet(forecast.as_before, forecast.half_u, "with half of u");
 }
 
 }  // namespace todbench

@@ -72,6 +72,16 @@ std::optional<PixelOptions> pixel_options(const Plan& plan) {
   return options;
 }
 
+std::optional<ResponseOptions> response_options(const Plan& plan) {
+  const MeasuresPlan& measures = plan.measures;
+  if (!measures.response) return std::nullopt;
+  ResponseOptions options;
+  options.delta_t_k = measures.response_delta_t_k;
+  options.steps = measures.response_steps, options.frames = measures.response_frames;
+  if (measures.response_settling_ms) options.settling_s = 1e-3 * *measures.response_settling_ms;
+  return options;
+}
+
 std::vector<double> triangle_contrasts(const Plan& plan) {
   return plan.measures.triangles ? plan.target.delta_t_k : std::vector<double>{};
 }
@@ -96,6 +106,7 @@ Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan, const 
                                   .noise_frames = plan.measures.noise_frames,
                                   .pixels = pixel_options(plan),
                                   .drift_s = plan.measures.drift ? std::optional(plan.measures.drift_s) : std::nullopt,
+                                  .response = response_options(plan),
                                   .geometry = plan.measures.geometry,
                                   .transfer = plan.measures.transfer,
                                   .transfer_steps_k = plan.measures.transfer_steps_k,
@@ -123,7 +134,10 @@ namespace {
 std::shared_ptr<const SensorModel> whole_sensor(const LoadedPlan& loaded, const ExperimentInputs& inputs) {
   SensorSpec sensor = loaded.parts().sensor;
   sensor.microscan = loaded.plan().simulation.microscan;
-  return std::make_shared<const SensorModel>(sensor, full_plan(sensor, {}, {}), inputs.accuracy, loaded.plan().seed);
+  // A contrast that steps is seen through the effects of motion.
+  const SceneMotion motion = loaded.plan().measures.response ? any_motion : SceneMotion{};
+  return std::make_shared<const SensorModel>(sensor, full_plan(sensor, {}, {}, motion), inputs.accuracy,
+                                             loaded.plan().seed);
 }
 
 void compare_with(CameraMeasures& measures, const SensorModel& model, const ExperimentInputs& inputs) {
@@ -156,6 +170,7 @@ Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loade
   if (measures && *measures) compare_with(**measures, *model, inputs);
   if (measures && *measures && (*measures)->noise)
     (*measures)->netd_model_k = closed_form_netd_k(model->spec(), model->plan());
+  if (measures && *measures && plan.measures.response) (*measures)->response_model_ms = model->spec().time_constant_ms;
   if (measures && *measures && (*measures)->geometry) {
     (*measures)->geometry->distance_relative_u.reset();  // the scene is where it is
     (*measures)->geometry->model_ifov_mrad = model->spec().ifov_mrad() / model->spec().samples_per_pitch();

@@ -10,6 +10,7 @@
 #include "bench/session/ctf_record.h"
 #include "bench/session/drift_record.h"
 #include "bench/session/geometry_record.h"
+#include "bench/session/response_record.h"
 #include "bench/session/transfer_record.h"
 #include "bench/text/base64.h"
 #include "bench/text/json_reader.h"
@@ -320,6 +321,7 @@ Json side_json(const std::optional<CameraMeasures>& measures) {
           {"transfer", measures->transfer ? transfer_json(*measures->transfer) : Json()},
           {"geometry", measures->geometry ? geometry_json(*measures->geometry) : Json()},
           {"drift", measures->drift ? drift_json(*measures->drift) : Json()},
+          {"response", measures->response ? response_json(*measures->response) : Json()},
           {"pixels", measures->pixels ? pixels_json(*measures->pixels) : Json()},
           {"mtf", measures->mtf ? mtf_json(*measures->mtf) : Json()},
           {"ctf", measures->ctf ? ctf_json(*measures->ctf) : Json()},
@@ -365,6 +367,8 @@ std::optional<MeasureLines> side_from(const JsonReader& side) {
   if (!transfer.is_null()) found.transfer = transfer_from(transfer);
   const JsonReader drift = side.at_if_there("drift");
   if (!drift.is_null()) found.drift = drift_from(drift);
+  const JsonReader response = side.at_if_there("response");
+  if (!response.is_null()) found.response = response_from(response);
   const JsonReader geometry = side.at_if_there("geometry");
   if (!geometry.is_null()) found.geometry = geometry_from(geometry);
   const JsonReader picture = side.at_if_there("picture");
@@ -382,6 +386,9 @@ MeasureLines measure_lines(const CameraMeasures& measures) {
   if (measures.geometry) add_geometry_lines(found, *measures.geometry);
   if (measures.noise) add_noise(found, measures);
   if (measures.drift) add_drift_lines(found, *measures.drift);
+  if (measures.response) add_response_lines(found, *measures.response);
+  if (const auto& model = measures.response_model_ms)
+    found.lines.push_back({"response_time_model", "ms", *model, {}, "time constant of the sensor model"});
   if (measures.pixels) add_pixels(found, *measures.pixels);
   if (measures.mtf) add_mtf(found, *measures.mtf);
   if (measures.ctf) add_ctf_lines(found, *measures.ctf);

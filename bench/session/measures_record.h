@@ -42,6 +42,12 @@ struct TransferCurve {
   double slope = 0, offset_k = 0;
 };
 
+/// What is left of steps of the target, for figures.
+struct ResponseCurve {
+  double time_constant_s = 0;
+  std::vector<StepPoint> points;
+};
+
 /// Where the triangles lie beside the fitted lens, for figures.
 struct GeometryMap {
   double width = 0, height = 0;  ///< of the picture, in pixels
@@ -66,6 +72,7 @@ struct MeasureLines {
   std::optional<TransferCurve> transfer{};
   std::optional<GeometryMap> geometry{};
   std::optional<DriftLaw> drift{};
+  std::optional<ResponseCurve> response{};
   std::optional<PlatePanels> picture{};
   std::vector<PixelMap> maps{};
   std::vector<std::string> reasons;
@@ -81,8 +88,9 @@ struct SessionMeasures {
   std::optional<MeasureLines> twin;
 };
 
-/// {"main": {"quantities": [...], "noise": {...}, "transfer": {...}, "geometry": {...}, "drift": {...}, "pixels":
-/// {...}, "mtf": {...}, "ctf": {...}, "maps": [...], "picture": {...}, "reasons": [...]}, "twin": the same or null}
+/// {"main": {"quantities": [...], "noise": {...}, "transfer": {...}, "geometry": {...}, "drift": {...}, "response":
+/// {...}, "pixels": {...}, "mtf": {...}, "ctf": {...}, "maps": [...], "picture": {...}, "reasons": [...]}, "twin": the
+/// same or null}
 [[nodiscard]] Json measures_json(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin);
 /// `invalid_input`, naming the key, for a record that is not complete or of other types.
 [[nodiscard]] Result<SessionMeasures> measures_from(const Json& record);

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <optional>
 
 #include "acquisition/core/camera_id.h"
+#include "acquisition/core/rng.h"
+#include "sim_devices/sensor/contrast_steps.h"
 #include "sim_devices/sensor/moving_scene.h"
 
 namespace todbench {
@@ -22,9 +25,10 @@ class GigeLaboratoryCamera final : public LaboratoryCamera {
   std::unique_ptr<EmulatedGigeCamera> camera_;
 };
 
-ConnectCamera connect_gige(EmulatedGigeCameraConfig config) {
-  return [config](const SensorSpec& sensor, LaboratoryExposure exposure) -> Result<std::unique_ptr<LaboratoryCamera>> {
-    auto camera = EmulatedGigeCamera::start(as_sensor(config, sensor), std::move(exposure));
+ConnectCamera connect_gige(EmulatedGigeCameraConfig config, EmulatedGigeCamera::NucObserver on_nuc) {
+  return [config, on_nuc = std::move(on_nuc)](
+             const SensorSpec& sensor, LaboratoryExposure exposure) -> Result<std::unique_ptr<LaboratoryCamera>> {
+    auto camera = EmulatedGigeCamera::start(as_sensor(config, sensor), std::move(exposure), on_nuc);
     if (!camera) return fail("starting the emulated GigE camera", camera.error());
     return std::make_unique<GigeLaboratoryCamera>(std::move(*camera));
   };
@@ -41,19 +45,49 @@ struct Laboratory::State {
   std::string camera_id, camera_address;
   std::map<std::string, std::string> camera_settings, client_environment;
   std::atomic<std::uint64_t> next_exposure = 0, since_power_up = 0;
-  std::unique_ptr<LaboratoryCamera> camera;  // last: its thread looks at the others
+  std::optional<ContrastSteps> taken_in{};      ///< of the contrast, since power-up; the camera's thread
+  std::atomic<std::uint64_t> corrected_at = 0;  ///< exposures since power-up at the last correction
+  cv::Mat1d drifting;                           ///< pattern of the drift; empty: there is none
+  std::unique_ptr<LaboratoryCamera> camera;     // last: its thread looks at the others
 
   /// Frame k shows what is before the camera at that moment, with the noise of exposure k.
   [[nodiscard]] Result<void> connect_camera() {
+    corrected_at = 0;
     auto connected = options.connect(options.sensor, [this, first = next_exposure.load()](std::uint64_t index) {
       next_exposure = first + index + 1;
       since_power_up = index + 1;
       if (monitor) return monitor->expose(first + index);
-      return model->expose(scene_at(frame_time_s(index)), first + index);
+      PlateScene scene = scene_at(frame_time_s(index));
+      scene.delta_t_k = taken_in_k(scene.delta_t_k, index);
+      return exposed(std::move(scene), first + index, index);
     });
     if (!connected) return tl::unexpected(connected.error());
     camera = std::move(*connected);
     return {};
+  }
+
+  /// With what the camera has drifted since its correction.
+  [[nodiscard]] cv::Mat1w exposed(PlateScene scene, std::uint64_t exposure, std::uint64_t index) const {
+    if (!options.drift.any()) return model->expose(scene, exposure);
+    const double frames = static_cast<double>(index) - static_cast<double>(corrected_at.load());
+    const double minutes = options.drift.minutes(std::max(0.0, frames / options.sensor.frame_rate_hz));
+    scene.background_k += options.drift.level_k_per_min * minutes;
+    const cv::Mat1w counts = model->expose(scene, exposure);
+    if (drifting.empty()) return counts;
+    return with_pattern(counts, drifting, options.drift.pattern_k_per_min * minutes, options.sensor);
+  }
+
+  /// What the detector has taken in of the contrast, which has become `delta_t_k` at a moment since the last exposure
+  /// that the frame clock does not know.
+  [[nodiscard]] double taken_in_k(double delta_t_k, std::uint64_t index) {
+    const double time_s = frame_time_s(index);
+    if (!taken_in || index == 0) taken_in.emplace(delta_t_k);
+    if (taken_in->last_k() != delta_t_k) {
+      if (taken_in->over(time_s, options.sensor)) taken_in.emplace(taken_in->last_k());
+      const double before = 1 - RandomStream(options.seed, "laboratory.step").uniform(index);
+      taken_in->step(time_s - before / options.sensor.frame_rate_hz, delta_t_k);
+    }
+    return taken_in->seen_k(time_s, options.sensor);
   }
 
   /// Device time of an exposure since power-up: the camera's clock advances by a frame with each.
@@ -105,7 +139,8 @@ Result<std::unique_ptr<Laboratory>> Laboratory::start(LaboratoryOptions options)
   if (!stage) return tl::unexpected(stage.error());
   state->stage = std::move(*stage);
 
-  if (!o.connect) o.connect = connect_gige(o.camera);
+  if (o.drift.pattern_k_per_min != 0) state->drifting = drift_pattern(state->model->size(), o.seed);
+  if (!o.connect) o.connect = connect_gige(o.camera, [s = state.get()] { s->corrected_at = s->since_power_up.load(); });
   if (auto connected = state->connect_camera(); !connected) return tl::unexpected(connected.error());
   state->camera_id = state->camera->id();
   state->camera_address = state->camera->address();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "acquisition/core/accuracy.h"
+#include "sim_devices/lab/correction_drift.h"
 #include "sim_devices/lab/gige/gige_camera.h"
 #include "sim_devices/lab/instruments/black_body.h"
 #include "sim_devices/lab/instruments/plate_stage.h"
@@ -36,6 +37,8 @@ struct LaboratoryOptions {
   PlateStageOptions stage;  ///< plates are filled in
   /// In place of black body and plate before the camera, upright. The instruments are there and show nothing.
   std::optional<Monitor> monitor{};
+  /// In the time of the camera; from a correction of the GigE Vision camera on, of others from power-up on.
+  CorrectionDrift drift;
   std::uint64_t seed = 1;
 };
 

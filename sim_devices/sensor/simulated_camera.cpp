@@ -92,7 +92,7 @@ class SimulatedSource final : public FrameSource {
   std::atomic<bool> stopped_{true};
 };
 
-class SceneTarget final : public Target, private MovingTarget {
+class SceneTarget final : public Target, private MovingTarget, private SteppingTarget {
  public:
   SceneTarget(std::shared_ptr<SceneHolder> scene, std::vector<TargetPlate> plates)
       : scene_(std::move(scene)), plates_(std::move(plates)) {
@@ -120,8 +120,15 @@ class SceneTarget final : public Target, private MovingTarget {
   }
 
   [[nodiscard]] MovingTarget* moving() override { return this; }
+  [[nodiscard]] SteppingTarget* stepping() override { return this; }
 
  private:
+  [[nodiscard]] Result<void> step_to(double delta_t_k, std::stop_token stop) override {
+    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped before the contrast stepped");
+    if (!std::isfinite(delta_t_k)) return fail(ErrorCode::invalid_input, "the simulated scene cannot step so");
+    scene_->step_to(delta_t_k);
+    return {};
+  }
   [[nodiscard]] Result<std::array<double, 2>> run_speeds_mm_s(std::stop_token) override {
     return std::array{1e-6, 1e6};
   }
@@ -152,13 +159,32 @@ void SceneHolder::set(PlateScene scene) {
   const std::scoped_lock lock(mutex_);
   scene_ = std::move(next);
   run_.reset();
+  steps_.reset();
+  steps_next_ = false;
+}
+
+void SceneHolder::step_to(double delta_t_k) {
+  const std::scoped_lock lock(mutex_);
+  PlateScene next = *scene_;
+  if (!steps_) steps_.emplace(next.delta_t_k);
+  next.delta_t_k = delta_t_k;
+  scene_ = std::make_shared<const PlateScene>(std::move(next));
+  steps_next_ = true;
 }
 
 PlateScene SceneHolder::scene_at(double time_s, const SensorSpec& spec) {
   const std::scoped_lock lock(mutex_);
+  if (steps_next_) {
+    // Multiples of the golden section's part leave no phase of the frame out.
+    const double phase = std::fmod(0.5 + 0.6180339887498949 * steps_made_++, 1);
+    steps_->step(time_s_ + phase * (time_s - time_s_), scene_->delta_t_k);
+    steps_next_ = false;
+  }
   time_s_ = time_s;
-  if (!run_) return *scene_;
+  if (!run_ && !steps_) return *scene_;
   PlateScene scene = *scene_;
+  if (steps_) scene.delta_t_k = steps_->seen_k(time_s, spec);
+  if (!run_) return scene;
   const double gone_s = time_s - *run_->start_s;
   scene.shift_mm.x =
       gone_s < run_->duration_s() ? run_->from_mm + run_->direction() * run_->speed_mm_s * gone_s : run_->to_mm;

@@ -89,6 +89,13 @@ class Run {
       else if (auto kept = keep("drift", drift.error()); !kept)
         return tl::unexpected(kept.error());
     }
+    if (options_.response) {
+      auto response = time_response();
+      if (response)
+        measures.response = *std::move(response);
+      else if (auto kept = keep("response time", response.error()); !kept)
+        return tl::unexpected(kept.error());
+    }
     for (const double contrast_k : options_.triangles_k) {
       auto strip = show_triangles(contrast_k);
       if (strip)
@@ -305,7 +312,18 @@ class Run {
     if (auto shown = show(0); !shown) return tl::unexpected(shown.error());
     const auto commanded = correct();
     if (!commanded) return tl::unexpected(commanded.error());
-    return measure_drift(taker_, *where, {.drift_s = *options_.drift_s, .commanded = *commanded}, stop_);
+    return measure_drift(
+        taker_, *where,
+        {.drift_s = *options_.drift_s, .frame_rate_hz = source_.info().frame_rate_hz, .commanded = *commanded}, stop_);
+  }
+
+  Result<ResponseMeasure> time_response() {
+    const auto where = field();
+    if (!where) return tl::unexpected(where.error());
+    ResponseOptions response = *options_.response;
+    response.plate = plate().name;
+    response.contrast_frames = options_.measurement.contrast_frames;
+    return measure_response(taker_, target_, host_, *where, response, source_.info().frame_rate_hz, stop_);
   }
 
   struct Cube {

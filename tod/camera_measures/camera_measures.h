@@ -13,6 +13,7 @@
 #include "tod/camera_measures/edge_measure.h"
 #include "tod/camera_measures/pixel_measure.h"
 #include "tod/camera_measures/plate_geometry.h"
+#include "tod/camera_measures/response_measure.h"
 #include "tod/camera_measures/triangle_strip.h"
 #include "tod/measurement/measurement.h"
 #include "tod/measures/signal_transfer.h"
@@ -21,22 +22,23 @@
 namespace todbench {
 
 struct CameraMeasuresOptions {
-  bool noise = false;                      ///< temporal noise, NETD and 3-D noise, at a contrast of 0
-  int noise_frames = 64;                   ///< of the cube, at least 5
-  std::optional<PixelOptions> pixels{};    ///< bad and substituted pixels in the cube of the noise; nothing: none
-  std::optional<double> drift_s{};         ///< watched after a correction, at a contrast of 0; nothing: no drift
-  bool geometry = false;                   ///< IFOV and distortion, from the picture that shows where the plate is
-  bool transfer = false;                   ///< signal transfer from the steps below
-  std::vector<double> transfer_steps_k;    ///< contrasts that are shown, three or more
-  std::vector<double> triangles_k{};       ///< contrasts at which the smallest triangles are shown; empty: none
-  std::optional<TargetPlate> mtf_plate{};  ///< in identity mounting; nothing: no MTF
-  double mtf_delta_t_k = 10;               ///< at which it is shown
-  int mtf_frames = 64;                     ///< averaged, at least 1
-  double mtf_frequency_per_pitch = 0.25;   ///< at which the MTF is stated, up to 1
-  std::optional<TargetPlate> ctf_plate{};  ///< in identity mounting; nothing: no CTF
-  double ctf_delta_t_k = 10;               ///< at which it is shown
-  int ctf_frames = 64;                     ///< averaged, at least 1
-  double ctf_frequency_per_pitch = 0.4;    ///< the group nearest to it is stated
+  bool noise = false;                         ///< temporal noise, NETD and 3-D noise, at a contrast of 0
+  int noise_frames = 64;                      ///< of the cube, at least 5
+  std::optional<PixelOptions> pixels{};       ///< bad and substituted pixels in the cube of the noise; nothing: none
+  std::optional<double> drift_s{};            ///< watched after a correction, at a contrast of 0; nothing: no drift
+  std::optional<ResponseOptions> response{};  ///< time constant from steps of the first plate; nothing: none
+  bool geometry = false;                      ///< IFOV and distortion, from the picture that shows where the plate is
+  bool transfer = false;                      ///< signal transfer from the steps below
+  std::vector<double> transfer_steps_k;       ///< contrasts that are shown, three or more
+  std::vector<double> triangles_k{};          ///< contrasts at which the smallest triangles are shown; empty: none
+  std::optional<TargetPlate> mtf_plate{};     ///< in identity mounting; nothing: no MTF
+  double mtf_delta_t_k = 10;                  ///< at which it is shown
+  int mtf_frames = 64;                        ///< averaged, at least 1
+  double mtf_frequency_per_pitch = 0.25;      ///< at which the MTF is stated, up to 1
+  std::optional<TargetPlate> ctf_plate{};     ///< in identity mounting; nothing: no CTF
+  double ctf_delta_t_k = 10;                  ///< at which it is shown
+  int ctf_frames = 64;                        ///< averaged, at least 1
+  double ctf_frequency_per_pitch = 0.4;       ///< the group nearest to it is stated
   /// Plates, frames to average, corrections, timeouts and integrity are those of the TOD measurement; the first plate
   /// in identity mounting is shown.
   MeasurementOptions measurement;
@@ -136,13 +138,15 @@ struct CameraMeasures {
   std::optional<TransferMeasure> transfer{};
   std::optional<GeometryMeasure> geometry{};
   std::optional<DriftMeasure> drift{};
+  std::optional<ResponseMeasure> response{};
   std::optional<MtfMeasure> mtf{};
   std::optional<CtfMeasure> ctf{};
-  std::vector<TriangleStrip> triangles{};  ///< by contrast
-  std::optional<double> netd_model_k{};    ///< of a simulated sensor in closed form
-  std::optional<PlateView> view{};         ///< where the plate was found
-  std::optional<PlatePicture> picture{};   ///< where a sensor model was compared with it
-  std::vector<std::string> reasons{};      ///< sentences
+  std::vector<TriangleStrip> triangles{};     ///< by contrast
+  std::optional<double> netd_model_k{};       ///< of a simulated sensor in closed form
+  std::optional<double> response_model_ms{};  ///< time constant that a simulated sensor has
+  std::optional<PlateView> view{};            ///< where the plate was found
+  std::optional<PlatePicture> picture{};      ///< where a sensor model was compared with it
+  std::vector<std::string> reasons{};         ///< sentences
 
   /// Temporal noise of a pixel in kelvin of the camera's scale, with its 95 % interval.
   [[nodiscard]] std::optional<ComponentEstimate> temporal_variance_k2() const;

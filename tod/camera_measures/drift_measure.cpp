@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <optional>
 #include <utility>
 
@@ -18,18 +20,25 @@ class DriftGroups {
  public:
   explicit DriftGroups(double group_s) : group_s_(group_s) {}
 
-  void add(double since_s, const cv::Mat1d& kelvin) {
-    if (!first_s_) first_s_ = since_s;
+  void add(double since_s, const Frame& frame, const cv::Mat1d& kelvin) {
+    if (!first_s_) first_s_ = since_s, first_ = {frame.sequence, frame.device_time_ns};
+    const CameraMoment now{frame.sequence, frame.device_time_ns};
+    last_ = now;
     const int at = static_cast<int>((since_s - *first_s_) / group_s_);
     if (at != open_at_ || groups_.empty()) {
       open_at_ = at;
       groups_.push_back({.time_s = 0, .frames = 0, .mean_k = cv::Mat1d::zeros(kelvin.size())});
+      by_camera_s_.push_back(0);
     }
+    by_camera_s_.back() += *first_s_ + seconds_between(first_, now);
     DriftGroup& group = groups_.back();
     group.time_s += since_s, group.mean_k += kelvin, ++group.frames;
   }
   /// Means of the groups that have at least half as many frames as the fullest: the last one may be cut off.
-  [[nodiscard]] std::vector<DriftGroup> finished() && {
+  [[nodiscard]] std::vector<DriftGroup> finished(double frame_rate_hz) && {
+    if (camera_has_clock(frame_rate_hz)) {
+      for (std::size_t k = 0; k < groups_.size(); ++k) groups_[k].time_s = by_camera_s_[k];
+    }
     int most = 0;
     for (const DriftGroup& group : groups_) most = std::max(most, group.frames);
     std::erase_if(groups_, [&](const DriftGroup& group) { return 2 * group.frames < most; });
@@ -39,6 +48,21 @@ class DriftGroups {
   }
 
  private:
+  struct CameraMoment {
+    std::uint64_t sequence = 0;
+    std::int64_t device_time_ns = 0;
+  };
+  static double seconds_between(const CameraMoment& from, const CameraMoment& to) {
+    return 1e-9 * static_cast<double>(to.device_time_ns - from.device_time_ns);
+  }
+  /// Frames arrive late on a busy host; a clock that counts them at the stated rate knows when they were exposed.
+  [[nodiscard]] bool camera_has_clock(double frame_rate_hz) const {
+    constexpr double tolerance = 0.02;
+    const auto frames = static_cast<double>(last_.sequence - first_.sequence);
+    const double counted_s = frame_rate_hz > 0 ? frames / frame_rate_hz : 0;
+    return counted_s > 0 && std::abs(seconds_between(first_, last_) - counted_s) <= tolerance * counted_s;
+  }
+
   void join_pairs() {
     std::vector<DriftGroup> pairs;
     for (std::size_t k = 0; k + 1 < groups_.size(); k += 2) {
@@ -52,8 +76,10 @@ class DriftGroups {
 
   double group_s_;
   std::optional<double> first_s_;
+  CameraMoment first_, last_;
   int open_at_ = 0;
   std::vector<DriftGroup> groups_;
+  std::vector<double> by_camera_s_;  ///< sums, as the times of the groups are while frames are added
 };
 
 /// What a camera says of its correction comes with the delays of its frames: less is no new correction.
@@ -97,7 +123,7 @@ Result<DriftMeasure> measure_drift(FrameTaker& taker, const cv::Rect& field, con
   for (;;) {
     const auto kelvin = window_kelvin(*frame, field);
     if (!kelvin) return tl::unexpected(kelvin.error());
-    groups.add(last_s, *kelvin);
+    groups.add(last_s, *frame, *kelvin);
     frame = taker.next(stop);
     if (!frame) return tl::unexpected(frame.error());
     const double since_s = taker.since_nuc_s(*frame);
@@ -107,7 +133,7 @@ Result<DriftMeasure> measure_drift(FrameTaker& taker, const cv::Rect& field, con
       return fail(ErrorCode::integrity, "the time since the correction that the camera tells does not go on");
     last_s = std::max(last_s, since_s);
   }
-  const std::vector<DriftGroup> means = std::move(groups).finished();
+  const std::vector<DriftGroup> means = std::move(groups).finished(options.frame_rate_hz);
   if (means.size() < least_drift_groups) {
     return fail(ErrorCode::integrity,
                 fmt::format("{} groups of frames within {:.1f} s after a correction are too few for a law of drift",

@@ -20,10 +20,12 @@ struct DriftMeasure {
 };
 
 struct DriftOptions {
-  double drift_s = 20;     ///< over which the camera is watched, > 0
-  bool commanded = false;  ///< the correction was commanded just now; otherwise the camera's own is waited for
+  double drift_s = 20;       ///< over which the camera is watched, > 0
+  double frame_rate_hz = 0;  ///< stated by the camera; 0: it states none
+  bool commanded = false;    ///< the correction was commanded just now; otherwise the camera's own is waited for
 };
 
+/// Times are those of the camera's clock, where it counts frames at the stated rate, otherwise those of the host's.
 /// Takes the frames of `drift_s` in 20 groups of one length of time, up to the next correction; in shorter groups where
 /// that comes early. Where none was
 /// commanded one is waited for as long again: the camera tells of it, or it is seen in the pictures. Errors:

@@ -29,14 +29,29 @@ Column growth(const std::vector<double>& time_s, std::optional<double> time_cons
   return f;
 }
 
+/// Times of groups, and the roots of their weights: frames over the mean number of frames, for the mean of few is less
+/// certain.
+struct GroupTimes {
+  std::vector<double> time_s;
+  Column root_weight;
+
+  /// Rows without their weighted mean, times the roots of the weights: white noise is as large in every row.
+  [[nodiscard]] cv::Mat1d whitened(const cv::Mat1d& rows) const {
+    cv::Mat1d out = rows.clone(), mean = cv::Mat1d::zeros(1, rows.cols);
+    for (int k = 0; k < rows.rows; ++k) mean += rows.row(k) * (root_weight(k, 0) * root_weight(k, 0) / rows.rows);
+    for (int k = 0; k < rows.rows; ++k) out.row(k) = (rows.row(k) - mean) * root_weight(k, 0);
+    return out;
+  }
+};
+
 /// Without its mean, of length 1; and how long it was.
 struct Direction {
   Column unit;
   double length = 0;
 };
 
-Direction direction_of(const Column& f) {
-  Direction out{f - cv::mean(f)[0], 0};
+Direction direction_of(const GroupTimes& groups, std::optional<double> time_constant_s) {
+  Direction out{groups.whitened(growth(groups.time_s, time_constant_s)), 0};
   out.length = cv::norm(out.unit);
   out.unit /= out.length;
   return out;
@@ -45,13 +60,13 @@ Direction direction_of(const Column& f) {
 /// Sums of squares of one or many series of the same times. `products`: sum over the series of their products between
 /// groups, of series without their means over the groups.
 struct Regression {
-  const std::vector<double>& time_s;
+  const GroupTimes& groups;
   cv::Mat1d products;
   double series = 1;  ///< degrees of freedom of each group
 
   [[nodiscard]] double total() const { return cv::trace(products)[0]; }
   [[nodiscard]] double explained(std::optional<double> time_constant_s) const {
-    const Column u = direction_of(growth(time_s, time_constant_s)).unit;
+    const Column u = direction_of(groups, time_constant_s).unit;
     const cv::Mat1d out = u.t() * products * u;
     return out(0, 0);
   }
@@ -59,7 +74,7 @@ struct Regression {
     return std::max(0.0, total() - explained(time_constant_s));
   }
   /// Degrees of freedom behind a straight line.
-  [[nodiscard]] double freedom() const { return series * (static_cast<double>(time_s.size()) - 2); }
+  [[nodiscard]] double freedom() const { return series * (static_cast<double>(groups.time_s.size()) - 2); }
 };
 
 struct TimeConstant {
@@ -71,9 +86,9 @@ struct TimeConstant {
 /// Of the smallest sum of squares, by the grid and a golden section; its interval is where the sum of squares is not
 /// above that by more than chance.
 TimeConstant best_time_constant(const Regression& data) {
-  const double span = data.time_s.back() - data.time_s.front();
-  const double low = std::log(span / static_cast<double>(data.time_s.size())),
-               high = std::log(longest_over_span * span);
+  const std::vector<double>& time_s = data.groups.time_s;
+  const double span = time_s.back() - time_s.front();
+  const double low = std::log(span / static_cast<double>(time_s.size())), high = std::log(longest_over_span * span);
   const auto left = [&](double log_s) { return data.left(std::exp(log_s)); };
   const double step = (high - low) / time_constants;
   double best = low;
@@ -111,8 +126,7 @@ TimeConstant choose_shape(DriftFit& fit, const Regression& data, std::optional<T
   // Among the noise of many pixels a search always finds a shape that explains more: the sums of squares along two
   // directions differ by chance by 2 variance sqrt(pixels) sine of the angle between them (standard deviation).
   constexpr double far = 2.5;
-  const double along =
-      direction_of(growth(data.time_s, std::nullopt)).unit.dot(direction_of(growth(data.time_s, best.best_s)).unit);
+  const double along = direction_of(data.groups, std::nullopt).unit.dot(direction_of(data.groups, best.best_s).unit);
   const double by_search = data.series > 1 ? 2 * std::sqrt(data.series * std::max(0.0, 1 - along * along)) : 0;
   const double f = (straight - best.left) / variance - far * by_search;
   fit.p_linear = f > 0 ? cdf(complement(boost::math::fisher_f(1, freedom), f)) : 1;
@@ -127,17 +141,16 @@ std::optional<double> constant_of(const std::optional<TimeConstant>& constant) {
   return constant ? std::optional(constant->best_s) : std::nullopt;
 }
 
-Regression regression_of(const std::vector<double>& time_s, cv::Mat1d series, double freedom) {
-  // Rows are groups: each series without its mean.
-  cv::Mat1d mean;
-  cv::reduce(series, mean, 0, cv::REDUCE_AVG);
-  for (int k = 0; k < series.rows; ++k) series.row(k) -= mean;
-  return {time_s, series * series.t(), freedom};
+/// Rows of `series` are groups.
+Regression regression_of(const GroupTimes& groups, const cv::Mat1d& series, double freedom) {
+  const cv::Mat1d white = groups.whitened(series);
+  return {groups, white * white.t(), freedom};
 }
 
-DriftFit level_fit(const std::vector<double>& time_s, const cv::Mat1d& levels) {
+DriftFit level_fit(const GroupTimes& groups, const cv::Mat1d& levels) {
   DriftFit fit;
-  const Regression data = regression_of(time_s, levels.clone(), 1);
+  const std::vector<double>& time_s = groups.time_s;
+  const Regression data = regression_of(groups, levels, 1);
   std::optional<TimeConstant> constant;
   static_cast<void>(choose_shape(fit, data, constant));
   const Column f = growth(time_s, constant_of(constant));
@@ -146,8 +159,13 @@ DriftFit level_fit(const std::vector<double>& time_s, const cv::Mat1d& levels) {
   cv::Mat1d design(f.rows, constant ? 3 : 2);
   design.col(0).setTo(1);
   f.copyTo(design.col(1));
+  const auto weighted = [&](const cv::Mat1d& rows) {
+    cv::Mat1d out = rows.clone();
+    for (int k = 0; k < out.rows; ++k) out.row(k) *= groups.root_weight(k, 0);
+    return out;
+  };
   cv::Mat1d solution;
-  cv::solve(cv::Mat1d(design.colRange(0, 2)), levels, solution, cv::DECOMP_SVD);
+  cv::solve(weighted(design.colRange(0, 2)), weighted(levels), solution, cv::DECOMP_SVD);
   fit.fitted_k.resize(time_s.size());
   if (constant) {
     constexpr double relative = 1e-4;
@@ -157,7 +175,8 @@ DriftFit level_fit(const std::vector<double>& time_s, const cv::Mat1d& levels) {
   }
   const double freedom = f.rows - design.cols, variance = data.left(constant_of(constant)) / freedom;
   cv::Mat1d covariance;
-  cv::invert(design.t() * design, covariance, cv::DECOMP_SVD);
+  const cv::Mat1d white = weighted(design);
+  cv::invert(white.t() * white, covariance, cv::DECOMP_SVD);
   const cv::Mat1d gradient = design.row(last) - design.row(0);
   const cv::Mat1d of_change = gradient * covariance * gradient.t();
   fit.change_k = solution(1, 0) * (f(last, 0) - f(0, 0));
@@ -192,17 +211,18 @@ double root_of(double variance) {
   return std::sqrt(std::max(0.0, variance));
 }
 
-DriftFit pattern_fit(const std::vector<double>& time_s, const cv::Mat1d& patterns) {
+DriftFit pattern_fit(const GroupTimes& groups, const cv::Mat1d& patterns) {
   DriftFit fit;
+  const std::vector<double>& time_s = groups.time_s;
   const double freedom = patterns.cols - surface_parameters;
-  const Regression data = regression_of(time_s, patterns.clone(), freedom);
+  const Regression data = regression_of(groups, patterns, freedom);
   std::optional<TimeConstant> constant;
   const TimeConstant best = choose_shape(fit, data, constant);
   const auto left_freedom = data.freedom();
-  const auto noise = data.left(constant_of(constant)) / left_freedom;  // of a pixel in a group
+  const auto noise = data.left(constant_of(constant)) / left_freedom;  // of a pixel in a group of mean size
   const auto change = [&](std::optional<double> time_constant_s) {
     const Column f = growth(time_s, time_constant_s);
-    const double length = direction_of(f).length, step = f(f.rows - 1, 0);
+    const double length = direction_of(groups, time_constant_s).length, step = f(f.rows - 1, 0);
     const SignedVariance size =
         difference_of(data.explained(time_constant_s) / freedom, freedom, noise, left_freedom, length * length);
     return SignedVariance{root_of(size.value) * step, root_of(size.low) * step, root_of(size.high) * step};
@@ -223,7 +243,8 @@ DriftFit pattern_fit(const std::vector<double>& time_s, const cv::Mat1d& pattern
   const Column f = growth(time_s, constant_of(constant));
   for (int k = 0; k < patterns.rows; ++k) {
     const cv::Mat1d since = patterns.row(k) - patterns.row(0);
-    const double variance = k == 0 ? 0 : since.dot(since) / freedom - 2 * noise;
+    const auto noise_of = [&](int group) { return noise / std::pow(groups.root_weight(group, 0), 2); };
+    const double variance = k == 0 ? 0 : since.dot(since) / freedom - noise_of(0) - noise_of(k);
     fit.seen_k.push_back(root_of(variance));
     fit.fitted_k.push_back(fit.change_k * f(k, 0) / f(f.rows - 1, 0));
   }
@@ -240,9 +261,22 @@ Result<void> check_groups(std::span<const DriftGroup> groups) {
     if (groups[k].mean_k.size() != size) return wrong("groups of frames of different sizes");
     if (!std::isfinite(groups[k].time_s) || !cv::checkRange(groups[k].mean_k))
       return wrong("a group of frames holds a value that is no number");
+    if (groups[k].frames < 1) return wrong("a group without frames");
     if (k > 0 && !(groups[k].time_s > groups[k - 1].time_s)) return wrong("times of groups of frames that do not rise");
   }
   return {};
+}
+
+GroupTimes times_of(std::span<const DriftGroup> groups) {
+  const auto count = static_cast<double>(groups.size());
+  double frames = 0;
+  for (const DriftGroup& group : groups) frames += group.frames / count;
+  GroupTimes out{{}, Column(static_cast<int>(groups.size()), 1)};
+  for (std::size_t k = 0; k < groups.size(); ++k) {
+    out.time_s.push_back(groups[k].time_s);
+    out.root_weight(static_cast<int>(k), 0) = std::sqrt(groups[k].frames / frames);
+  }
+  return out;
 }
 
 }  // namespace
@@ -267,8 +301,9 @@ Result<DriftLaw> drift_law(std::span<const DriftGroup> groups) {
     const cv::Mat1d pattern = group.mean_k - levels(k, 0) - shading_of(group.mean_k).surface;
     pattern.reshape(1, 1).copyTo(patterns.row(k));
   }
-  law.level = level_fit(law.time_s, levels);
-  law.pattern = pattern_fit(law.time_s, patterns);
+  const GroupTimes times = times_of(groups);
+  law.level = level_fit(times, levels);
+  law.pattern = pattern_fit(times, patterns);
   return law;
 }
 

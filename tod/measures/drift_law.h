@@ -55,11 +55,11 @@ struct DriftLaw {
 
 inline constexpr std::size_t least_drift_groups = 8;
 
-/// Least squares for the level; for the pattern analysis of variance of the pixels' regressions on time, with modified
-/// large sample intervals (Graybill and Wang 1980). An approach is taken where a straight line leaves more than chance
-/// explains (F test at 1 %; of the pattern beyond what a search among the noise of its pixels finds), with the time
-/// constant of least squares. Errors: `invalid_input` for fewer than eight
-/// groups, times that do not rise, or pictures below 4 x 4 pixels or of other sizes.
+/// Groups count by their frames. Least squares for the level; for the pattern analysis of variance of the pixels'
+/// regressions on time, with modified large sample intervals (Graybill and Wang 1980). An approach is taken where a
+/// straight line leaves more than chance explains (F test at 1 %; of the pattern beyond what a search among the noise
+/// of its pixels finds), with the time constant of least squares. Errors: `invalid_input` for fewer than eight groups,
+/// groups without frames, times that do not rise, or pictures below 4 x 4 pixels or of other sizes.
 [[nodiscard]] Result<DriftLaw> drift_law(std::span<const DriftGroup> groups);
 
 }  // namespace todbench

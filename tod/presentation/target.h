@@ -10,6 +10,7 @@
 #include "acquisition/core/result.h"
 #include "tod/plate/target_plate.h"
 #include "tod/presentation/moving_target.h"
+#include "tod/presentation/stepping_target.h"
 
 namespace todbench {
 
@@ -48,6 +49,8 @@ class Target {
   [[nodiscard]] virtual Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) = 0;
   /// The same target where it can run; null: it cannot. Lives as long as the target.
   [[nodiscard]] virtual MovingTarget* moving() { return nullptr; }
+  /// The same target where it steps at once; null: it does not. Lives as long as the target.
+  [[nodiscard]] virtual SteppingTarget* stepping() { return nullptr; }
 };
 
 }  // namespace todbench

@@ -307,6 +307,7 @@ TEST(DemandKinds, EveryKindHasOneRowWithANameAndAUnit) {
                                                "distortion",
                                                "drift_rate",
                                                "drift_pattern_rate",
+                                               "response_time",
                                                "zone_bad_pixels",
                                                "zone_substituted_pixels",
                                                "zone_clusters",

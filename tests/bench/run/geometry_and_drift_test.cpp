@@ -102,6 +102,7 @@ class DriftingCamera : public FrameSource {
     if (commanded_) ++taken_;
     const double since_s = stands_still ? 1 : frame_s * static_cast<double>(taken_ - corrected_at_);
     frame->host_time_ns = start_ns_ + static_cast<std::int64_t>(1e9 * frame_s * static_cast<double>(taken_));
+    frame->device_time_ns = 0;  // no clock of its own
     frame->correction = CorrectionState::idle;
     frame->since_correction_s = since_s;
     const double per_count = *info().scale.kelvin_per_count(1000);

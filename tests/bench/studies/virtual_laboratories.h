@@ -123,6 +123,27 @@ inline std::vector<LaboratoryPoint> points_at(const std::vector<LaboratoryPoint>
   return out;
 }
 
+/// By which the errors that a laboratory has drawn move ln S75 at a contrast of the plan, with this slope.
+inline double drawn_part(const Plan& plan, const LaboratoryErrors& errors, std::size_t contrast, double slope) {
+  const auto ln_of = [](double stated, const InputError& error) {
+    return std::log1p(error.relative + error.absolute / stated);
+  };
+  return ln_of(plan.target.distance_m, errors.distance_m) - std::log1p(errors.cut_outs_m.relative) -
+         slope * ln_of(plan.target.delta_t_k[contrast], errors.contrasts_k[contrast]);
+}
+
+/// Mean of it over the laboratories that measured the contrast, %: what a mean of laboratories is off by chance.
+inline double drawn_bias_percent(const Plan& plan, const std::vector<LaboratoryPoint>& points) {
+  double sum = 0, slope = 0;
+  for (const LaboratoryPoint& point : points) slope += point.contrast_slope / static_cast<double>(points.size());
+  for (const LaboratoryPoint& point : points) {
+    const auto at = std::find(plan.target.delta_t_k.begin(), plan.target.delta_t_k.end(), point.delta_t_k);
+    sum += drawn_part(plan, drawn_errors(plan, plan.seed, point.laboratory),
+                      static_cast<std::size_t>(at - plan.target.delta_t_k.begin()), slope);
+  }
+  return 100 * sum / static_cast<double>(points.size());
+}
+
 /// What the laboratories say of one contrast.
 struct LaboratorySummary {
   int laboratories = 0, pairs = 0;

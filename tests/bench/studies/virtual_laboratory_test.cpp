@@ -12,7 +12,7 @@ TEST(VirtualLaboratory, ErrsAsItsBudgetSays) {
   Plan plan = plan_of_laboratories(laboratory_design(), 1);
   plan.target.delta_t_k = {2, 0.2};
   constexpr int laboratories = 4000;
-  double distance = 0, cut_outs = 0, scale = 0, relative = 0, kelvin = 0, both = 0;
+  double distance = 0, cut_outs = 0, scale = 0, relative = 0, kelvin = 0, both = 0, mean_k = 0;
   for (int i = 1; i <= laboratories; ++i) {
     const LaboratoryErrors e = drawn_errors(plan, 5, static_cast<std::uint64_t>(i));
     distance += e.distance_m.absolute * e.distance_m.absolute / laboratories;
@@ -20,6 +20,7 @@ TEST(VirtualLaboratory, ErrsAsItsBudgetSays) {
     scale += e.camera_scale.relative * e.camera_scale.relative / laboratories;
     relative += e.contrasts_k[0].relative * e.contrasts_k[0].relative / laboratories;
     kelvin += e.contrasts_k[0].absolute * e.contrasts_k[0].absolute / laboratories;
+    mean_k += e.contrasts_k[0].absolute / laboratories;
     both += e.contrasts_k[0].absolute * e.contrasts_k[1].absolute / laboratories;
   }
   // The mean square of a normal error has a relative standard error of sqrt(2 / 4000) = 2.2 %, others have less.
@@ -30,6 +31,7 @@ TEST(VirtualLaboratory, ErrsAsItsBudgetSays) {
   EXPECT_TRUE(near(scale, 2.25e-4)) << scale;
   EXPECT_TRUE(near(relative, (1e-4 + 0.25e-4) / 3)) << relative;
   EXPECT_TRUE(near(kelvin, 64e-6 + 25e-6 / 3 + 9e-6 + 16e-6 / 2)) << kelvin;
+  EXPECT_NEAR(mean_k, 0, 4 * std::sqrt(kelvin / laboratories));
   EXPECT_TRUE(near(both, 64e-6 + 25e-6 / 3 + 9e-6)) << "the stability is another one at every contrast";
 }
 

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "tests/tod/measures/drift_coverage.h"
 
@@ -32,6 +34,35 @@ TEST(DriftLaws, HoldTheDriftThatIsThere) {
       EXPECT_LE(found.pattern_approaches, 3);
     }
   }
+}
+
+/// Of groups with few frames the mean is less certain: a host that was busy at the beginning and at the end makes no
+/// pattern grow.
+TEST(DriftLaws, FindNoGrowthInTheNoiseOfGroupsOfFewFrames) {
+  constexpr int seeds = 30;
+  int level = 0, pattern = 0;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    auto groups = testing::drift_groups({.level_k = 0, .pattern_k = 0}, static_cast<std::uint64_t>(seed));
+    const int count = static_cast<int>(groups.size());
+    std::vector<float> draws(groups.front().mean_k.total());
+    for (int k = 0; k < count; ++k) {
+      DriftGroup& group = groups[static_cast<std::size_t>(k)];
+      const bool few = k < 3 || k >= count - 3;
+      group.frames = few ? 5 : 10;
+      if (!few) continue;
+      // Half the frames have twice the variance.
+      RandomStream(static_cast<std::uint64_t>(seed), "test.few").sub(static_cast<std::uint64_t>(k)).fill_normal(draws);
+      auto draw = draws.begin();
+      for (double& value : group.mean_k) value += 0.015 * *draw++;
+    }
+    const auto law = drift_law(groups);
+    ASSERT_TRUE(law) << law.error().message;
+    level += law->level.change_ci95.low.value() <= 0 && 0 <= law->level.change_ci95.high.value() ? 1 : 0;
+    pattern += law->pattern.change_ci95.low.value() <= 0 ? 1 : 0;
+  }
+  // 30 seeds at 95 %: fewer than 24 come by chance once in 600.
+  EXPECT_GE(level, 24);
+  EXPECT_GE(pattern, 24);
 }
 
 TEST(DriftLaws, SayWhatWasSeenAndFittedOfEachGroup) {

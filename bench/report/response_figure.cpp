@@ -1,0 +1,71 @@
+#include "bench/report/response_figure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "bench/report/plot.h"
+
+namespace todbench {
+namespace {
+
+constexpr double milliseconds = 1000;
+constexpr double shown_time_constants = 8;
+
+Figure figure_of(const ResponseCurve& curve, const std::string& id, const std::string& who) {
+  Plot plot;
+  plot.id = id, plot.title = "Response to steps, " + who;
+  plot.description = "Part of a step of the target that is left over the time since it, " + who +
+                     ": frames behind the first whole exposure, and the first order that fits";
+  plot.width = 430, plot.height = 330;
+  PlotSeries line{.label = "first order",
+                  .tone = PlotTone::second,
+                  .marker = PlotMarker::none,
+                  .line = PlotLine::solid,
+                  .points = {}};
+  PlotSeries rise{.label = "rise", .tone = PlotTone::first, .marker = PlotMarker::disc, .points = {}};
+  PlotSeries fall{.label = "fall", .tone = PlotTone::first, .marker = PlotMarker::square, .points = {}};
+  const double last_s = shown_time_constants * curve.time_constant_s;
+  double low = 0, high = 0.1;
+  for (const StepPoint& point : curve.points) {
+    if (!(point.time_s >= 0) || point.time_s > last_s) continue;
+    (point.rising ? rise : fall)
+        .points.push_back({.x = milliseconds * point.time_s, .y = point.left, .x_interval = {}, .y_interval = {}});
+    low = std::min(low, point.left), high = std::max(high, point.left);
+  }
+  constexpr int parts = 80;
+  for (int i = 0; i <= parts; ++i) {
+    const double time_s = last_s * i / parts, left = std::exp(-time_s / curve.time_constant_s);
+    if (left <= 1.1 * high)
+      line.points.push_back({.x = milliseconds * time_s, .y = left, .x_interval = {}, .y_interval = {}});
+  }
+  plot.x = {.label = "Time since the step (ms)", .low = 0, .high = milliseconds * last_s, .ticks = {}};
+  plot.y = {
+      .label = "Part of the step that is left", .low = low - 0.05 * (high - low), .high = 1.12 * high, .ticks = {}};
+  for (PlotSeries* series : {&line, &rise, &fall})
+    if (!series->points.empty()) plot.series.push_back(std::move(*series));
+  return {drawn(plot), plot.description};
+}
+
+/// Of a record that somebody may have written.
+bool drawable(const std::optional<MeasureLines>& side) {
+  return side && side->response && side->response->time_constant_s > 0 &&
+         std::isfinite(side->response->time_constant_s) && !side->response->points.empty();
+}
+
+}  // namespace
+
+std::optional<FigurePairs> response_figure(const SessionMeasures& measures, bool camera) {
+  FigurePairs figures;
+  if (drawable(measures.main)) {
+    figures.figures.push_back(
+        figure_of(*measures.main->response, "response-main", camera ? "camera" : "simulated sensor"));
+  }
+  if (drawable(measures.twin))
+    figures.figures.push_back(figure_of(*measures.twin->response, "response-twin", "simulated twin"));
+  if (figures.figures.empty()) return std::nullopt;
+  return figures;
+}
+
+}  // namespace todbench

@@ -1,0 +1,69 @@
+#include "bench/session/response_record.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string>
+
+namespace todbench {
+namespace {
+
+constexpr double ms_of_s = 1000;
+
+Interval ms_interval(const StepTimeConstant& found) {
+  return {.low = ms_of_s * found.low_s, .high = ms_of_s * found.high_s};
+}
+
+Json time_constant_json(const std::optional<StepTimeConstant>& found) {
+  if (!found) return nullptr;
+  return {{"value", json_number(ms_of_s * found->value_s)},
+          {"ci95", json_interval(ms_interval(*found))},
+          {"steps", found->steps}};
+}
+
+}  // namespace
+
+void add_response_lines(MeasureLines& out, const ResponseMeasure& measure) {
+  const std::string settling =
+      measure.settling_s > 0 ? fmt::format(", settling of the target {:g} ms", ms_of_s * measure.settling_s) : "";
+  const std::string conditions =
+      fmt::format("time constant of first order; {} steps of {:g} K, {} frames of {:.4g} ms behind them, {} pixels{}",
+                  measure.response.both.steps, measure.delta_t_k, measure.response.samples, ms_of_s * measure.frame_s,
+                  measure.bright_pixels, settling);
+  const auto add = [&](const char* name, const std::optional<StepTimeConstant>& found) {
+    if (found) out.lines.push_back({name, "ms", ms_of_s * found->value_s, ms_interval(*found), conditions});
+  };
+  add("response_time", measure.response.both);
+  add("response_time_rise", measure.response.rise);
+  add("response_time_fall", measure.response.fall);
+  out.response = ResponseCurve{measure.response.both.value_s, measure.response.points};
+}
+
+Json response_json(const ResponseMeasure& measure) {
+  Json points = Json::array();
+  for (const StepPoint& point : measure.response.points)
+    points.push_back(
+        {{"time_s", json_number(point.time_s)}, {"left", json_number(point.left)}, {"rising", point.rising}});
+  return {{"delta_t_k", measure.delta_t_k},
+          {"frame_s", json_number(measure.frame_s)},
+          {"settling_ms", json_number(ms_of_s * measure.settling_s)},
+          {"dropped_steps", measure.dropped},
+          {"bright_pixels", measure.bright_pixels},
+          {"time_constant_ms", time_constant_json(measure.response.both)},
+          {"rise_ms", time_constant_json(measure.response.rise)},
+          {"fall_ms", time_constant_json(measure.response.fall)},
+          {"p_first_order", json_number(measure.response.p_first_order)},
+          {"points", points}};
+}
+
+ResponseCurve response_from(const JsonReader& response) {
+  ResponseCurve curve{response.at("time_constant_ms").at("value").number() / ms_of_s, {}};
+  for (const JsonReader& point : response.at("points").elements()) {
+    curve.points.push_back({.time_s = point.at("time_s").number(),
+                            .left = point.at("left").number(),
+                            .rising = point.at("rising").flag()});
+  }
+  return curve;
+}
+
+}  // namespace todbench

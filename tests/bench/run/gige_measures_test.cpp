@@ -1,0 +1,103 @@
+// Response time and drift of the emulated GigE camera, which has them as it is told, through the GigE path.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <string>
+
+#include "bench/plan/descriptions.h"
+#include "bench/plan/plan_options.h"
+#include "bench/run/devices.h"
+#include "bench/run/emulation.h"
+#include "tests/support/source_file.h"
+#include "tests/support/temporary_folder.h"
+#include "tod/camera_measures/camera_measures.h"
+
+namespace todbench {
+namespace {
+
+Plan wire_plan() {
+  Plan plan = *load_plan("demo");
+  plan.target.plates = {"tcat-a"};
+  plan.target.mountings = {Mounting::identity};
+  plan.target.delta_t_k = {16.9};
+  plan.simulation.accuracy = "draft";
+  plan.measurement.registration_frames = 4;
+  plan.measurement.contrast_frames = 8;
+  plan.measurement.frame_timeout_ms = 20000;
+  plan.limits = {};
+  return plan;
+}
+
+/// What a laboratory's camera is measured to be; nothing of the trials.
+Result<CameraMeasures> measured(const Plan& plan, const EmulationArguments& arguments, CameraMeasuresOptions options) {
+  auto laboratory = start_laboratory(arguments);
+  if (!laboratory) return tl::unexpected(laboratory.error());
+  const auto loaded = LoadedPlan::load(with_laboratory(plan, **laboratory));
+  if (!loaded) return tl::unexpected(loaded.error());
+  auto bench = open_bench(*loaded, {});
+  if (!bench) return tl::unexpected(bench.error());
+  options.transfer_steps_k = {16.9};
+  options.measurement = measurement_options(loaded->plan(), loaded->plates(), plan.camera.ifov_mrad);
+  return measure_camera(*bench->camera, *bench->target, options, *bench->host, {});
+}
+
+TEST(GigeMeasures, FindTheResponseTimeOfTheEmulatedCamera) {
+  const testing::TemporaryFolder folder;
+  Plan plan = wire_plan();
+  const std::string text = testing::content_of(source_file("sim_devices/sensors/sc2000.toml"));
+  plan.simulation.sensor = folder.write("bolometer.toml", text + "\ntime_constant_ms = 15\nexposure_ms = 3\n").string();
+  EmulationArguments arguments = emulation_for(plan);
+  arguments.black_body_time_constant_s = 1e-4;
+  CameraMeasuresOptions options;
+  options.response = ResponseOptions{.plate = {}, .steps = 8, .frames = 12, .settling_s = 0.001};
+
+  const auto measures = measured(plan, arguments, options);
+
+  ASSERT_TRUE(measures) << measures.error().message;
+  EXPECT_THAT(measures->reasons, ::testing::IsEmpty());
+  ASSERT_TRUE(measures->response);
+  const StepTimeConstant& found = measures->response->response.both;
+  // Two half-widths are four standard uncertainties.
+  EXPECT_NEAR(found.value_s, 0.015, found.high_s - found.low_s);
+  EXPECT_LT(found.high_s - found.low_s, 0.4 * 0.015);
+}
+
+TEST(GigeMeasures, RefuseAResponseTimeThatTheBlackBodyCovers) {
+  Plan plan = wire_plan();
+  CameraMeasuresOptions options;
+  options.response = ResponseOptions{.plate = {}, .steps = 4, .frames = 12, .settling_s = 0.3};
+
+  const auto measures = measured(plan, emulation_for(plan), options);
+
+  ASSERT_TRUE(measures) << measures.error().message;
+  EXPECT_FALSE(measures->response);
+  ASSERT_EQ(measures->reasons.size(), 1u);
+}
+
+TEST(GigeMeasures, FindTheDriftThatTheEmulatedCameraIsTold) {
+  Plan plan = wire_plan();
+  plan.camera.nuc_interval_s = 100, plan.camera.nuc_wait_s = 0.2;
+  EmulationArguments arguments = emulation_for(plan);
+  arguments.drift_k_per_min = 1.2, arguments.drift_pattern_k_per_min = 0.6;
+  CameraMeasuresOptions options;
+  options.drift_s = 3;
+
+  const auto measures = measured(plan, arguments, options);
+
+  ASSERT_TRUE(measures) << measures.error().message;
+  EXPECT_THAT(measures->reasons, ::testing::IsEmpty());
+  ASSERT_TRUE(measures->drift);
+  const DriftLaw& law = measures->drift->law;
+  // Two half-widths are four standard uncertainties.
+  const auto off = [&](const DriftFit& fit, double k_per_min) {
+    const double half = 0.5 * (fit.change_ci95.high.value() - fit.change_ci95.low.value());
+    return std::abs(fit.change_k - k_per_min / law.per_minute(1)) / half;
+  };
+  EXPECT_LT(off(law.level, arguments.drift_k_per_min), 2);
+  EXPECT_LT(off(law.pattern, arguments.drift_pattern_k_per_min), 2);
+  EXPECT_GT(law.level.change_ci95.low.value(), 0);
+  EXPECT_GT(law.pattern.change_ci95.low.value(), 0);
+}
+
+}  // namespace
+}  // namespace todbench
