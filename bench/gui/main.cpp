@@ -81,8 +81,7 @@ QList<QCommandLineOption> known_options() {
       {"report", "Writes report.html and report.pdf of a session and ends; needs no screen.", "SESSION"},
       {"pattern",
        "Test pictures on the whole screen, stepped by the arrow keys until escape: kinds of 'todbench pattern', "
-       "separated "
-       "by commas.",
+       "separated by commas; flat:0.25 for a level.",
        "KINDS"},
       {"truth", "Folder for the truth of every test picture.", "FOLDER"},
       {"pictures",

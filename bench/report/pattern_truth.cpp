@@ -66,6 +66,13 @@ Result<PictureKind> picture_kind_named(std::string_view name) {
   if (name == "ramp") return PictureKind(RampPicture{});
   if (name == "siemens") return PictureKind(SiemensPicture{});
   if (name == "flat") return PictureKind(FlatPicture{});
+  constexpr std::string_view of_level = "flat:";
+  if (name.starts_with(of_level)) {
+    const auto level = parse_number(name.substr(of_level.size()));
+    if (level && *level >= 0 && *level <= 1) return PictureKind(FlatPicture{*level});
+    return fail(ErrorCode::invalid_input,
+                "'" + one_line(name) + "': expected a level from 0 to 1 behind 'flat:', as in 'flat:0.25'");
+  }
   const std::vector<std::string> known(kind_names.begin(), kind_names.end());
   return fail(ErrorCode::invalid_input, "unknown pattern '" + one_line(name) + "'" + nearest_name_hint(name, known) +
                                             " (known: " + quoted_list(known) + ")");

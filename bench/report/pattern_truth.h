@@ -9,7 +9,8 @@
 
 namespace todbench {
 
-/// "tod", "mrtd", "edge", "ramp", "siemens", "flat", as they are without options. `invalid_input` for another name.
+/// "tod", "mrtd", "edge", "ramp", "siemens", "flat", as they are without options; "flat:0.25", of this level.
+/// `invalid_input` for another name or level.
 [[nodiscard]] Result<PictureKind> picture_kind_named(std::string_view name);
 [[nodiscard]] std::string_view name_of(const PictureKind& kind);
 

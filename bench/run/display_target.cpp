@@ -25,7 +25,7 @@ double level_of(double light, double gamma) {
 }
 
 /// Shares of the pattern to levels whose light is in proportion to them.
-cv::Mat1f levels_of(const cv::Mat1d& shares, const DisplayLevels& ends, double gamma) {
+cv::Mat1f drawn_levels(const cv::Mat1d& shares, const DisplayLevels& ends, double gamma) {
   const double ground = light_of(ends.ground / screen_levels, gamma);
   cv::Mat1f levels(shares.size());
   for (int row = 0; row < shares.rows; ++row) {
@@ -71,7 +71,7 @@ class DisplayTarget final : public Target {
     const DisplayLevels ends = *shown_levels;
     const auto shares = plate_picture(mounted(*plate, state.mounting), state.shift_mm, options_.display, 0, 1);
     if (!shares) return tl::unexpected(shares.error());
-    const cv::Mat1f levels = levels_of(*shares, ends, options_.gamma);
+    const cv::Mat1f levels = drawn_levels(*shares, ends, options_.gamma);
     const auto shown = show_(levels);
     if (!shown) return fail("the display", shown.error());
     if (auto same = is_shown(levels, *shown); !same) return tl::unexpected(same.error());

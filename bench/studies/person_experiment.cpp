@@ -18,7 +18,10 @@ namespace {
 
 constexpr int icon_width = 96, icon_height = 64;
 constexpr int contrasts_of_bars = 6;
-constexpr double first_over_ideal = 2, step_of_contrasts = 1.6;
+constexpr double first_over_ideal = 2, step_of_contrasts = 1.6, step_of_resolved = 2;
+constexpr int bars_for_an_empty_frame = 3;
+/// Share of yes to nothing above which yes means little.
+constexpr double most_false_alarms = 0.25;
 constexpr std::size_t phases_of_bars = 16;
 constexpr int gap_samples = 4;
 constexpr int resamples_of_answers = 1000;
@@ -55,16 +58,26 @@ cv::Mat1d icon_of(const FieldScene& scene) {
   return small;
 }
 
-/// Four bars on this side and five on the other.
-cv::Mat1d icon_of_bars(bool four_left) {
+/// So many bars in a square.
+void draw_bars(cv::Mat1d& icon, int bars, int x0) {
+  constexpr int width = 36;
+  const double unit = static_cast<double>(width) / (2 * bars - 1);
+  for (int bar = 0; bar < bars; ++bar)
+    icon.colRange(x0 + cvRound(2 * bar * unit), x0 + cvRound((2 * bar + 1) * unit))
+        .rowRange((icon_height - width) / 2, (icon_height + width) / 2) = 0.9;
+}
+
+/// What the alternatives of a criterion look like; 0 bars: nothing.
+cv::Mat1d icon_of_two(int left, int right) {
   cv::Mat1d icon(icon_height, icon_width, 0.5);
-  for (const bool left : {true, false}) {
-    const int bars = left == four_left ? 4 : 5, width = 36, x0 = left ? 6 : icon_width - 6 - width;
-    const double unit = static_cast<double>(width) / (2 * bars - 1);
-    for (int bar = 0; bar < bars; ++bar)
-      icon.colRange(x0 + cvRound(2 * bar * unit), x0 + cvRound((2 * bar + 1) * unit))
-          .rowRange((icon_height - width) / 2, (icon_height + width) / 2) = 0.9;
-  }
+  if (left > 0) draw_bars(icon, left, 6);
+  if (right > 0) draw_bars(icon, right, icon_width - 42);
+  return icon;
+}
+
+cv::Mat1d icon_of_one(int bars) {
+  cv::Mat1d icon(icon_height, icon_width, 0.5);
+  if (bars > 0) draw_bars(icon, bars, (icon_width - 36) / 2);
   return icon;
 }
 
@@ -139,22 +152,43 @@ Result<PersonExperiment> PersonExperiment::of_set(const IdentificationStudyTask&
   return out;
 }
 
+void PersonExperiment::describe_bars() {
+  switch (criterion_) {
+    case BarCriterion::four_or_five:
+      alternatives_ = {"four on the left", "four on the right"};
+      icons_ = {icon_of_two(4, 5), icon_of_two(5, 4)};
+      return;
+    case BarCriterion::bars_resolved:
+      alternatives_ = {"four bars", "not four bars"};
+      icons_ = {icon_of_one(4), icon_of_one(0)};
+      return;
+    case BarCriterion::detection:
+      alternatives_ = {"bars on the left", "bars on the right"};
+      icons_ = {icon_of_two(4, 0), icon_of_two(0, 4)};
+      return;
+  }
+}
+
 Result<PersonExperiment> PersonExperiment::of_bars(const VirtualMrtdTask& task, int per_contrast) {
   auto bars = BarFrames::of(task);
   if (!bars) return tl::unexpected(bars.error());
   PersonExperiment out;
   out.task_ = PersonTask::bars;
-  out.alternatives_ = {"four on the left", "four on the right"};
-  out.icons_ = {icon_of_bars(true), icon_of_bars(false)};
+  out.criterion_ = task.criterion;
+  out.describe_bars();
+  const bool yes_or_no = task.criterion == BarCriterion::bars_resolved;
+  const double step = yes_or_no ? step_of_resolved : step_of_contrasts;
+  const int empty = yes_or_no ? (per_contrast + bars_for_an_empty_frame - 1) / bars_for_an_empty_frame : 0;
   const RandomStream choice(task.seed, "person.bars");
   std::uint64_t number = 0;
   for (std::size_t f = 0; f < task.frequencies_per_mrad.size(); ++f) {
     double contrast_k = first_over_ideal * bars->ideal_k(f);
     const double noise_k = deviation_of(bars->frame_k(f, BarPattern::uniform, 0, 0, 0));
-    for (int c = 0; c < contrasts_of_bars; ++c, contrast_k *= step_of_contrasts) {
-      for (int k = 0; k < per_contrast; ++k, ++number) {
+    for (int c = 0; c < contrasts_of_bars; ++c, contrast_k *= step) {
+      for (int k = 0; k < per_contrast + empty; ++k, ++number) {
+        const std::size_t side = choice.below(2, 3 * number);
         out.trials_.push_back({.condition = out.conditions_.size(),
-                               .truth = choice.below(2, 3 * number),
+                               .truth = yes_or_no ? (k < per_contrast ? 0U : 1U) : side,
                                .phase = choice.below(phases_of_bars, 3 * number + 1),
                                .draw = 2 * choice.below(1U << 20U, 3 * number + 2)});
       }
@@ -165,7 +199,7 @@ Result<PersonExperiment> PersonExperiment::of_bars(const VirtualMrtdTask& task, 
   }
   out.description_ = {{"sensor", task.sensor.name},
                       {"axis", task.axis == BarAxis::horizontal ? "horizontal" : "vertical"},
-                      {"criterion", "four-or-five"},
+                      {"criterion", std::string(to_string(task.criterion))},
                       {"seed", task.seed}};
   out.bars_ = *std::move(bars);
   out.shuffle(task.seed);
@@ -176,9 +210,11 @@ cv::Mat1f PersonExperiment::picture_k(const PersonTrial& trial) const {
   const PersonCondition& condition = conditions_[trial.condition];
   if (task_ == PersonTask::identify) return frames_->frame_k(condition.place, trial.truth, trial.aspect, trial.draw);
   const auto interval = [&](bool four, std::uint64_t draw) {
-    return bars_->frame_k(condition.place, four ? BarPattern::four_bars : BarPattern::five_bars, condition.contrast_k,
-                          trial.phase, draw);
+    const bool five = criterion_ == BarCriterion::four_or_five;
+    return bars_->frame_k(condition.place, !four && five ? BarPattern::five_bars : BarPattern::four_bars,
+                          four || five ? condition.contrast_k : 0, trial.phase, draw);
   };
+  if (criterion_ == BarCriterion::bars_resolved) return interval(trial.truth == 0, trial.draw);
   const cv::Mat1f left = interval(trial.truth == 0, trial.draw), right = interval(trial.truth == 1, trial.draw + 1);
   const cv::Mat1f gap = cv::Mat1f::zeros(left.rows, gap_samples);
   cv::Mat1f both;
@@ -188,15 +224,42 @@ cv::Mat1f PersonExperiment::picture_k(const PersonTrial& trial) const {
 
 namespace {
 
-/// Of trials that were answered, right or wrong, by condition.
+bool yes_or_no(const PersonExperiment& experiment) {
+  return experiment.task() == PersonTask::bars && experiment.criterion() == BarCriterion::bars_resolved;
+}
+
+/// Of trials that were answered, right or wrong, by condition; without frames that show nothing.
 std::vector<std::vector<bool>> right_by_condition(const PersonExperiment& experiment,
                                                   const std::vector<PersonAnswer>& answers) {
   std::vector<std::vector<bool>> right(experiment.conditions().size());
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const PersonTrial& trial = experiment.trials()[i];
+    if (yes_or_no(experiment) && trial.truth != 0) continue;
     right[trial.condition].push_back(answers[i].answer == trial.truth);
   }
   return right;
+}
+
+PersonShare share_of(int right, int shown) {
+  return {.shown = shown,
+          .right = right,
+          .ci95 = shown == 0 ? Interval{} : wilson_interval(static_cast<double>(right), static_cast<double>(shown))};
+}
+
+/// Of every frequency, how often bars were seen where there were none.
+std::vector<PersonShare> false_alarms_of(const PersonExperiment& experiment, const std::vector<PersonAnswer>& answers) {
+  std::vector<std::pair<int, int>> counts(experiment.conditions().size() / contrasts_of_bars);
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const PersonTrial& trial = experiment.trials()[i];
+    if (trial.truth == 0) continue;
+    auto& [seen, shown] = counts[experiment.conditions()[trial.condition].place];
+    ++shown;
+    if (answers[i].answer == 0) ++seen;
+  }
+  std::vector<PersonShare> out;
+  out.reserve(counts.size());
+  for (const auto& [seen, shown] : counts) out.push_back(share_of(seen, shown));
+  return out;
 }
 
 /// Where the shares of some conditions, the easiest first, pass 75 %; `at` rises from one to the next.
@@ -279,9 +342,18 @@ Json person_json(const PersonExperiment& experiment, const std::vector<PersonAns
   for (const PersonCondition& condition : experiment.conditions()) {
     if (condition.place < json["frequencies"].size()) continue;
     const SetCriterion& threshold = result.thresholds_k[condition.place];
-    json["frequencies"].push_back({{"frequency_per_mrad", json_number(condition.frequency_per_mrad)},
-                                   {"threshold_k", json_number(threshold.value)},
-                                   {"threshold_ci95_k", json_interval(threshold.ci95)}});
+    Json row{{"frequency_per_mrad", json_number(condition.frequency_per_mrad)},
+             {"threshold_k", json_number(threshold.value)},
+             {"threshold_ci95_k", json_interval(threshold.ci95)}};
+    if (!result.false_alarms.empty()) {
+      const PersonShare& seen = result.false_alarms[condition.place];
+      row["false_alarms"] = {
+          {"shown", seen.shown},
+          {"seen", seen.right},
+          {"proportion", seen.shown > 0 ? Json(static_cast<double>(seen.right) / seen.shown) : Json()},
+          {"ci95", json_interval(seen.ci95)}};
+    }
+    json["frequencies"].push_back(std::move(row));
   }
   return json;
 }
@@ -314,11 +386,7 @@ PersonResult person_result(const PersonExperiment& experiment, const std::vector
   PersonResult out;
   for (const auto& one : right) {
     const auto count = std::count(one.begin(), one.end(), true);
-    out.conditions.push_back(
-        {.shown = static_cast<int>(one.size()),
-         .right = static_cast<int>(count),
-         .ci95 =
-             one.empty() ? Interval{} : wilson_interval(static_cast<double>(count), static_cast<double>(one.size()))});
+    out.conditions.push_back(share_of(static_cast<int>(count), static_cast<int>(one.size())));
   }
   out.confusion.assign(right.size(), std::vector(alternatives, std::vector<int>(alternatives, 0)));
   for (std::size_t i = 0; i < answers.size(); ++i) {
@@ -332,6 +400,7 @@ PersonResult person_result(const PersonExperiment& experiment, const std::vector
     out.r75_m = passing_of(at, right, seed);
     return out;
   }
+  if (yes_or_no(experiment)) out.false_alarms = false_alarms_of(experiment, answers);
   // The contrasts of a frequency, from the highest: its inverse rises as a range does.
   for (std::size_t first = 0; first < right.size(); first += contrasts_of_bars) {
     std::vector<std::vector<bool>> own;
@@ -339,6 +408,12 @@ PersonResult person_result(const PersonExperiment& experiment, const std::vector
     for (std::size_t c = first + contrasts_of_bars; c-- > first;) {
       at.push_back(1 / experiment.conditions()[c].contrast_k);
       own.push_back(right[c]);
+    }
+    const std::size_t frequency = first / contrasts_of_bars;
+    if (yes_or_no(experiment) &&
+        out.false_alarms[frequency].right > most_false_alarms * out.false_alarms[frequency].shown) {
+      out.thresholds_k.push_back({});
+      continue;
     }
     const SetCriterion found = passing_of(at, own, seed);
     out.thresholds_k.push_back({inverse(found.value), {inverse(found.ci95.high), inverse(found.ci95.low)}});

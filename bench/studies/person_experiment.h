@@ -17,7 +17,7 @@ namespace todbench {
 
 enum class PersonTask {
   identify,  ///< one picture: which target of the set is it?
-  bars       ///< two pictures, four bars in one and five in the other: which has four?
+  bars       ///< by BarCriterion: which of two pictures has the four bars? Or yes or no of one: are they resolved?
 };
 [[nodiscard]] std::string_view to_string(PersonTask task);
 
@@ -32,7 +32,7 @@ struct PersonCondition {
 /// One question. Everything that its picture is made of: the task with its seed makes it again.
 struct PersonTrial {
   std::size_t condition = 0;
-  std::size_t truth = 0;   ///< of the alternatives
+  std::size_t truth = 0;   ///< of the alternatives; of `bars_resolved` 1 where nothing is shown
   std::size_t aspect = 0;  ///< identify
   std::size_t phase = 0;   ///< bars; of identify the draw says it
   std::uint64_t draw = 0;  ///< of noise; bars: of the left interval, the right one has the next
@@ -48,17 +48,21 @@ class PersonExperiment {
   /// Every target `per_target` times at every range, each time from one of its sides and with noise of its own, all in
   /// random order. Errors: experiment_of(), IdentificationFrames::of().
   [[nodiscard]] static Result<PersonExperiment> of_set(const IdentificationStudyTask& task, int per_target);
-  /// Six contrasts, `per_contrast` times each, from twice the threshold of an ideal observer in steps of 1.6. Errors:
-  /// BarFrames::of().
+  /// By the criterion of the task. Six contrasts, `per_contrast` times each, from twice the threshold of an ideal
+  /// observer in steps of 1.6; of `bars_resolved` in steps of 2, and for every three frames of a contrast one with
+  /// nothing in it, on the same grey scale. Errors: BarFrames::of().
   [[nodiscard]] static Result<PersonExperiment> of_bars(const VirtualMrtdTask& task, int per_contrast);
 
   [[nodiscard]] PersonTask task() const { return task_; }
+  /// Of bars.
+  [[nodiscard]] BarCriterion criterion() const { return criterion_; }
   [[nodiscard]] const std::vector<std::string>& alternatives() const { return alternatives_; }
   /// A small picture of every alternative, 0 black to 1 white.
   [[nodiscard]] const std::vector<cv::Mat1d>& icons() const { return icons_; }
   [[nodiscard]] const std::vector<PersonCondition>& conditions() const { return conditions_; }
   [[nodiscard]] const std::vector<PersonTrial>& trials() const { return trials_; }
-  /// What is shown, kelvin above the background; of bars both intervals, a strip of background between them.
+  /// What is shown, kelvin above the background; of bars both intervals, a strip of background between them, where
+  /// there are two.
   [[nodiscard]] cv::Mat1f picture_k(const PersonTrial& trial) const;
   /// The same for all trials of a condition: nothing depends on the answer.
   [[nodiscard]] GreyScale grey(const PersonTrial& trial) const { return grey_[trial.condition]; }
@@ -68,7 +72,9 @@ class PersonExperiment {
  private:
   PersonExperiment() = default;
   void shuffle(std::uint64_t seed);
+  void describe_bars();
   PersonTask task_ = PersonTask::identify;
+  BarCriterion criterion_ = BarCriterion::four_or_five;
   std::vector<std::string> alternatives_;
   std::vector<cv::Mat1d> icons_;
   std::vector<PersonCondition> conditions_;
@@ -85,7 +91,7 @@ struct PersonAnswer {
   std::optional<int> limit_ms{};
 };
 
-/// Right answers of one condition, with Wilson's 95 % interval.
+/// Right answers of one condition, with Wilson's 95 % interval; of `bars_resolved` to frames with bars only.
 struct PersonShare {
   int shown = 0, right = 0;
   Interval ci95;
@@ -97,7 +103,11 @@ struct PersonResult {
   std::vector<PersonShare> conditions;                   ///< in their order
   std::vector<std::vector<std::vector<int>>> confusion;  ///< [condition][shown][answered]
   SetCriterion r75_m;                                    ///< identify
-  std::vector<SetCriterion> thresholds_k;                ///< bars: of every frequency
+  /// Bars: of every frequency. Nothing by `bars_resolved` where bars were seen in more than a quarter of the frames
+  /// without any: whoever says yes to everything has no threshold.
+  std::vector<SetCriterion> thresholds_k;
+  /// `bars_resolved`: of every frequency, how many frames without bars there were and in how many bars were seen.
+  std::vector<PersonShare> false_alarms;
 };
 /// Of the first answers.size() trials.
 [[nodiscard]] PersonResult person_result(const PersonExperiment& experiment, const std::vector<PersonAnswer>& answers);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bench/gui/presenters/colour_map.h"
+#include "bench/plan/atmospheres.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/scene_descriptions.h"
 #include "bench/session/session_folder.h"
@@ -49,6 +50,7 @@ Result<PersonExperiment> person_experiment(const PersonQuestion& question) {
     task.plan = full_plan(task.sensor, {}, {});
     task.accuracy = Accuracy::normal();
     task.axis = question.axis;
+    task.criterion = question.criterion;
     task.seed = question.seed;
     const double nyquist = 0.5 * task.sensor.samples_per_pitch() / task.sensor.ifov_mrad();
     for (const double share : question.of_nyquist) task.frequencies_per_mrad.push_back(share * nyquist);
@@ -56,8 +58,12 @@ Result<PersonExperiment> person_experiment(const PersonQuestion& question) {
   }
   auto set = load_target_set(question.set);
   if (!set) return tl::unexpected(set.error());
+  auto air = load_atmosphere(question.atmosphere, {.band = {sensor->wavelength_min_um, sensor->wavelength_max_um},
+                                                   .weight_temperature_k = sensor->scene_temperature_k});
+  if (!air) return tl::unexpected(air.error());
   IdentificationStudyTask task;
   task.set = *std::move(set);
+  task.air = *std::move(air);
   task.sensor = *std::move(sensor);
   task.accuracy = Accuracy::normal();
   task.ranges_m = question.ranges_m;

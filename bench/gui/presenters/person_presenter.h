@@ -23,14 +23,16 @@ namespace todbench {
 struct PersonQuestion {
   PersonTask task = PersonTask::identify;
   std::string sensor = "sc2000";
-  std::string set = "small-craft";     ///< identify
-  std::vector<double> ranges_m{};      ///< identify
-  std::vector<double> of_nyquist{};    ///< bars: frequencies
-  BarAxis axis = BarAxis::horizontal;  ///< bars
-  int each = 2;                        ///< of every target and range, or of every contrast and frequency
+  std::string set = "small-craft";                      ///< identify
+  std::vector<double> ranges_m{};                       ///< identify
+  std::string atmosphere = "clear";                     ///< identify: load_atmosphere()
+  std::vector<double> of_nyquist{};                     ///< bars: frequencies
+  BarAxis axis = BarAxis::horizontal;                   ///< bars
+  BarCriterion criterion = BarCriterion::four_or_five;  ///< bars
+  int each = 2;  ///< of every target and range, or of every contrast and frequency
   std::uint64_t seed = 1;
 };
-/// The frames of that question, at the accuracy `normal`, clear air. Errors: of the loaders and of PersonExperiment.
+/// The frames of that question, at the accuracy `normal`. Errors: of the loaders and of PersonExperiment.
 [[nodiscard]] Result<PersonExperiment> person_experiment(const PersonQuestion& question);
 
 /// In the window's thread.

@@ -8,6 +8,8 @@
 #include <QLineEdit>
 #include <QSpinBox>
 #include <algorithm>
+#include <array>
+#include <string_view>
 #include <utility>
 
 #include "bench/gui/presenters/human_presenter.h"
@@ -16,6 +18,7 @@
 #include "bench/gui/views/alternatives_panel.h"
 #include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/picture_view.h"
+#include "bench/plan/atmospheres.h"
 #include "bench/plan/resources.h"
 #include "bench/report/number_format.h"
 #include "bench/report/tod_figures.h"
@@ -35,6 +38,35 @@ std::optional<std::vector<double>> numbers_of(const QString& text) {
     if (!good) return std::nullopt;
   }
   return numbers;
+}
+
+constexpr std::array criteria_of_bars{BarCriterion::four_or_five, BarCriterion::bars_resolved, BarCriterion::detection};
+
+QString criterion_words(std::string_view words) {
+  return QString::fromUtf8(words.data(), static_cast<qsizetype>(words.size()));
+}
+
+QString question_title(BarCriterion criterion) {
+  switch (criterion) {
+    case BarCriterion::bars_resolved:
+      return "Are there four bars?";
+    case BarCriterion::detection:
+      return "Where are the bars?";
+    case BarCriterion::four_or_five:
+      break;
+  }
+  return "Which has four bars?";
+}
+
+/// Of frames without bars, all frequencies together.
+QString false_alarms_in_words(const PersonResult& result) {
+  int seen = 0, shown = 0;
+  for (const PersonShare& share : result.false_alarms) {
+    seen += share.right;
+    shown += share.shown;
+  }
+  return result.false_alarms.empty() ? QString()
+                                     : QString("<p>Bars seen in %1 of %2 frames without any</p>").arg(seen).arg(shown);
 }
 
 /// What the answers say, and where they are.
@@ -62,6 +94,7 @@ QString result_of_a_person(const PersonPresenter& person) {
                  QString(set ? "right" : "75 %") + "</th></tr>" + rows + "</table>";
   if (set && result.r75_m.value)
     text += "<p>75 % at " + QString::fromStdString(with_interval(result.r75_m.value, result.r75_m.ci95)) + " m</p>";
+  text += false_alarms_in_words(result);
   const QString where = QString::fromStdString(person.folder().filename().string());
   return text + "<p>" + (person.problem().isEmpty() ? "Kept in " + where.toHtmlEscaped() : person.problem()) + "</p>";
 }
@@ -86,6 +119,7 @@ HumanView::HumanView(Workbench& bench, HumanPresenter& presenter, PersonPresente
   layout->addLayout(seen, 1);
   layout->addWidget(side_panel());
   connect(question_, &QComboBox::currentIndexChanged, this, &HumanView::show_question);
+  connect(criterion_, &QComboBox::currentIndexChanged, this, &HumanView::show_question);
   connect(limited_, &QCheckBox::toggled, shown_ms_, &QWidget::setEnabled);
   connect(begin_, &QPushButton::clicked, this, &HumanView::begin);
   connect(abort_, &QPushButton::clicked, &presenter_, &HumanPresenter::abort);
@@ -143,13 +177,22 @@ QWidget* HumanView::side_panel() {
 void HumanView::add_questions(QFormLayout& form) {
   question_ = new QComboBox;
   question_->setObjectName("humanQuestion");
-  question_->addItems({"Triangles of the run", "Targets of a set", "Four or five bars"});
+  question_->addItems({"Triangles of the run", "Targets of a set", "Four bars"});
   set_ = new QComboBox;
   set_->setObjectName("humanSet");
   for (const auto& name : resource_names(ResourceKind::target_set)) set_->addItem(QString::fromStdString(name));
   set_->setCurrentText("small-craft");
   ranges_ = new QLineEdit("400, 800, 1600");
   ranges_->setObjectName("humanRanges");
+  air_ = new QComboBox;
+  air_->setObjectName("humanAir");
+  for (const auto& name : atmosphere_names()) {
+    // It has a number of its own, which this page does not ask for.
+    if (name != "beer-lambert") air_->addItem(QString::fromStdString(name));
+  }
+  criterion_ = new QComboBox;
+  criterion_->setObjectName("humanCriterion");
+  for (const BarCriterion criterion : criteria_of_bars) criterion_->addItem(criterion_words(to_string(criterion)));
   frequencies_ = new QLineEdit("0.3, 0.6, 0.9");
   frequencies_->setObjectName("humanFrequencies");
   axis_ = new QComboBox;
@@ -158,8 +201,14 @@ void HumanView::add_questions(QFormLayout& form) {
   form.addRow("Question", question_);
   form.addRow("Set", set_);
   form.addRow("Ranges (m)", ranges_);
+  form.addRow("Air", air_);
+  form.addRow("Criterion", criterion_);
   form.addRow("Of Nyquist", frequencies_);
   form.addRow("Axis", axis_);
+}
+
+BarCriterion HumanView::criterion() const {
+  return criteria_of_bars[static_cast<std::size_t>(std::max(0, criterion_->currentIndex()))];
 }
 
 bool HumanView::triangles() const {
@@ -170,15 +219,20 @@ void HumanView::show_question() {
   const int question = question_->currentIndex();
   form_->setRowVisible(set_, question == of_set);
   form_->setRowVisible(ranges_, question == of_set);
+  form_->setRowVisible(air_, question == of_set);
+  form_->setRowVisible(criterion_, question == of_bars);
   form_->setRowVisible(frequencies_, question == of_bars);
   form_->setRowVisible(axis_, question == of_bars);
   title_->setText(question == of_set    ? "Which one is it?"
-                  : question == of_bars ? "Which has four bars?"
+                  : question == of_bars ? question_title(criterion())
                                         : "Which way does it point?");
   const QString keys = question == of_set    ? "Answer with the keys of the icons, or click them."
                        : question == of_bars ? "Answer with the left and right arrow keys, or click."
                                              : "Answer with the arrow keys.";
-  hint_->setText(keys + " There is no feedback; guess when you do not see it. " +
+  const bool yes_or_no = question == of_bars && criterion() == BarCriterion::bars_resolved;
+  hint_->setText(keys +
+                 (yes_or_no ? " Left: four bars, all apart. Some frames have none. There is no feedback. "
+                            : " There is no feedback; guess when you do not see it. ") +
                  (triangles() ? "You judge the camera's own frames, and do not see what the model answered."
                               : "You judge frames of the simulated sensor of the plan, those that the model "
                                 "observer judges."));
@@ -206,7 +260,9 @@ void HumanView::begin_person() {
   PersonQuestion question{.task = question_->currentIndex() == of_set ? PersonTask::identify : PersonTask::bars,
                           .sensor = bench_.plan().simulation.sensor,
                           .set = set_->currentText().toStdString(),
+                          .atmosphere = air_->currentText().toStdString(),
                           .axis = axis_->currentIndex() == 0 ? BarAxis::horizontal : BarAxis::vertical,
+                          .criterion = criterion(),
                           .each = per_size_->value(),
                           .seed = bench_.plan().seed};
   const auto ranges = numbers_of(ranges_->text()), frequencies = numbers_of(frequencies_->text());
@@ -258,6 +314,7 @@ void HumanView::keyPressEvent(QKeyEvent* event) {
 void HumanView::show_state() {
   const auto running = [](HumanState state) { return state == HumanState::showing || state == HumanState::hidden; };
   question_->setEnabled(!running(presenter_.state()) && !running(person_.state()));
+  criterion_->setEnabled(question_->isEnabled());
   alternatives_->setVisible(!triangles() && running(person_.state()));
   if (triangles())
     show_triangles();

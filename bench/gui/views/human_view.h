@@ -19,6 +19,7 @@ class MeasurePresenter;
 class PersonPresenter;
 class PictureView;
 class Workbench;
+enum class BarCriterion;
 
 class HumanView final : public QWidget {
   Q_OBJECT
@@ -34,6 +35,7 @@ class HumanView final : public QWidget {
   [[nodiscard]] QWidget* side_panel();
   void add_questions(QFormLayout& form);
   [[nodiscard]] bool triangles() const;
+  [[nodiscard]] BarCriterion criterion() const;
   void begin();
   void begin_person();
   void show_question();
@@ -48,7 +50,7 @@ class HumanView final : public QWidget {
   QFormLayout* form_ = nullptr;
   PictureView* picture_;
   AlternativesPanel* alternatives_;
-  QComboBox *question_, *set_, *axis_;
+  QComboBox *question_, *set_, *air_, *criterion_, *axis_;
   QLineEdit *ranges_, *frequencies_;
   QLabel *title_, *hint_;
   QSpinBox *per_size_, *shown_ms_;

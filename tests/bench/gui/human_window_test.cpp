@@ -7,6 +7,7 @@
 #include <QToolButton>
 
 #include "bench/gui/views/human_view.h"
+#include "bench/gui/views/page_check.h"
 #include "bench/gui/views/picture_view.h"
 #include "bench/session/trials_csv.h"
 #include "tests/bench/gui/gui_test_support.h"
@@ -216,6 +217,30 @@ TEST(HumanObserver, SaysWhichIntervalHasFourBars) {
   EXPECT_EQ(window->person().state(), HumanState::finished);
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(window->person().answers()[i].answer, i % 3 == 0 ? 0u : 1u);
   EXPECT_TRUE(std::filesystem::exists(window->person().folder() / "person.json"));
+}
+
+TEST(HumanObserver, IsAskedByTheCriterionAndBehindTheAirOfThePage) {
+  ShownWindow window("sim:sc2000", 1);
+  window.part<QComboBox>("humanCriterion").setCurrentText("bars-resolved");
+  ask(window, 2, "humanFrequencies", "0.4");
+  EXPECT_TRUE(window.part<QComboBox>("humanCriterion").isVisible());
+  EXPECT_FALSE(window.part<QComboBox>("humanAir").isVisible());
+  window.click("beginHuman");
+  ASSERT_TRUE(window->person().experiment());
+  QCoreApplication::processEvents();
+  EXPECT_EQ(faults_of(*window).join("; ").toStdString(), "");
+  EXPECT_EQ(window->person().experiment()->criterion(), BarCriterion::bars_resolved);
+  // A frame of every contrast, and one without bars beside each.
+  EXPECT_EQ(window->person().experiment()->trials().size(), 12u);
+  window.click("endHuman");
+
+  window.part<QComboBox>("humanAir").setCurrentText("tropical");
+  ask(window, 1, "humanRanges", "300, 900");
+  window.click("beginHuman");
+  ASSERT_TRUE(window->person().experiment());
+  for (const PersonCondition& condition : window->person().experiment()->conditions())
+    EXPECT_LT(condition.transmittance, 0.9);
+  EXPECT_EQ(window->person().experiment()->description()["atmosphere"], "tropical");
 }
 
 TEST(HumanObserver, KeepsTheAnswersOfOneWhoEndsEarlyAndRefusesWhatIsNoRange) {

@@ -10,6 +10,7 @@
 #include "bench/gui/presenters/chain_presenter.h"
 #include "bench/gui/views/page_check.h"
 #include "bench/gui/views/pattern_window.h"
+#include "bench/report/pattern_truth.h"
 #include "bench/run/display_target.h"
 #include "hvs/shape/polygon_coverage.h"
 #include "tests/bench/gui/gui_test_support.h"
@@ -49,6 +50,17 @@ TEST(PatternWindow, ShowsWhatTheTruthSaysPixelForPixel) {
   const cv::Mat1f truth = screen_of_truth(*picture);
   EXPECT_LE(cv::norm(*seen, truth, cv::NORM_INF), 1.001 / 255);
   EXPECT_LE(cv::countNonZero(cv::abs(*seen - truth) > 0.5 / 255), 4);
+}
+
+TEST(PatternWindow, KnowsFlatPicturesByTheirLevel) {
+  const auto quarter = picture_kind_named("flat:0.25");
+  ASSERT_TRUE(quarter) << quarter.error().message;
+  EXPECT_EQ(std::get<FlatPicture>(*quarter).level, 0.25);
+  for (const char* wrong : {"flat:", "flat:1.1", "flat:nan", "flat:x", "flat:-0.1"}) {
+    const auto refused = picture_kind_named(wrong);
+    ASSERT_FALSE(refused) << wrong;
+    EXPECT_EQ(refused.error().code, ErrorCode::invalid_input);
+  }
 }
 
 TEST(PatternWindow, StepsByTheKeyboardAndRefusesWhatIsLarger) {

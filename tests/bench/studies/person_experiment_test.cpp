@@ -122,6 +122,72 @@ TEST(PersonExperiment, OfBarsFindsTheContrastOfEveryFrequency) {
   EXPECT_LT(result.thresholds_k[0].ci95.low.value(), *result.thresholds_k[0].value);
 }
 
+// Yes or no: who says yes to bars from the third contrast on and never to nothing has a threshold; who says yes to all
+// has none.
+TEST(PersonExperiment, OfResolvedBarsAsksWhetherThereAreAnyAndCountsFalseAlarms) {
+  VirtualMrtdTask task = two_frequencies();
+  task.criterion = BarCriterion::bars_resolved;
+  const auto experiment = PersonExperiment::of_bars(task, 6);
+  ASSERT_TRUE(experiment) << experiment.error().message;
+  const auto& conditions = experiment->conditions();
+  ASSERT_EQ(conditions.size(), 12u);
+  ASSERT_EQ(experiment->trials().size(), 12u * (6 + 2));
+  EXPECT_NEAR(conditions[1].contrast_k / conditions[0].contrast_k, 2, 1e-9);
+  const auto strength = [&](const PersonTrial& trial) {
+    cv::Scalar mean, sd;
+    cv::meanStdDev(experiment->picture_k(trial), mean, sd);
+    return sd[0];
+  };
+  for (const PersonTrial& trial : experiment->trials()) {
+    if (trial.condition != 5) continue;
+    // The highest contrast of a frequency is 64 times what an ideal observer needs.
+    if (trial.truth == 0)
+      EXPECT_GT(strength(trial), 0.15 * conditions[5].contrast_k);
+    else
+      EXPECT_LT(strength(trial), 3 * task.sensor.netd_k);
+  }
+  std::vector<PersonAnswer> honest, always;
+  for (const PersonTrial& trial : experiment->trials()) {
+    const bool sees = trial.truth == 0 && trial.condition % 6 >= 2;
+    honest.push_back({.answer = sees ? 0U : 1U});
+    always.push_back({.answer = 0});
+  }
+
+  const PersonResult result = person_result(*experiment, honest);
+  const PersonResult of_always = person_result(*experiment, always);
+
+  ASSERT_EQ(result.thresholds_k.size(), 2u);
+  EXPECT_EQ(result.conditions[0].shown, 6) << "frames with bars only";
+  EXPECT_EQ(result.conditions[0].right, 0);
+  EXPECT_EQ(result.conditions[2].right, 6);
+  for (const PersonShare& alarms : result.false_alarms) {
+    EXPECT_EQ(alarms.shown, 12);
+    EXPECT_EQ(alarms.right, 0);
+  }
+  // From none to all between two contrasts: three quarters of the way in their logarithms.
+  for (const std::size_t f : {0U, 1U}) {
+    EXPECT_NEAR(result.thresholds_k[f].value.value(), conditions[6 * f + 1].contrast_k * std::pow(2, 0.75), 1e-9);
+    EXPECT_EQ(of_always.false_alarms[f].right, 12);
+    EXPECT_FALSE(of_always.thresholds_k[f].value);
+  }
+}
+
+TEST(PersonExperiment, OfDetectionShowsBarsOnOneSideAndNothingOnTheOther) {
+  VirtualMrtdTask task = two_frequencies();
+  task.criterion = BarCriterion::detection;
+  const auto experiment = PersonExperiment::of_bars(task, 2);
+  ASSERT_TRUE(experiment) << experiment.error().message;
+  EXPECT_EQ(experiment->description()["criterion"], "detection");
+  for (const PersonTrial& trial : experiment->trials()) {
+    if (trial.condition % 6 != 5) continue;
+    const cv::Mat1f picture = experiment->picture_k(trial);
+    const int half = (picture.cols - 4) / 2;
+    const double left = cv::mean(picture.colRange(0, half))[0],
+                 right = cv::mean(picture.colRange(half + 4, picture.cols))[0];
+    EXPECT_EQ(left > right, trial.truth == 0);
+  }
+}
+
 TEST(PersonExperiment, KeepsWhatWasAnsweredAndNothingTwice) {
   const testing::TemporaryFolder folder;
   const auto experiment = PersonExperiment::of_set(three_craft(), 2);
