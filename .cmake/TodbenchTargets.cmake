@@ -30,7 +30,7 @@ foreach(sanitizer ${sanitizers})
 endforeach()
 if(TODBENCH_SANITIZE)
   target_compile_options(todbench_options INTERFACE -fno-omit-frame-pointer -fno-sanitize-recover=all
-    # GCC: "the sanitizers may cause false positives of -Wmaybe-uninitialized"; release builds have the warning.
+    # GCC: "the sanitizers may cause false positives of -Wmaybe-uninitialized".
     $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_compile_definitions(todbench_options INTERFACE TODBENCH_SANITIZED)
 endif()
@@ -83,10 +83,11 @@ endfunction()
 option(TODBENCH_UNITY "Compile the sources of every library together" ON)
 set(TODBENCH_UNITY_BATCH 8 CACHE STRING "So many sources at a time: more are cheaper altogether, and dearer when one of them changes")
 option(TODBENCH_UNITY_TESTS "Compile the sources of every test program together" ON)
-# A local name is not to be compared with those of another source, and a source is not a header because another includes it.
+# A local name is not to be compared with those of another source, a source is not a header because another includes it, and GCC 12 takes
+# the inside of an empty std::optional for a value.
 set(together "$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>")
 target_compile_options(todbench_options INTERFACE "$<${together}:-Wno-shadow>"
-  "$<$<AND:${together},$<CXX_COMPILER_ID:GNU>>:-Wshadow=local;-Wno-subobject-linkage>")
+  "$<$<AND:${together},$<CXX_COMPILER_ID:GNU>>:-Wshadow=local;-Wno-subobject-linkage;-Wno-maybe-uninitialized>")
 
 # What libraries and programs of the product have in common.
 function(todbench_product target)
@@ -95,14 +96,6 @@ function(todbench_product target)
   if(TODBENCH_SANITIZE MATCHES "undefined" AND CMAKE_CURRENT_SOURCE_DIR MATCHES "^${CMAKE_SOURCE_DIR}/(tod|bench)(/|$)")
     target_compile_options(${target} PRIVATE -fno-sanitize=alignment)
   endif()
-  if(CMAKE_CURRENT_SOURCE_DIR MATCHES "^${CMAKE_SOURCE_DIR}/bench(/|$)")
-    todbench_no_uninitialized(${target})
-  endif()
-endfunction()
-
-# GCC 12 takes the inside of an empty std::optional for a value where many sources are one; below bench/ it does not, and the warning stays.
-function(todbench_no_uninitialized target)
-  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endfunction()
 
 # todbench_library(NAME SOURCES ... DEPENDS ... [APART ...] [PRECOMPILED KIND]): a static library whose headers are included from the
@@ -154,7 +147,6 @@ function(todbench_test name)
   endif()
   todbench_precompile(${name} ${ARG_PRECOMPILED})
   set_target_properties(${name} PROPERTIES UNITY_BUILD ${TODBENCH_UNITY_TESTS} UNITY_BUILD_BATCH_SIZE 6)
-  todbench_no_uninitialized(${name})
   set_source_files_properties(${ARG_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   add_dependencies(todbench_tests ${name})
   foreach(label ${ARG_LABELS})
