@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "tod/measures/edge_clipping.h"
 #include "tod/measures/edge_line.h"
