@@ -12,6 +12,7 @@ namespace {
 
 constexpr double milliseconds = 1000;
 constexpr double shown_time_constants = 8;
+constexpr double longest_s = 1e6, most_left = 10;  // of a record that somebody may have written
 
 Figure figure_of(const ResponseCurve& curve, const std::string& id, const std::string& who) {
   Plot plot;
@@ -29,7 +30,7 @@ Figure figure_of(const ResponseCurve& curve, const std::string& id, const std::s
   const double last_s = shown_time_constants * curve.time_constant_s;
   double low = 0, high = 0.1;
   for (const StepPoint& point : curve.points) {
-    if (!(point.time_s >= 0) || point.time_s > last_s) continue;
+    if (!(point.time_s >= 0) || point.time_s > last_s || std::abs(point.left) > most_left) continue;
     (point.rising ? rise : fall)
         .points.push_back({.x = milliseconds * point.time_s, .y = point.left, .x_interval = {}, .y_interval = {}});
     low = std::min(low, point.left), high = std::max(high, point.left);
@@ -48,10 +49,9 @@ Figure figure_of(const ResponseCurve& curve, const std::string& id, const std::s
   return {drawn(plot), plot.description};
 }
 
-/// Of a record that somebody may have written.
 bool drawable(const std::optional<MeasureLines>& side) {
-  return side && side->response && side->response->time_constant_s > 0 &&
-         std::isfinite(side->response->time_constant_s) && !side->response->points.empty();
+  return side && side->response && side->response->time_constant_s > 0 && side->response->time_constant_s < longest_s &&
+         !side->response->points.empty();
 }
 
 }  // namespace

@@ -14,22 +14,32 @@ double CorrectionDrift::minutes(double since_s) const {
   return -second * time_constant_s * std::expm1(-since_s / time_constant_s);
 }
 
-cv::Mat1d drift_pattern(cv::Size size, std::uint64_t seed) {
+DriftPattern drift_pattern(cv::Size size, std::uint64_t seed) {
+  const RandomStream random(seed, "laboratory.drift");
   std::vector<float> draws(static_cast<std::size_t>(size.area()));
-  RandomStream(seed, "laboratory.drift").fill_normal(draws);
-  cv::Mat1d pattern(size);
+  random.fill_normal(draws);
+  cv::Mat1d pattern(size), phase(size);
   std::copy(draws.begin(), draws.end(), pattern.begin());
   cv::Scalar mean, sd;
   cv::meanStdDev(pattern, mean, sd);
-  return cv::Mat1d((pattern - mean[0]) / sd[0]);
+  const RandomStream phases = random.sub(1);
+  std::uint64_t index = 0;
+  for (double& value : phase) value = phases.uniform(index++);
+  return {cv::Mat1d((pattern - mean[0]) / sd[0]), phase};
 }
 
-cv::Mat1w with_pattern(const cv::Mat1w& counts, const cv::Mat1d& pattern, double pattern_k, const SensorSpec& sensor) {
+cv::Mat1w with_pattern(const cv::Mat1w& counts, const DriftPattern& pattern, double pattern_k, std::uint64_t exposure,
+                       const SensorSpec& sensor) {
   cv::Mat1w out(counts.size());
   const double per_k = 1 / sensor.kelvin_per_count, top = std::exp2(sensor.bits) - 1;
+  // Counts are whole already: rounding to the nearest would leave the pattern in steps. Multiples of the golden
+  // section's part are spread evenly.
+  constexpr std::uint64_t period = 1 << 20;
+  const double moved = 0.6180339887498949 * static_cast<double>(exposure % period);
   for (int j = 0; j < counts.rows; ++j) {
     for (int i = 0; i < counts.cols; ++i) {
-      const double value = std::round(counts(j, i) + pattern_k * per_k * pattern(j, i));
+      const double up = std::fmod(pattern.phase(j, i) + moved, 1);
+      const double value = std::floor(counts(j, i) + pattern_k * per_k * pattern.draw(j, i) + up);
       out(j, i) = static_cast<std::uint16_t>(std::clamp(value, 0.0, top));
     }
   }

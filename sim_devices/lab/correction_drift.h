@@ -1,6 +1,7 @@
 // What a camera drifts after a correction of its non-uniformity.
 #pragma once
 
+#include <cstdint>
 #include <opencv2/core.hpp>
 
 #include "sim_devices/sensor/sensor_spec.h"
@@ -18,11 +19,16 @@ struct CorrectionDrift {
   [[nodiscard]] double minutes(double since_s) const;
 };
 
-/// One draw per pixel, the same for the same seed: mean 0 and standard deviation 1 over the picture.
-[[nodiscard]] cv::Mat1d drift_pattern(cv::Size size, std::uint64_t seed);
+/// One draw per pixel, the same for the same seed.
+struct DriftPattern {
+  cv::Mat1d draw;   ///< mean 0 and standard deviation 1 over the picture; empty: there is no pattern
+  cv::Mat1d phase;  ///< of the rounding, 0 to 1
+};
+[[nodiscard]] DriftPattern drift_pattern(cv::Size size, std::uint64_t seed);
 
-/// Counts with the pattern of the drift on them, rounded again; `pattern` as drift_pattern() makes it.
-[[nodiscard]] cv::Mat1w with_pattern(const cv::Mat1w& counts, const cv::Mat1d& pattern, double pattern_k,
-                                     const SensorSpec& sensor);
+/// Whole counts with `pattern_k` times the pattern on them: of successive exposures so many are rounded up that their
+/// mean has parts of a count, too.
+[[nodiscard]] cv::Mat1w with_pattern(const cv::Mat1w& counts, const DriftPattern& pattern, double pattern_k,
+                                     std::uint64_t exposure, const SensorSpec& sensor);
 
 }  // namespace todbench

@@ -47,7 +47,7 @@ struct Laboratory::State {
   std::atomic<std::uint64_t> next_exposure = 0, since_power_up = 0;
   std::optional<ContrastSteps> taken_in{};      ///< of the contrast, since power-up; the camera's thread
   std::atomic<std::uint64_t> corrected_at = 0;  ///< exposures since power-up at the last correction
-  cv::Mat1d drifting;                           ///< pattern of the drift; empty: there is none
+  DriftPattern drifting;                        ///< pattern of the drift; empty: there is none
   std::unique_ptr<LaboratoryCamera> camera;     // last: its thread looks at the others
 
   /// Frame k shows what is before the camera at that moment, with the noise of exposure k.
@@ -73,8 +73,8 @@ struct Laboratory::State {
     const double minutes = options.drift.minutes(std::max(0.0, frames / options.sensor.frame_rate_hz));
     scene.background_k += options.drift.level_k_per_min * minutes;
     const cv::Mat1w counts = model->expose(scene, exposure);
-    if (drifting.empty()) return counts;
-    return with_pattern(counts, drifting, options.drift.pattern_k_per_min * minutes, options.sensor);
+    if (drifting.draw.empty()) return counts;
+    return with_pattern(counts, drifting, options.drift.pattern_k_per_min * minutes, exposure, options.sensor);
   }
 
   /// What the detector has taken in of the contrast, which has become `delta_t_k` at a moment since the last exposure

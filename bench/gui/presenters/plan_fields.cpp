@@ -182,6 +182,58 @@ PlanField field_of(const KeyAt& list, const PlanSection& section) {
   return field;
 }
 
+/// A name of a key as the head of a column: "At least".
+QString column_head(std::string_view name) {
+  const QString words = text_of(name).replace('_', ' ');
+  return words.left(1).toUpper() + words.mid(1);
+}
+
+QString table_shown(const PlanSection& section, const Plan& plan) {
+  QStringList rows;
+  for (std::size_t row = 0; row < section.count(plan); ++row) {
+    QStringList values;
+    for (const PlanKey& key : section.keys) values << shown_value({&section, &key, row}, plan);
+    rows << values.join(": ");
+  }
+  return rows.join(", ");
+}
+
+QString enter_table(const PlanSection& section, Plan& plan, const QString& text) {
+  Plan changed = plan;
+  const QStringList rows = text.split(',', Qt::SkipEmptyParts);
+  section.rows.resize(changed, 0);
+  section.rows.resize(changed, static_cast<std::size_t>(rows.size()));
+  for (qsizetype i = 0; i < rows.size(); ++i) {
+    const QStringList values = rows[i].split(':');
+    if (values.size() > static_cast<qsizetype>(section.keys.size()))
+      return "'" + rows[i].trimmed() + "': more values than columns";
+    for (std::size_t k = 0; k < section.keys.size(); ++k) {
+      const KeyAt at{&section, &section.keys[k], static_cast<std::size_t>(i)};
+      const QString wrong = enter(at, changed, values.value(static_cast<qsizetype>(k)).trimmed());
+      if (!wrong.isEmpty()) return wrong;
+    }
+  }
+  plan = changed;
+  return {};
+}
+
+/// The rows of a repeated section as a table of their own.
+PlanField field_of(const PlanSection& section) {
+  PlanField field{.label = text_of(section.form.label),
+                  .tool_tip = text_of(section.sentence),
+                  .object_name = text_of(section.form.object_name)};
+  field.kind = FieldKind::rows;
+  for (const PlanKey& key : section.keys) {
+    const auto* choice = std::get_if<ChoiceKey>(&key.type);
+    field.columns.push_back(
+        {with_unit(column_head(key.name), key.unit), choice ? list_of(choice->words) : QStringList{}});
+    field.paths.push_back(path_of(section, key));
+  }
+  field.shown = [&section](const Plan& plan) { return table_shown(section, plan); };
+  field.entered = [&section](Plan& plan, const QString& text) { return enter_table(section, plan, text); };
+  return field;
+}
+
 }  // namespace
 
 std::vector<PlanField> plan_fields() {
@@ -193,6 +245,8 @@ std::vector<PlanField> plan_fields() {
       const PlanSection* beside = section_beside(path_of(section, key));
       fields.push_back(beside != nullptr ? field_of(at, *beside) : field_of(at));
     }
+    if (section.repeated() && !section.form.label.empty() && section.form.beside.empty())
+      fields.push_back(field_of(section));
   }
   return fields;
 }

@@ -54,16 +54,21 @@ TEST(PlanFields, SayWhatTheyCannotReadAndLeaveThePlanAsItIs) {
 TEST(PlanFields, HaveTheKindThatTheValueAsksFor) {
   const auto fields = plan_fields();
 
-  for (const auto& [name, kind] : std::vector<std::pair<QString, FieldKind>>{{"planName", FieldKind::text},
-                                                                             {"planDistance", FieldKind::number},
-                                                                             {"planPhases", FieldKind::whole},
-                                                                             {"planRecord", FieldKind::yes_no},
-                                                                             {"planAccuracy", FieldKind::choice},
-                                                                             {"planObserver", FieldKind::name},
-                                                                             {"planMountings", FieldKind::boxes},
-                                                                             {"planPlates", FieldKind::rows},
-                                                                             {"planTransferSteps", FieldKind::rows},
-                                                                             {"planContrasts", FieldKind::rows}})
+  for (const auto& [name, kind] :
+       std::vector<std::pair<QString, FieldKind>>{{"planName", FieldKind::text},
+                                                  {"planDistance", FieldKind::number},
+                                                  {"planPhases", FieldKind::whole},
+                                                  {"planRecord", FieldKind::yes_no},
+                                                  {"planAccuracy", FieldKind::choice},
+                                                  {"planObserver", FieldKind::name},
+                                                  {"planMountings", FieldKind::boxes},
+                                                  {"planPlates", FieldKind::rows},
+                                                  {"planTransferSteps", FieldKind::rows},
+                                                  {"planGeometry", FieldKind::yes_no},
+                                                  {"planDriftTime", FieldKind::number},
+                                                  {"planResponseSettling", FieldKind::number},
+                                                  {"planMeasureLimits", FieldKind::rows},
+                                                  {"planContrasts", FieldKind::rows}})
     EXPECT_EQ(field(fields, name).kind, kind) << name.toStdString();
   EXPECT_EQ(field(fields, "planContrasts").columns.size(), 2u) << "contrasts and limits are one table";
   for (const PlanField& f : fields) {
@@ -74,6 +79,31 @@ TEST(PlanFields, HaveTheKindThatTheValueAsksFor) {
       EXPECT_LT(f.low, f.high) << f.label.toStdString();
     }
   }
+}
+
+TEST(PlanFields, HaveTheLimitsOnMeasuresAsATable) {
+  Plan plan = demo();
+  plan.measures.noise = plan.measures.transfer = plan.measures.response = true;
+  const auto fields = plan_fields();
+  const PlanField& limits = field(fields, "planMeasureLimits");
+  ASSERT_EQ(limits.columns.size(), 3u);
+  EXPECT_TRUE(limits.columns[0].words.contains("response_time"));
+
+  ASSERT_EQ(limits.entered(plan, "response_time: : 14, transfer_slope: 0.98: 1.02"), "");
+
+  ASSERT_EQ(plan.limits.measures.size(), 2u);
+  EXPECT_EQ(plan.limits.measures[0].measure, LimitedMeasure::response_time);
+  EXPECT_EQ(plan.limits.measures[0].at_least, std::nullopt);
+  EXPECT_EQ(plan.limits.measures[0].at_most, 14);
+  EXPECT_EQ(plan.limits.measures[1].at_least, 0.98);
+  EXPECT_EQ(limits.shown(plan), "response_time: : 14, transfer_slope: 0.98: 1.02");
+  const Plan before = plan;
+  EXPECT_NE(limits.entered(plan, "speed: : 14"), "");
+  EXPECT_NE(limits.entered(plan, "netd: : much"), "");
+  EXPECT_NE(limits.entered(plan, "netd: 1: 2: 3"), "");
+  EXPECT_EQ(to_toml(plan), to_toml(before));
+  EXPECT_EQ(limits.entered(plan, ""), "");
+  EXPECT_TRUE(plan.limits.measures.empty());
 }
 
 TEST(PlanFields, KeepALimitAtTheContrastThatItWasWrittenWith) {
