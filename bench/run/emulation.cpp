@@ -128,7 +128,7 @@ Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& a
   options.camera.model = "Emulated " + sensor->name;
   options.black_body.server.address = arguments.interface_address;
   options.black_body.server.port = arguments.black_body_port;
-  options.black_body.time_constant_s = 0.05;
+  options.black_body.time_constant_s = 0.02;
   options.black_body.stable_dwell_s = 0.05;
   options.stage.server.address = arguments.interface_address;
   options.stage.server.port = arguments.stage_port;

@@ -40,7 +40,7 @@ struct EmulationArguments {
 [[nodiscard]] EmulationArguments emulation_for(const Plan& plan);
 
 #ifdef TODBENCH_WITH_ARAVIS
-/// Starts camera, black body and plate stage. Their settling is that of a bench in fast motion: 50 ms time constant,
+/// Starts camera, black body and plate stage. Their settling is that of a bench in fast motion: 20 ms time constant,
 /// 0.1 s per plate.
 [[nodiscard]] Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& arguments);
 
