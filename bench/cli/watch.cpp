@@ -8,8 +8,8 @@
 
 #include "bench/cli/commands.h"
 #include "bench/judgement/verdict_record.h"
-#include "bench/plan/plan_options.h"
 #include "bench/report/curve_lines.h"
+#include "bench/run/running_fit.h"
 #include "bench/session/provenance.h"
 #include "bench/session/session_folder.h"
 #include "bench/session/trials_csv.h"
@@ -45,13 +45,12 @@ std::uintmax_t size_of(const std::filesystem::path& file) {
 }
 
 /// Of the trials so far. The last line of a file that is being written may not be whole: then there is none this time.
-std::optional<TodCurve> curve_of(const std::filesystem::path& trials, const FitOptions& options) {
+std::optional<TodCurve> curve_of(const std::filesystem::path& trials, RunningFit& fit, const std::stop_token& stop) {
   std::error_code none;
   if (!std::filesystem::exists(trials, none)) return std::nullopt;
   const auto read = read_trials(trials);
   if (!read || read->empty()) return std::nullopt;
-  auto curve = tod_curve(*read, options);
-  return curve ? std::optional(*std::move(curve)) : std::nullopt;
+  return fit.curve_of(*read, stop);
 }
 
 void show(Console& console, const CurveLines& lines) {
@@ -84,8 +83,7 @@ int conclude(Console& console, const std::filesystem::path& folder, SessionState
 int watch_session(Console& console, const std::filesystem::path& folder, const std::stop_token& stop) {
   const auto plan = load_plan((folder / "session.toml").string());
   if (!plan) return report_error(console, with_context(folder.string(), plan.error()));
-  FitOptions options = fit_options(*plan);
-  options.with_posterior = false;  // nothing here shows it
+  RunningFit fit(*plan);
   std::mutex mutex;
   std::condition_variable_any wake;
   std::uintmax_t shown_bytes = 0;
@@ -102,8 +100,8 @@ int watch_session(Console& console, const std::filesystem::path& folder, const s
         twin = session->twin;
       }
       // While it runs, and where it left no fits.
-      if (!measured) measured = curve_of(folder / "trials.csv", options);
-      if (!twin) twin = curve_of(folder / "trials_simulated.csv", options);
+      if (!measured) measured = curve_of(folder / "trials.csv", fit, stop);
+      if (!twin) twin = curve_of(folder / "trials_simulated.csv", fit, stop);
       show(console, {.delta_t_k = plan->target.delta_t_k,
                      .measured = measured ? &*measured : nullptr,
                      .twin = twin ? &*twin : nullptr,

@@ -137,9 +137,13 @@ class DynamicRun {
     if (!curve) return abandon(frame, plan, provenance_, curve.error());
     curve->sensor = sensor_;
     curve->observer = loaded_.observer().name;
-    for (TodPoint& point : curve->points)
+    for (TodPoint& point : curve->points) {
       point.estimator_reason =
           plan.fit.estimator == EstimatorChoice::automatic ? EstimatorReason::moving_target : EstimatorReason::plan;
+      point.answers = AnswersTaken{
+          AnswerKind::binary, 1,
+          plan.schedule.answers == AnswersChoice::automatic ? AnswersReason::moving_target : AnswersReason::plan};
+    }
     examine(*curve, fit_options(plan));
     for (const std::string& sentence : sentences(*found)) {
       note(*folder_, listener_, sentence);
@@ -214,7 +218,7 @@ Result<void> check_dynamic_plan(const Plan& plan, const SensorSpec& sensor) {
       {plan.camera.contrast == ContrastUnit::grey_levels, "contrasts in grey levels ([camera] contrast)"},
       {plan.camera.nuc_interval_s > 0, "corrections on command ([camera] nuc_interval_s)"},
       {plan.schedule.kind == ScheduleKind::adaptive, "an adaptive schedule ([schedule] kind)"},
-      {plan.schedule.answers == AnswerKind::graded, "graded answers ([schedule] answers)"},
+      {plan.schedule.answers == AnswersChoice::graded, "graded answers ([schedule] answers)"},
       {plan.fit.estimator == EstimatorChoice::twin_shape, "the function of the twin ([fit] estimator)"},
       {plan.measurement.record_frames, "recorded frames ([measurement] record_frames)"},
       {plan.measures.any(), "physical measures ([measures])"},

@@ -79,6 +79,8 @@ void run_one(SimulatedSetUp set_up, const Plan& plan, const ExperimentInputs& in
   listener.on_trial = [&, simulated = set_up.bench.simulated](Trial trial) {
     // A simulated exposure happens at no time of the host.
     if (simulated) trial.host_time_ns = trial.device_time_ns;
+    trial.probability_correct.reset();
+    trial.frames = 1;
     result.trials.push_back(std::move(trial));
   };
   const auto measured = measure(*camera, *set_up.bench.target, observer, *set_up.schedule, set_up.options,
@@ -96,9 +98,13 @@ void run_one(SimulatedSetUp set_up, const Plan& plan, const ExperimentInputs& in
     result.curve = std::move(*curve);
     result.curve.sensor = inputs.sensor.name;
     result.curve.observer = inputs.observer.name;
-    for (TodPoint& point : result.curve.points)
+    for (TodPoint& point : result.curve.points) {
       point.estimator_reason =
           plan.fit.estimator == EstimatorChoice::automatic ? EstimatorReason::package : EstimatorReason::plan;
+      point.answers = AnswersTaken{
+          AnswerKind::binary, 1,
+          plan.schedule.answers == AnswersChoice::automatic ? AnswersReason::package : AnswersReason::plan};
+    }
   } else if (!result.error) {
     result.error = curve.error();
   }
@@ -115,6 +121,8 @@ void run_simulated_one(const LoadedPlan& loaded, const ExperimentInputs& inputs,
     return;
   }
   set_up->options.frames_after_change = settle_frames;
+  set_up->options.answers = AnswerKind::binary;
+  set_up->options.frames_per_presentation = 1;
   set_up->options.integrity.reject_frozen = false;
   run_one(*std::move(set_up), loaded.plan(), inputs, inputs.sensor.modules, package, options, result, stop);
 }
@@ -136,6 +144,7 @@ void run_recorded_one(const std::filesystem::path& session, const LoadedPlan& lo
     return;
   }
   MeasurementOptions measuring = measurement_options(plan, inputs.plates, plan.camera.ifov_mrad);
+  take_answers(measuring, plan, inputs);  // as many frames as then; of the answers those to the first one count
   const SensorModel model(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
   auto response = simulated_responses(model, plan, inputs.plates, measuring, stop);
   if (!response) {
@@ -254,7 +263,7 @@ Result<void> check_paired_plan(const Plan& plan) {
   if (plan.schedule.kind == ScheduleKind::adaptive)
     return fail(ErrorCode::invalid_input,
                 "an adaptive schedule shows each package other frames: [schedule] kind must be 'constant'");
-  if (plan.fit.estimator == EstimatorChoice::twin_shape || plan.schedule.answers == AnswerKind::graded)
+  if (plan.fit.estimator == EstimatorChoice::twin_shape || plan.schedule.answers == AnswersChoice::graded)
     return fail(ErrorCode::invalid_input,
                 "the functions of the sensor are not those behind a package: [fit] estimator must be 'weibull' or "
                 "'automatic', [schedule] answers 'binary'");

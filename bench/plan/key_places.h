@@ -20,8 +20,8 @@ constexpr const auto& values_of(const TargetKind&) {
 constexpr const auto& values_of(const ScheduleKind&) {
   return all_schedule_kinds;
 }
-constexpr const auto& values_of(const AnswerKind&) {
-  return all_answer_kinds;
+constexpr const auto& values_of(const AnswersChoice&) {
+  return all_answers_choices;
 }
 constexpr const auto& values_of(const EstimatorChoice&) {
   return all_estimator_choices;

@@ -9,6 +9,18 @@ std::string_view to_string(ScheduleKind kind) {
   return kind == ScheduleKind::constant ? "constant" : "adaptive";
 }
 
+std::string_view to_string(AnswersChoice choice) {
+  switch (choice) {
+    case AnswersChoice::automatic:
+      return "automatic";
+    case AnswersChoice::binary:
+      return "binary";
+    case AnswersChoice::graded:
+      return "graded";
+  }
+  return "unknown";
+}
+
 std::string_view to_string(EstimatorChoice choice) {
   switch (choice) {
     case EstimatorChoice::automatic:

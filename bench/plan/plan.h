@@ -91,13 +91,23 @@ enum class ScheduleKind {
 inline constexpr std::array all_schedule_kinds{ScheduleKind::constant, ScheduleKind::adaptive};
 [[nodiscard]] std::string_view to_string(ScheduleKind kind);
 
+/// What answers are to be taken.
+enum class AnswersChoice {
+  automatic,  ///< graded where that is proven (chosen_answers()), else right and wrong
+  binary,     ///< right or wrong
+  graded,     ///< the probability of the right answer given what was seen, too
+};
+inline constexpr std::array all_answers_choices{AnswersChoice::automatic, AnswersChoice::binary, AnswersChoice::graded};
+[[nodiscard]] std::string_view to_string(AnswersChoice choice);
+
 /// [schedule]: of camera and twin.
 struct SchedulePlan {
   ScheduleKind kind = ScheduleKind::constant;
-  double half_width_percent = 10;           ///< adaptive: wanted half-width of the 95 % interval of S75
-  int max_presentations = 1000;             ///< adaptive: hard cap over all contrasts
-  AnswerKind answers = AnswerKind::binary;  ///< graded: the probability of the right answer given what was seen, too
-  int frames_per_presentation = 1;          ///< successive good ones, over which graded answers are averaged
+  double half_width_percent = 10;  ///< adaptive: wanted half-width of the 95 % interval of S75
+  int max_presentations = 1000;    ///< adaptive: hard cap over all contrasts
+  AnswersChoice answers = AnswersChoice::automatic;
+  /// Successive good ones, over which graded answers are averaged; 0: as many as chosen_answers() says.
+  int frames_per_presentation = 0;
   bool operator==(const SchedulePlan&) const = default;
 };
 

@@ -95,12 +95,12 @@ ValueMistakes check_force(const Plan& plan, std::size_t /*row*/) {
 }
 
 ValueMistakes check_frames_per_presentation(const Plan& plan, std::size_t /*row*/) {
-  if (plan.schedule.frames_per_presentation == 1 || plan.schedule.answers == AnswerKind::graded) return {};
+  if (plan.schedule.frames_per_presentation <= 1 || plan.schedule.answers != AnswersChoice::binary) return {};
   return {{std::nullopt, "more than one frame needs answers = \"graded\": right or wrong is the answer to one frame"}};
 }
 
 ValueMistakes check_estimator(const Plan& plan, std::size_t /*row*/) {
-  if (plan.schedule.answers != AnswerKind::graded) return {};
+  if (plan.schedule.answers != AnswersChoice::graded) return {};
   if (plan.fit.estimator == EstimatorChoice::weibull) {
     return {{std::nullopt,
              "answers = \"graded\" needs \"twin-shape\": a Weibull function is off by more than the "
@@ -344,7 +344,7 @@ ValueMistakes check_module_place(const Plan& plan, std::size_t row) {
              "the functions of the sensor are not those behind a module: [fit] estimator must be 'weibull' or "
              "'automatic'"}};
   if (plan.modules[row].place != ModulePlace::observer) {
-    if (plan.schedule.answers != AnswerKind::graded) return {};
+    if (plan.schedule.answers != AnswersChoice::graded) return {};
     return {{std::nullopt,
              "graded answers are fitted with the function of the sensor, which is not that behind a module: [schedule] "
              "answers must be 'binary'"}};
@@ -352,7 +352,7 @@ ValueMistakes check_module_place(const Plan& plan, std::size_t row) {
   for (std::size_t i = 0; i < row; ++i) {
     if (plan.modules[i].place == ModulePlace::observer) return {{std::nullopt, "a second observer"}};
   }
-  if (plan.schedule.answers == AnswerKind::graded)
+  if (plan.schedule.answers == AnswersChoice::graded)
     return {
         {std::nullopt, "an observer that is a module gives no graded answers: [schedule] answers must be 'binary'"}};
   return {};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "tod/schedule/adaptive_schedule.h"
 
@@ -19,8 +20,6 @@ MeasurementOptions measurement_options(const Plan& plan, const std::vector<Targe
   options.registration_frames = plan.measurement.registration_frames;
   options.contrast_frames = plan.measurement.contrast_frames;
   options.min_reference_px = plan.measurement.min_reference_px;
-  options.answers = plan.schedule.answers;
-  options.frames_per_presentation = plan.schedule.frames_per_presentation;
   options.frames_after_change = plan.measurement.frames_after_change;
   options.nuc_interval_s = plan.camera.nuc_interval_s;
   options.nuc_wait_s = plan.camera.nuc_wait_s;
@@ -56,13 +55,9 @@ ConstantStimuliOptions stimuli_options(const Plan& plan, const std::vector<Targe
   return options;
 }
 
-double stopping_half_width_percent(const Plan& plan) {
-  constexpr double reserve = 0.92;
-  return plan.schedule.half_width_percent * (plan.fit.estimator == EstimatorChoice::weibull ? 1 : reserve);
-}
-
 std::unique_ptr<TrialSchedule> make_schedule(const Plan& plan, const std::vector<TargetPlate>& plates, double ifov_mrad,
-                                             Side side, const RandomStream& stream) {
+                                             Side side, const RandomStream& stream,
+                                             std::map<double, ProportionTable> functions) {
   const ConstantStimuliOptions stimuli = stimuli_options(plan, plates, ifov_mrad, side);
   if (plan.schedule.kind == ScheduleKind::constant)
     return std::make_unique<ListedSchedule>(constant_stimuli(stimuli, stream));
@@ -70,7 +65,8 @@ std::unique_ptr<TrialSchedule> make_schedule(const Plan& plan, const std::vector
                                                             .plates = plates,
                                                             .distance_m = plan.target.distance_m,
                                                             .fit = fit_options(plan),
-                                                            .half_width_percent = stopping_half_width_percent(plan),
+                                                            .functions = std::move(functions),
+                                                            .half_width_percent = plan.schedule.half_width_percent,
                                                             .max_presentations = plan.schedule.max_presentations},
                                             stream);
 }
@@ -87,6 +83,32 @@ ChosenEstimator chosen_estimator(const Plan& plan, const SensorSpec& sensor) {
   if (plan.fit.estimator == EstimatorChoice::twin_shape) return {FitEstimator::twin_shape, EstimatorReason::plan};
   if (!plan.modules.empty() || !sensor.modules.empty()) return {FitEstimator::weibull, EstimatorReason::modules};
   return {FitEstimator::twin_shape, EstimatorReason::twin};
+}
+
+namespace {
+
+/// Of a contrast, those of camera or twin, whichever are fewer.
+std::size_t presentations_of_contrast(const Plan& plan) {
+  return plan.target.plates.size() * plan.target.mountings.size() *
+         static_cast<std::size_t>(std::min(plan.target.phases, plan.simulation.phases));
+}
+
+}  // namespace
+
+AnswersTaken chosen_answers(const Plan& plan, const SensorSpec& sensor) {
+  const auto graded = [&](AnswersReason reason) {
+    const int frames = plan.schedule.frames_per_presentation;
+    return AnswersTaken{AnswerKind::graded, frames > 0 ? frames : frames_of_graded_answers, reason};
+  };
+  const auto binary = [](AnswersReason reason) { return AnswersTaken{AnswerKind::binary, 1, reason}; };
+  if (plan.schedule.answers == AnswersChoice::graded) return graded(AnswersReason::plan);
+  if (plan.schedule.answers == AnswersChoice::binary) return binary(AnswersReason::plan);
+  if (chosen_estimator(plan, sensor).estimator == FitEstimator::weibull) return binary(AnswersReason::weibull);
+  if (plan.fit.lapse != 0.0) return binary(AnswersReason::lapse);
+  if (plan.camera.contrast == ContrastUnit::grey_levels) return binary(AnswersReason::grey_levels);
+  if (plan.schedule.kind == ScheduleKind::adaptive) return binary(AnswersReason::adaptive);
+  if (presentations_of_contrast(plan) < least_graded_presentations) return binary(AnswersReason::few_presentations);
+  return graded(AnswersReason::twin);
 }
 
 ComparisonOptions comparison_options(const Plan& plan) {

@@ -106,12 +106,14 @@ PlanSection schedule_section() {
                     .sentence = "adaptive: hard cap over all contrasts",
                     .place = of(&SchedulePlan::max_presentations)},
                    {.name = "answers",
-                    .type = ChoiceKey{names_of(all_answer_kinds)},
-                    .sentence = "right or wrong, or how probable the right answer is for what was seen",
+                    .type = ChoiceKey{names_of(all_answers_choices)},
+                    .sentence = "right or wrong, or how probable the right answer is for what was seen; automatic: the "
+                                "latter where the function of the twin is fitted",
                     .place = of(&SchedulePlan::answers)},
                    {.name = "frames_per_presentation",
-                    .type = WholeKey{1, 1000},
-                    .sentence = "successive good frames over which graded answers are averaged",
+                    .type = WholeKey{0, 1000},
+                    .sentence = "successive good frames over which graded answers are averaged; 0: 4 of graded "
+                                "answers, else 1",
                     .place = of(&SchedulePlan::frames_per_presentation),
                     .check = check_frames_per_presentation}}};
 }

@@ -196,6 +196,31 @@ std::string form_in_words(const ReportData& data) {
          ", fitted by maximum likelihood; S₇₅ is the size at which ψ = 0.75 exactly.";
 }
 
+std::string text_of(const AnswersTaken& answers) {
+  const std::string reason = " (" + std::string(in_words(answers.reason)) + ")";
+  if (answers.kind == AnswerKind::binary) return "right or wrong, each to one frame" + reason;
+  return "graded: the observer's probability of the right answer, averaged over " + std::to_string(answers.frames) +
+         (answers.frames == 1 ? " frame" : " frames") + " of a presentation" + reason;
+}
+
+/// What was counted; empty where nobody said. Contrasts that differ from the first are named.
+std::string answers_in_words(const ReportData& data) {
+  std::string text;
+  std::optional<AnswersTaken> first;
+  for (const std::optional<TodCurve>* curve : {&data.measured, &data.simulated}) {
+    if (!*curve) continue;
+    for (const TodPoint& point : (*curve)->points) {
+      if (!point.answers || point.answers == first) continue;
+      const bool simulated = curve == &data.simulated && data.measured;
+      text += first ? "; at " + stated(point.set_delta_t_k) + " K" + (simulated ? ", simulated, " : " ")
+                    : std::string(" Answers are ");
+      text += text_of(*point.answers);
+      if (!first) first = point.answers;
+    }
+  }
+  return text.empty() ? text : text + ".";
+}
+
 RichText limit_cell(const Demand& demand) {
   const LimitSide side = row_of(demand.kind).side;
   if (side == LimitSide::none || !demand.limit || !std::isfinite(*demand.limit)) return missing("no number");
@@ -395,8 +420,8 @@ Section curve_section(const ReportData& data) {
     section.blocks.emplace_back(
         curve_table(*data.simulated, "Simulated; in brackets the 95 % interval, behind ± the standard error", true));
   add_findings(section, data);
-  section.blocks.emplace_back(
-      note(plain(form_in_words(data) + " " + std::string(one_sided_note) + " " + std::string(groups_note))));
+  section.blocks.emplace_back(note(plain(form_in_words(data) + answers_in_words(data) + " " +
+                                         std::string(one_sided_note) + " " + std::string(groups_note))));
   if (data.simulated)
     section.blocks.emplace_back(
         note(plain("Direct S₇₅: where the phase-averaged proportion correct of the observer crosses 75 %, without a "

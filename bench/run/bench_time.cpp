@@ -24,7 +24,7 @@ std::vector<TargetState> listed_states(const Plan& plan, const std::vector<Targe
 /// One presentation after another, as measure() goes through them.
 class Walk {
  public:
-  explicit Walk(const Plan& plan) : plan_(plan) {}
+  explicit Walk(const Plan& plan) : plan_(plan), answers_(chosen_answers(plan, {})) {}
 
   void present(const TargetState* before, const TargetState& state) {
     const bool plate = before == nullptr || before->plate != state.plate;
@@ -95,7 +95,7 @@ class Walk {
  private:
   void take_frames(bool new_set_up, bool new_contrast) {
     const MeasurementPlan& measurement = plan_.measurement;
-    int frames = measurement.frames_after_change + plan_.schedule.frames_per_presentation;
+    int frames = measurement.frames_after_change + answers_.frames;
     if (new_set_up) frames += measurement.registration_frames;
     if (new_set_up || new_contrast) frames += measurement.contrast_frames;
     // Where a hand has moved the plate it is looked for.
@@ -104,6 +104,7 @@ class Walk {
   }
 
   const Plan& plan_;
+  AnswersTaken answers_;  // of a sensor with modules of its own nothing is predicted
   BenchTime time_;
 };
 

@@ -9,6 +9,7 @@
 #include "bench/run/comparison_forecast.h"
 #include "bench/run/direct_results.h"
 #include "bench/run/experiment_inputs.h"
+#include "bench/run/functions_meanwhile.h"
 #include "bench/run/grey_results.h"
 #include "bench/run/module_chain.h"
 #include "bench/run/observed_source.h"
@@ -131,13 +132,19 @@ void give_shape(TodCurve& curve, MeasurementResult& result, const Plan& plan, co
                 std::stop_token stop) {
   const ChosenEstimator chosen = chosen_estimator(plan, inputs.sensor);
   const bool by_twin = chosen.estimator == FitEstimator::twin_shape;
-  for (TodPoint& point : curve.points)
+  for (TodPoint& point : curve.points) {
     point.estimator_reason = by_twin && result.ended_by ? EstimatorReason::ended_early : chosen.reason;
-  if (!by_twin || result.ended_by) return;
+    point.answers = chosen_answers(plan, inputs.sensor);
+  }
+  if (!by_twin || result.ended_by) {
+    fit_right_and_wrong(curve, result.trials, fit_options(plan));
+    return;
+  }
   phase(frame.folder, frame.listener, "fitting with the functions of " + inputs.sensor.name);
   TwinShapesOutcome outcome =
       fit_twin_shapes(curve, result.trials, inputs, fit_options(plan),
                       direct_options(curve, inputs, shown_delta_t_k, plan.seed, std::move(stop)), known);
+  fit_right_and_wrong(curve, result.trials, fit_options(plan));
   result.ended_by = std::move(outcome.ended_by);
   for (auto& sentence : outcome.notes) {
     note(frame.folder, frame.listener, sentence);
@@ -179,7 +186,9 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
     point.lag1_correlation = run.result.lag1_correlation;
   }
 
-  give_shape(run.curve, run.result, plan, inputs, shown_delta_t_k, measured, {folder, listener}, stop);
+  const TodCurve stopped_by = known_functions(set_up->functions, run.curve);
+  give_shape(run.curve, run.result, plan, inputs, shown_delta_t_k, stopped_by.points.empty() ? measured : &stopped_by,
+             {folder, listener}, stop);
   if (!run.result.ended_by && has_modules(plan, inputs.sensor)) {
     const std::string sentence = "no direct estimate: it would leave out the modules";
     note(folder, listener, sentence);
@@ -244,7 +253,7 @@ TwinResults run_twin(const Plan& plan, const ExperimentInputs& inputs, const Tod
 /// The same by the phases that camera and twin both saw, where the plan has it so.
 void pair_with_twin(ExperimentOutcome& outcome, const MeasurementResult& measured, const Plan& plan,
                     const ExperimentInputs& inputs, const SessionFrame& frame, std::stop_token stop) {
-  if (!outcome.comparison || outcome.ended_by || !pairs_asked(plan)) return;
+  if (!outcome.comparison || outcome.ended_by || !pairs_asked(plan, inputs.sensor)) return;
   phase(frame.folder, frame.listener, "showing " + inputs.sensor.name + " what the camera saw");
   PairedOutcome paired =
       add_paired_ratios(*outcome.comparison, {outcome.curve, measured.trials, measured.set_ups}, inputs,
@@ -264,6 +273,7 @@ Result<void> check_tolerance(const Plan& plan, const ExperimentInputs& inputs) {
 struct MeasuredRun {
   MeasurementResult result;
   std::optional<CameraMeasures> measures;
+  std::map<double, ProportionTable> functions{};  ///< that an adaptive schedule stopped by
 };
 
 /// The measurement with the camera of the plan, into the session.
@@ -274,6 +284,7 @@ Result<MeasuredRun> run_measured(const Plan& plan, const ExperimentInputs& input
   put_modules_behind(bench, modules, log_line);
   const auto observer = observer_of(plan, inputs, log_line);
   MeasurementOptions options = camera_options(plan, inputs.plates);
+  take_answers(options, plan, inputs);
   const SensorModel model(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
   auto response = simulated_responses(model, plan, inputs.plates, options, stop);
   if (!response) return tl::unexpected(response.error());
@@ -283,11 +294,13 @@ Result<MeasuredRun> run_measured(const Plan& plan, const ExperimentInputs& input
   options.air_transmittance = *air;
   options.free_running = !bench.simulated;
   options.frames_after_change += settle_frames(modules);
-  const auto schedule =
-      make_schedule(plan, inputs.plates, plan.camera.ifov_mrad, Side::measured, RandomStream(plan.seed, "schedule"));
+  auto functions = stopping_tables(plan, inputs, stop);
+  if (!functions) return tl::unexpected(functions.error());
+  const auto schedule = make_schedule(plan, inputs.plates, plan.camera.ifov_mrad, Side::measured,
+                                      RandomStream(plan.seed, "schedule"), *functions);
   auto result = Recorder(folder, listener, stop).run(bench, *observer, *schedule, options, SessionCurve::main);
   if (!result) return tl::unexpected(result.error());
-  MeasuredRun run{*std::move(result), std::nullopt};
+  MeasuredRun run{*std::move(result), std::nullopt, *std::move(functions)};
   if (run.result.ended_by) return run;
   auto measures = physical_measures(plan, options, inputs, bench, {folder, listener}, std::move(stop));
   if (measures)
@@ -413,6 +426,8 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
 
   const auto begin = Clock::now();
   phase(*folder, listener, "measuring " + info.model + " " + info.serial);
+  std::optional<FunctionsMeanwhile> functions;
+  if (plan.schedule.kind == ScheduleKind::constant) functions.emplace(plan, inputs);
   auto measured = run_measured(plan, inputs, bench, *folder, listener, stop);
   if (!measured) return abandon(frame, plan, provenance, with_context("measuring", measured.error()));
   MeasurementResult* const result = &measured->result;
@@ -430,7 +445,10 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   }
   std::map<double, double> shown;
   for (const auto& point : curve->points) shown[point.set_delta_t_k] = point.delta_t_k;
-  give_shape(*curve, *result, plan, inputs, shown, nullptr, frame, stop);
+  TodCurve known;
+  if (!result->ended_by)
+    known = functions ? functions->known_for(*curve, stop) : known_functions(measured->functions, *curve);
+  give_shape(*curve, *result, plan, inputs, shown, &known, frame, stop);
   curve->sensor = info.model + " " + info.serial;
   curve->observer = observer_name(plan, inputs);
   for (auto& point : curve->points) {

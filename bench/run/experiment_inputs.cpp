@@ -50,10 +50,10 @@ Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlann
       return fail(ErrorCode::invalid_input,
                   "the functions of the sensor are not those behind a module: [fit] estimator must be 'weibull' or "
                   "'automatic'");
-    if (plan.schedule.answers == AnswerKind::graded)
+    if (plan.schedule.answers == AnswersChoice::graded)
       return fail(ErrorCode::invalid_input,
                   "graded answers are fitted with the function of the sensor, which is not that behind a module: "
-                  "[schedule] answers must be 'binary'");
+                  "[schedule] answers must be 'binary' or 'automatic'");
     if (auto possible = check_sensor_module(loaded.sensor(), inputs.motion); !possible)
       return tl::unexpected(possible.error());
     if (const ModulePlan* module = sensor_module(loaded.sensor())) {
@@ -99,10 +99,17 @@ Result<std::optional<double>> stated_air(const Plan& plan, const SensorSpec& sen
   return std::optional(*found);
 }
 
+void take_answers(MeasurementOptions& options, const Plan& plan, const ExperimentInputs& inputs) {
+  const AnswersTaken answers = chosen_answers(plan, inputs.sensor);
+  options.answers = answers.kind;
+  options.frames_per_presentation = answers.frames;
+}
+
 MeasurementOptions simulated_options(const Plan& plan, const ExperimentInputs& inputs) {
   MeasurementOptions options =
       measurement_options(plan, inputs.plates, inputs.sensor.ifov_mrad() / inputs.sensor.samples_per_pitch());
   options.samples_per_pitch = inputs.sensor.samples_per_pitch();
+  take_answers(options, plan, inputs);
   options.frames_after_change = 0;
   options.nuc_interval_s = 0;
   options.free_running = false;

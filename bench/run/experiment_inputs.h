@@ -41,6 +41,9 @@ struct ExperimentInputs {
 /// before a simulated scene, which has none. Errors: bench_transmittance().
 [[nodiscard]] Result<std::optional<double>> stated_air(const Plan& plan, const SensorSpec& sensor);
 
+/// The answers that chosen_answers() says; without it they are right or wrong.
+void take_answers(MeasurementOptions& options, const Plan& plan, const ExperimentInputs& inputs);
+
 /// How the simulated sensor is measured: as the camera, but nothing has to settle and nothing is corrected.
 [[nodiscard]] MeasurementOptions simulated_options(const Plan& plan, const ExperimentInputs& inputs);
 

@@ -26,7 +26,9 @@ double graded_variance_ratio(const GradedDesignFigures& design) {
   // Phi2(z, z; rho) = Phi(z) - 2 T(z, sqrt((1 - rho) / (1 + rho))) (Owen 1956).
   const double both = seen - 2 * boost::math::owens_t(z, std::sqrt((1 - share) / (1 + share)));
   const double of_sensor = 0.75 * 0.75 * (both - seen * seen) / (p * (1 - p));
-  const double left = design.set_ups >= cancelling_set_ups ? 0.004 : 0.15;
+  // Evenly spread phases leave a variance that falls with their square, that of answers falls with their number.
+  const double phases = std::max(1.0, static_cast<double>(design.presentations) / design.set_ups);
+  const double left = design.set_ups >= cancelling_set_ups ? std::min(0.15, 0.048 / phases) : 0.15;
   const double frames = design.frames, draws = design.draws;
   return of_sensor / frames + (1 - of_sensor) / (frames * draws) + left;
 }

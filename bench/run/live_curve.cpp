@@ -3,18 +3,12 @@
 #include <chrono>
 #include <utility>
 
-#include "bench/plan/plan_options.h"
+#include "bench/run/running_fit.h"
 
 namespace todbench {
 namespace {
 
 constexpr auto least_fit_period = std::chrono::seconds(1);
-
-std::optional<TodCurve> curve_so_far(const std::vector<Trial>& trials, const FitOptions& options) {
-  if (trials.empty()) return std::nullopt;
-  auto curve = tod_curve(trials, options);
-  return curve ? std::optional(*std::move(curve)) : std::nullopt;
-}
 
 }  // namespace
 
@@ -35,16 +29,15 @@ std::shared_ptr<const FittedCurves> LiveCurve::latest() const {
 }
 
 void LiveCurve::work(const std::stop_token& stop) {
-  FitOptions options = fit_options(plan_);
-  options.with_posterior = false;  // only reports show it
+  RunningFit fit(plan_);
   std::unique_lock lock(mutex_);
   while (changed_.wait(lock, stop, [this] { return trials_changed_; })) {
     trials_changed_ = false;
     const std::vector<Trial> measured = measured_, twin = twin_;
     const std::uint64_t version = latest_ ? latest_->version + 1 : 1;
     lock.unlock();
-    auto fitted = std::make_shared<const FittedCurves>(FittedCurves{
-        .version = version, .measured = curve_so_far(measured, options), .twin = curve_so_far(twin, options)});
+    auto fitted = std::make_shared<const FittedCurves>(
+        FittedCurves{.version = version, .measured = fit.curve_of(measured, stop), .twin = fit.curve_of(twin, stop)});
     lock.lock();
     latest_ = std::move(fitted);
     // Not more often than anybody looks.

@@ -22,7 +22,8 @@ struct FittedCurves {
   std::optional<TodCurve> measured, twin;
 };
 
-/// Fits on a thread of its own, about once a second, so that the run does not wait for it. Any thread.
+/// Fits on a thread of its own, about once a second, so that the run does not wait for it, with the function that the
+/// result will have (RunningFit). Any thread.
 class LiveCurve {
  public:
   explicit LiveCurve(const Plan& plan);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "bench/plan/plan_options.h"
 #include "bench/text/text.h"
 #include "hvs/observer/template_observer.h"
 #include "tod/comparison/paired_ratio.h"
@@ -37,9 +38,9 @@ Result<RatioOfPairs> ratio_at(const TodPoint& point, std::span<const Trial> tria
 
 }  // namespace
 
-bool pairs_asked(const Plan& plan) {
-  return plan.simulation.paired && plan.schedule.answers == AnswerKind::graded &&
-         plan.fit.estimator != EstimatorChoice::weibull;
+bool pairs_asked(const Plan& plan, const SensorSpec& sensor) {
+  return plan.simulation.paired && chosen_answers(plan, sensor).kind == AnswerKind::graded &&
+         chosen_estimator(plan, sensor).estimator == FitEstimator::twin_shape;
 }
 
 PairedTwinOptions paired_options(const ExperimentInputs& inputs, std::span<const SetUpRecord> set_ups,

@@ -16,7 +16,7 @@
 namespace todbench {
 
 /// A plan asks for it, and its answers allow it.
-[[nodiscard]] bool pairs_asked(const Plan& plan);
+[[nodiscard]] bool pairs_asked(const Plan& plan, const SensorSpec& sensor);
 
 /// What a camera answered.
 struct PairedCamera {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/plan/plan_options.h"
 #include "bench/run/bench_time.h"
 #include "bench/run/time_prediction.h"
 
@@ -10,7 +11,7 @@ namespace todbench {
 namespace {
 
 Plan with_answers(Plan plan, AnswerKind answers, int frames) {
-  plan.schedule.answers = answers;
+  plan.schedule.answers = answers == AnswerKind::graded ? AnswersChoice::graded : AnswersChoice::binary;
   plan.schedule.frames_per_presentation = frames;
   if (answers == AnswerKind::graded) {
     plan.fit.estimator = EstimatorChoice::twin_shape;
@@ -49,8 +50,9 @@ void recommend(std::vector<PrecisionChoice>& choices) {
 Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const ExperimentInputs& inputs,
                                                         std::stop_token stop) {
   std::vector<int> frames{1, 2, 4, 8};
-  const int own = plan.schedule.frames_per_presentation;
-  if (plan.schedule.answers == AnswerKind::graded && std::ranges::find(frames, own) == frames.end()) {
+  const AnswersTaken planned = chosen_answers(plan, inputs.sensor);
+  const int own = planned.frames;
+  if (planned.kind == AnswerKind::graded && std::ranges::find(frames, own) == frames.end()) {
     frames.push_back(own);
     std::ranges::sort(frames);
   }
@@ -71,7 +73,7 @@ Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const 
     choice.seconds = computing + bench_s(other, inputs, prediction->contrasts);
     choice.half_width_percent = prediction->figures.predicted_uncertainty_percent;
     choice.contrasts = std::move(prediction->contrasts);
-    choice.planned = plan.schedule.answers == answers && own == count;
+    choice.planned = planned.kind == answers && own == count;
     choices.push_back(std::move(choice));
     return {};
   };

@@ -57,7 +57,7 @@ double se_of_shape(const Accuracy& accuracy, double q_eff, std::optional<double>
 double graded_half_width(const Plan& plan, const ExperimentInputs& inputs, double q_eff, double binary_se) {
   const auto set_ups = static_cast<int>(inputs.plates.size() * plan.target.mountings.size());
   const GradedDesignFigures design{.sensor_share = sensor_share(inputs.observer, q_eff),
-                                   .frames = plan.schedule.frames_per_presentation,
+                                   .frames = chosen_answers(plan, inputs.sensor).frames,
                                    .draws = MeasurementOptions::graded_draws,
                                    .set_ups = set_ups,
                                    .presentations = set_ups * plan.simulation.phases};
@@ -75,7 +75,7 @@ std::optional<double> uncertainty_percent(const Plan& plan, const ExperimentInpu
   if (!fit) return std::nullopt;
   const bool by_twin = chosen_estimator(plan, inputs.sensor).estimator == FitEstimator::twin_shape;
   const double of_shape = by_twin ? se_of_shape(inputs.accuracy, outlook.q_eff, fit->se_ln_threshold) : 0;
-  const double half = plan.schedule.answers == AnswerKind::graded
+  const double half = chosen_answers(plan, inputs.sensor).kind == AnswerKind::graded
                           ? graded_half_width(plan, inputs, outlook.q_eff, fit->se_ln_threshold)
                           : likely_excess * 1.96 * std::hypot(fit->se_ln_threshold, of_shape);
   return 100 * std::expm1(half);
@@ -89,8 +89,7 @@ void adapt(ContrastPrediction& point, const Plan& plan, const std::vector<Target
   for (const auto& plate : plates) triangles += static_cast<double>(plate.triangles.size());
   const double per_presentation = triangles / static_cast<double>(plates.size());
   const double asked = plan.schedule.half_width_percent / 100, constant = std::log1p(*point.uncertainty_percent / 100);
-  const double stop = stopping_half_width_percent(plan) / 100;
-  const double needed = std::max(point.trials * std::pow(constant / stop, 2), 8 * per_presentation);
+  const double needed = std::max(point.trials * std::pow(constant / asked, 2), 8 * per_presentation);
   const double share = plan.schedule.max_presentations / static_cast<double>(plan.target.delta_t_k.size());
   const double cap = std::max(std::floor(share), 1.0) * per_presentation;
   // Below the cap the schedule goes on until the interval itself is narrow enough.

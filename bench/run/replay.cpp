@@ -54,6 +54,7 @@ Json fits_of(TodCurve curve) {
   for (TodPoint& point : curve.points) {
     point.adequacy.reset();
     point.estimator_reason.reset();
+    point.answers.reset();
   }
   return curve_record(curve);
 }

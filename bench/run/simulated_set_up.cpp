@@ -4,6 +4,7 @@
 
 #include "bench/plan/plan_options.h"
 #include "bench/run/simulated_responses.h"
+#include "bench/run/twin_shapes.h"
 
 namespace todbench {
 
@@ -12,14 +13,18 @@ Result<SimulatedSetUp> simulated_set_up(const Plan& plan, const ExperimentInputs
                                         ModuleSensor::OnLine on_error_line) {
   const auto model = std::make_shared<const SensorModel>(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
   MeasurementOptions options = simulated_options(plan, inputs);
-  auto response = simulated_responses(*model, plan, inputs.plates, options, std::move(stop));
+  auto response = simulated_responses(*model, plan, inputs.plates, options, stop);
   if (!response) return tl::unexpected(response.error());
+  auto functions = stopping_tables(plan, inputs, std::move(stop));
+  if (!functions) return tl::unexpected(functions.error());
   options.contrast_response = std::move(*response);
+  auto schedule = make_schedule(plan, inputs.plates, inputs.sensor.ifov_mrad(), Side::simulated,
+                                RandomStream(plan.seed, "schedule.simulated"), *functions);
   return SimulatedSetUp{.options = std::move(options),
                         .bench = simulated_bench(model, inputs.plates, plan.target.distance_m,
                                                  std::move(shown_delta_t_k), inputs.motion, std::move(on_error_line)),
-                        .schedule = make_schedule(plan, inputs.plates, inputs.sensor.ifov_mrad(), Side::simulated,
-                                                  RandomStream(plan.seed, "schedule.simulated"))};
+                        .schedule = std::move(schedule),
+                        .functions = *std::move(functions)};
 }
 
 }  // namespace todbench

@@ -8,6 +8,7 @@
 #include "bench/run/devices.h"
 #include "bench/run/experiment_inputs.h"
 #include "tod/measurement/measurement.h"
+#include "tod/psychometric/psychometric_fit.h"
 
 namespace todbench {
 
@@ -16,6 +17,7 @@ struct SimulatedSetUp {
   MeasurementOptions options;
   OpenedBench bench;
   std::unique_ptr<TrialSchedule> schedule;
+  std::map<double, ProportionTable> functions{};  ///< that an adaptive schedule stops by (stopping_tables())
 };
 
 /// `shown_delta_t_k` and `on_error_line` as for simulated_bench(). Errors as contrast_response().

@@ -125,9 +125,9 @@ double looking_s(const PlateSpeed& speed, const Counts& counts) {
          counts.presentations * speed.answers;
 }
 
-double frames_of(const Plan& plan, const Counts& counts) {
+double frames_of(const Plan& plan, const Counts& counts, int frames_per_presentation) {
   return counts.set_ups * (plan.measurement.registration_frames + counts.contrasts * plan.measurement.contrast_frames) +
-         counts.presentations * plan.schedule.frames_per_presentation;
+         counts.presentations * frames_per_presentation;
 }
 
 Counts counts_of(const Plan& plan, const ExperimentInputs& inputs, int phases) {
@@ -145,7 +145,7 @@ Counts counts_of(const Plan& plan, const ExperimentInputs& inputs, int phases) {
 
 /// Of ln S75, of right and wrong answers on sizes a factor of two about it; nothing for graded ones.
 std::optional<double> expected_error(const Plan& plan, const ExperimentInputs& inputs, const Counts& counts) {
-  if (plan.schedule.answers == AnswerKind::graded) return std::nullopt;
+  if (chosen_answers(plan, inputs.sensor).kind == AnswerKind::graded) return std::nullopt;
   double trials = 0;
   for (const auto& plate : inputs.plates)
     trials += static_cast<double>(plate.triangles.size()) * counts.presentations / counts.contrasts;
@@ -171,11 +171,13 @@ Result<TimePrediction> predict_time(const Plan& plan, const ExperimentInputs& in
     if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
     const auto speed = speed_on(plate, model, observer, options, inputs, stop);
     if (!speed) return fail("timing plate " + plate.name, speed.error());
-    const double drawing = simulated.presentations * speed->draw + frames_of(plan, simulated) * speed->frame;
+    const double drawing = simulated.presentations * speed->draw +
+                           frames_of(plan, simulated, options.frames_per_presentation) * speed->frame;
     out.simulation_s += response_s(*speed) + looking_s(*speed, simulated) + drawing;
-    out.measuring_s += response_s(*speed) + looking_s(*speed, measured) + frames_of(plan, measured) * speed->frame;
+    out.measuring_s += response_s(*speed) + looking_s(*speed, measured) +
+                       frames_of(plan, measured, options.frames_per_presentation) * speed->frame;
     // The twin sees what the camera saw, so many times.
-    if (pairs_asked(plan) && !plan.camera.id.empty())
+    if (pairs_asked(plan, inputs.sensor) && !plan.camera.id.empty())
       out.measuring_s +=
           measured.presentations * PairedTwinOptions::default_draws * speed->answers / options.frames_per_presentation;
     if (plan.target.kind == TargetKind::scene) out.measuring_s += measured.presentations * speed->draw;
@@ -194,6 +196,11 @@ Result<TimePrediction> predict_time(const Plan& plan, const ExperimentInputs& in
     const double table_s = sizes_of_shape * *seconds * table_draws / draws;
     out.simulation_s += table_s;
     out.measuring_s += table_s;
+    if (plan.schedule.kind != ScheduleKind::adaptive) continue;
+    // Those that the schedule stops by, of camera and twin (stopping_tables()).
+    const double stopping_draws = draws_of_twin_shape(plan.schedule.half_width_percent / 196, inputs.accuracy);
+    out.simulation_s += sizes_of_shape * *seconds * stopping_draws / draws;
+    out.measuring_s += sizes_of_shape * *seconds * stopping_draws / draws;
   }
   return out;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "bench/plan/plan_options.h"
 #include "bench/text/text.h"
 #include "tod/plate/test_pattern.h"
 #include "tod/psychometric/twin_shape.h"
@@ -30,6 +31,32 @@ Result<ProportionTable> table_at(const TodPoint& point, const ExperimentInputs& 
   const auto curves = proportion_curves(inputs.sensor, inputs.effects, observer, {point.delta_t_k}, options);
   if (!curves) return tl::unexpected(curves.error());
   return table_of(curves->front(), inputs.sensor.ifov_mrad());
+}
+
+std::vector<Trial> trials_at(std::span<const Trial> trials, double set_delta_t_k) {
+  std::vector<Trial> own;
+  std::ranges::copy_if(trials, std::back_inserter(own),
+                       [&](const Trial& trial) { return trial.set_delta_t_k == set_delta_t_k; });
+  return own;
+}
+
+/// Gives a point the function; whether its fit is regular. Errors: fit_twin_shape().
+Result<bool> give_function(TodPoint& point, std::span<const Trial> trials, const ProportionTable& table,
+                           const FitOptions& fit) {
+  const std::vector<GradedAnswer> answers = graded_answers(trials_at(trials, point.set_delta_t_k));
+  auto fitted = fit_twin_shape(answers, point.fit, table, fit);
+  if (!fitted) return tl::unexpected(fitted.error());
+  if (!fitted->twin_shape) return false;
+  point.fit = *std::move(fitted);
+  // Those of the Weibull function are no check of this one.
+  point.free_lapse_fit.reset();
+  point.lapse_warning = false;
+  if (!fit.fixed_lapse) return true;
+  const auto free = twin_fit_with_free_lapse(answers, point.fit, fit.form);
+  if (!free) return true;
+  point.free_lapse_fit = *free;
+  point.lapse_warning = twin_lapse_gain(point.fit, *free) > boundary_drop;
+  return true;
 }
 
 }  // namespace
@@ -74,32 +101,67 @@ TwinShapesOutcome fit_twin_shapes(TodCurve& curve, std::span<const Trial> trials
       outcome.notes.push_back(where + table.error().message);
       continue;
     }
-    std::vector<Trial> own;
-    std::ranges::copy_if(trials, std::back_inserter(own),
-                         [&](const Trial& trial) { return trial.set_delta_t_k == point.set_delta_t_k; });
-    const std::vector<GradedAnswer> answers = graded_answers(own);
-    auto fitted = fit_twin_shape(answers, point.fit, *table, fit);
-    if (!fitted) {
-      outcome.notes.push_back(where + fitted.error().message);
+    const auto regular = give_function(point, trials, *table, fit);
+    if (!regular) {
+      outcome.notes.push_back(where + regular.error().message);
       continue;
     }
-    if (!fitted->twin_shape) {
+    if (!*regular) {
       point.estimator_reason = EstimatorReason::irregular;
-      outcome.notes.push_back(where + "its fit is not regular (" + std::string(to_string(fitted->verdict)) + ")");
+      outcome.notes.push_back(where + "its fit is not regular (" + std::string(to_string(point.fit.verdict)) + ")");
       continue;
     }
     point.estimator_reason = reason;
-    point.fit = *std::move(fitted);
-    // Those of the Weibull function are no check of this one.
-    point.free_lapse_fit.reset();
-    point.lapse_warning = false;
-    if (!fit.fixed_lapse) continue;
-    const auto free = twin_fit_with_free_lapse(answers, point.fit, fit.form);
-    if (!free) continue;
-    point.free_lapse_fit = *free;
-    point.lapse_warning = twin_lapse_gain(point.fit, *free) > boundary_drop;
   }
   return outcome;
+}
+
+Result<std::map<double, ProportionTable>> twin_tables(const Plan& plan, const ExperimentInputs& inputs,
+                                                      std::optional<double> se_ln_threshold, std::stop_token stop) {
+  std::map<double, ProportionTable> tables;
+  if (chosen_estimator(plan, inputs.sensor).estimator != FitEstimator::twin_shape) return tables;
+  TemplateObserver observer(inputs.observer, triangle_alternatives());
+  DirectEstimateOptions options{
+      .motion = inputs.motion, .accuracy = inputs.accuracy, .seed = plan.seed, .stop = std::move(stop)};
+  options.accuracy.noise_draws = draws_of_twin_shape(se_ln_threshold, inputs.accuracy);
+  for (const double delta_t_k : plan.target.delta_t_k) {
+    const auto curves = proportion_curves(inputs.sensor, inputs.effects, observer, {delta_t_k}, options);
+    if (!curves && curves.error().code == ErrorCode::interrupted) return tl::unexpected(curves.error());
+    if (curves) tables[delta_t_k] = table_of(curves->front(), inputs.sensor.ifov_mrad());
+  }
+  return tables;
+}
+
+Result<std::map<double, ProportionTable>> stopping_tables(const Plan& plan, const ExperimentInputs& inputs,
+                                                          std::stop_token stop) {
+  if (plan.schedule.kind != ScheduleKind::adaptive) return std::map<double, ProportionTable>();
+  return twin_tables(plan, inputs, plan.schedule.half_width_percent / 196, std::move(stop));
+}
+
+void fit_with_tables(TodCurve& curve, std::span<const Trial> trials, const std::map<double, ProportionTable>& tables,
+                     const FitOptions& fit) {
+  for (TodPoint& point : curve.points) {
+    const auto table = tables.find(point.set_delta_t_k);
+    if (table != tables.end()) (void)give_function(point, trials, table->second, fit);
+  }
+  fit_right_and_wrong(curve, trials, fit);
+}
+
+void fit_right_and_wrong(TodCurve& curve, std::span<const Trial> trials, const FitOptions& fit) {
+  const auto graded = [](const TodPoint& point) { return !point.fit.twin_shape && is_quasi(point.fit.interval); };
+  if (std::ranges::none_of(curve.points, graded)) return;
+  const auto binary = tod_curve(as_binary(trials), fit);
+  if (!binary) return;
+  for (TodPoint& point : curve.points) {
+    if (!graded(point)) continue;
+    const TodPoint* same = point_at(*binary, point.set_delta_t_k);
+    if (same == nullptr) continue;
+    point.levels = same->levels;
+    point.fit = same->fit;
+    point.free_lapse_fit = same->free_lapse_fit;
+    point.lapse_warning = same->lapse_warning;
+    point.answers = AnswersTaken{AnswerKind::binary, 1, AnswersReason::no_function};
+  }
 }
 
 }  // namespace todbench

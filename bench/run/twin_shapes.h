@@ -26,6 +26,23 @@ inline constexpr int twin_shape_draws = 4000, least_twin_shape_draws = 1000;
 /// an interval by 3 %; nothing: not known.
 [[nodiscard]] int draws_of_twin_shape(std::optional<double> se_ln_threshold, const Accuracy& accuracy);
 
+/// Functions of the simulated sensor at the set contrasts of a plan, for fits of answers while they come in; of as many
+/// draws as answers with this error need (draws_of_twin_shape()). Contrasts without a function are left out; none where
+/// the plan has a Weibull function. Errors: `interrupted`.
+[[nodiscard]] Result<std::map<double, ProportionTable>> twin_tables(const Plan& plan, const ExperimentInputs& inputs,
+                                                                    std::optional<double> se_ln_threshold,
+                                                                    std::stop_token stop);
+
+/// Those that an adaptive schedule stops by, of as many draws as its half-width needs; none for a constant one.
+[[nodiscard]] Result<std::map<double, ProportionTable>> stopping_tables(const Plan& plan,
+                                                                        const ExperimentInputs& inputs,
+                                                                        std::stop_token stop);
+
+/// Fits the points of a curve of these trials anew with the functions at their set contrasts; those without one keep
+/// their fit, but graded ones only as right and wrong answers (fit_right_and_wrong()).
+void fit_with_tables(TodCurve& curve, std::span<const Trial> trials, const std::map<double, ProportionTable>& tables,
+                     const FitOptions& fit);
+
 /// What became of it, a sentence for each contrast that keeps its Weibull function.
 struct TwinShapesOutcome {
   std::vector<std::string> notes;
@@ -39,5 +56,9 @@ struct TwinShapesOutcome {
 [[nodiscard]] TwinShapesOutcome fit_twin_shapes(TodCurve& curve, std::span<const Trial> trials,
                                                 const ExperimentInputs& inputs, const FitOptions& fit,
                                                 DirectEstimateOptions options, const TodCurve* known = nullptr);
+
+/// The points of graded answers that have no function of the twin are fitted anew from the right and wrong answers of
+/// the same trials: a Weibull function is off by more than the interval of graded ones. TodPoint::answers says so.
+void fit_right_and_wrong(TodCurve& curve, std::span<const Trial> trials, const FitOptions& fit);
 
 }  // namespace todbench

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "bench/session/json_output.h"
 #include "bench/text/json_reader.h"
 
 namespace todbench {
@@ -131,6 +132,7 @@ Json point_record(const TodPoint& point) {
   json["fit"] = fit_record(point.fit);
   json["estimator"] = to_string(estimator_of(point.fit));
   json["estimator_reason"] = point.estimator_reason ? Json(to_string(*point.estimator_reason)) : Json(nullptr);
+  add_answers(json, point);
   json["free_lapse_fit"] = point.free_lapse_fit ? fit_record(*point.free_lapse_fit) : Json(nullptr);
   json["lapse_warning"] = point.lapse_warning;
   json["adequacy"] = adequacy_json(point.adequacy);
@@ -152,6 +154,11 @@ TodPoint read_point(const JsonReader& reader) {
   point.fit = read_fit(reader.at("fit"));
   if (const JsonReader reason = reader.at_if_there("estimator_reason"); !reason.is_null())
     point.estimator_reason = reason.named(all_estimator_reasons);
+  if (const JsonReader reason = reader.at_if_there("answers_reason"); !reason.is_null()) {
+    point.answers =
+        AnswersTaken{reader.at("answers").named(all_answer_kinds),
+                     static_cast<int>(reader.at("frames_per_presentation").whole()), reason.named(all_answers_reasons)};
+  }
   if (const JsonReader free = reader.at("free_lapse_fit"); !free.is_null()) point.free_lapse_fit = read_fit(free);
   point.lapse_warning = reader.at("lapse_warning").flag();
   point.adequacy = read_adequacy(reader.at_if_there("adequacy"));

@@ -102,7 +102,10 @@ Result<HumanRecord> human_record(std::vector<Trial> answers, std::vector<ShownPa
   auto curve = tod_curve(answers, fit_options(plan));
   if (!curve) return tl::unexpected(curve.error());
   curve->observer = "human";
-  for (TodPoint& point : curve->points) point.estimator_reason = EstimatorReason::person;
+  for (TodPoint& point : curve->points) {
+    point.estimator_reason = EstimatorReason::person;
+    point.answers = AnswersTaken{AnswerKind::binary, 1, AnswersReason::person};
+  }
   examine(*curve, fit_options(plan));
   return HumanRecord{std::move(answers), *std::move(curve), std::move(shown)};
 }

@@ -58,6 +58,13 @@ Json effects_json(const SensorPlan& plan) {
   return effects;
 }
 
+void add_answers(Json& json, const TodPoint& point) {
+  const bool said = point.answers.has_value();
+  json["answers"] = said ? Json(to_string(point.answers->kind)) : Json(nullptr);
+  json["frames_per_presentation"] = said ? Json(point.answers->frames) : Json(nullptr);
+  json["answers_reason"] = said ? Json(to_string(point.answers->reason)) : Json(nullptr);
+}
+
 Json curve_json(const TodCurve& curve, const SensorPlan& plan, const RunFigures& figures) {
   Json points = Json::array();
   for (const TodPoint& point : curve.points) {
@@ -72,6 +79,7 @@ Json curve_json(const TodCurve& curve, const SensorPlan& plan, const RunFigures&
     json["verdict"] = to_string(point.fit.verdict);
     json["estimator"] = to_string(estimator_of(point.fit));
     json["estimator_reason"] = point.estimator_reason ? Json(to_string(*point.estimator_reason)) : Json(nullptr);
+    add_answers(json, point);
     json["interval"] = to_string(point.fit.interval);
     json["dispersion"] = json_number(point.fit.dispersion);
     json["clusters"] = json_number(point.fit.clusters);

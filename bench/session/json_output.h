@@ -26,6 +26,8 @@ struct RunFigures {
   std::uint64_t frames_used = 0;
   std::map<std::string, std::uint64_t> frames_rejected;  ///< by reason
 };
+/// "answers", "frames_per_presentation" and "answers_reason" of a point, null where nobody said.
+void add_answers(Json& json, const TodPoint& point);
 /// `measure PLAN --json` and `simulate PLAN --json`; the plan of a measured curve has no effects.
 [[nodiscard]] Json curve_json(const TodCurve& curve, const SensorPlan& plan, const RunFigures& figures);
 

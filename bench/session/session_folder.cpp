@@ -336,12 +336,18 @@ std::string curve_csv(const TodCurve& main, const std::optional<TodCurve>& twin,
 
 namespace {
 
-Result<bool> states_estimator(const std::filesystem::path& file) {
+/// What an earlier version did where its plan says nothing, for there was no choice: right and wrong answers, each to
+/// one frame, and a Weibull function.
+Result<void> keep_as_it_was(Plan& plan, const std::filesystem::path& file) {
   const auto text = read_text_file(file);
   if (!text) return tl::unexpected(text.error());
   auto reader = TomlReader::parse(*text, file.string());
   if (!reader) return tl::unexpected(reader.error());
-  return reader->section("fit").has("estimator");
+  if (!reader->section("fit").has("estimator")) plan.fit.estimator = EstimatorChoice::weibull;
+  TomlReader schedule = reader->section("schedule");
+  if (!schedule.has("answers")) plan.schedule.answers = AnswersChoice::binary;
+  if (!schedule.has("frames_per_presentation")) plan.schedule.frames_per_presentation = 1;
+  return {};
 }
 
 }  // namespace
@@ -354,10 +360,7 @@ Result<Session> read_session(const std::filesystem::path& folder) {
   const Result<LoadedPlan> loaded = read_plan((folder / "session.toml").string());
   if (!loaded) return tl::unexpected(loaded.error());
   session.plan = loaded->plan();
-  const auto stated = states_estimator(folder / "session.toml");
-  if (!stated) return tl::unexpected(stated.error());
-  // Written before there was a choice: fitted with a Weibull function.
-  if (!*stated) session.plan.fit.estimator = EstimatorChoice::weibull;
+  if (auto kept = keep_as_it_was(session.plan, folder / "session.toml"); !kept) return tl::unexpected(kept.error());
   session.parts = loaded->parts();
 
   const std::filesystem::path provenance_file = folder / "provenance.json";

@@ -8,6 +8,7 @@
 #include "bench/run/experiment_inputs.h"
 #include "bench/run/prediction.h"
 #include "bench/run/simulated_set_up.h"
+#include "bench/run/twin_shapes.h"
 #include "bench/text/text.h"
 #include "tod/plate/test_pattern.h"
 #include "tod/psychometric/tod_curve.h"
@@ -31,8 +32,14 @@ Result<std::vector<ThresholdEstimate>> from_trials(const Plan& plan, const Exper
                               set_up->options, *set_up->bench.host, MeasurementListener{}, stop);
   if (!result) return tl::unexpected(result.error());
   if (result->ended_by) return tl::unexpected(*result->ended_by);
-  const auto curve = tod_curve(result->trials, fit_options(plan));
+  auto curve = tod_curve(result->trials, fit_options(plan));
   if (!curve) return tl::unexpected(curve.error());
+  if (chosen_estimator(plan, inputs.sensor).estimator == FitEstimator::twin_shape) {
+    auto outcome = fit_twin_shapes(*curve, result->trials, inputs, fit_options(plan),
+                                   direct_options(*curve, inputs, {}, plan.seed, stop));
+    if (outcome.ended_by) return tl::unexpected(*std::move(outcome.ended_by));
+  }
+  fit_right_and_wrong(*curve, result->trials, fit_options(plan));
   std::vector<ThresholdEstimate> found;
   const double ifov_mrad = inputs.sensor.ifov_mrad();
   for (const TodPoint& point : curve->points) {

@@ -80,6 +80,8 @@ class UnknowingTarget final : public Target {
 Result<MeasurementResult> measured_on(OpenedBench& bench, const Plan& plan, const ExperimentInputs& inputs,
                                       const std::stop_token& stop) {
   MeasurementOptions options = measurement_options(plan, inputs.plates, plan.camera.ifov_mrad);
+  // A plan that names neither has right and wrong answers and a Weibull function here.
+  if (plan.schedule.answers == AnswersChoice::graded) take_answers(options, plan, inputs);
   options.free_running = false;
   const SensorModel model(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
   auto response = simulated_responses(model, plan, inputs.plates, options, stop);

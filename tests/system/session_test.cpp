@@ -19,10 +19,12 @@ using ::testing::UnorderedElementsAre;
 
 const std::set<std::string> curve_keys{"observer", "sensor", "points",  "plan",
                                        "wall_s",   "frames", "verdict", "judgement"};
-const std::set<std::string> point_keys{"delta_t_k",          "s75_mrad",        "s75_ci95_mrad", "s75_direct_mrad",
-                                       "s75_direct_se_mrad", "acuity_per_mrad", "trials",        "verdict",
-                                       "adequacy",           "estimator",       "interval",      "dispersion",
-                                       "clusters",           "estimator_reason"};
+const std::set<std::string> point_keys{
+    "delta_t_k",          "s75_mrad",         "s75_ci95_mrad", "s75_direct_mrad",
+    "s75_direct_se_mrad", "acuity_per_mrad",  "trials",        "verdict",
+    "adequacy",           "estimator",        "interval",      "dispersion",
+    "clusters",           "estimator_reason", "answers",       "frames_per_presentation",
+    "answers_reason"};
 const std::set<std::string> effect_keys{"name", "decision", "reason", "predicted_change_percent"};
 
 /// A folder with a plan, and the program run in it.

@@ -155,6 +155,71 @@ Result<TodPoint> tod_point(double set_delta_t_k, const TrialGroup& trials, const
 
 }  // namespace
 
+std::string_view to_string(AnswersReason reason) {
+  switch (reason) {
+    case AnswersReason::plan:
+      return "plan";
+    case AnswersReason::twin:
+      return "twin";
+    case AnswersReason::weibull:
+      return "weibull";
+    case AnswersReason::lapse:
+      return "lapse";
+    case AnswersReason::adaptive:
+      return "adaptive";
+    case AnswersReason::grey_levels:
+      return "grey-levels";
+    case AnswersReason::few_presentations:
+      return "few-presentations";
+    case AnswersReason::no_function:
+      return "no-function";
+    case AnswersReason::person:
+      return "person";
+    case AnswersReason::package:
+      return "package";
+    case AnswersReason::moving_target:
+      return "moving-target";
+  }
+  return "unknown";
+}
+
+std::string_view in_words(AnswersReason reason) {
+  switch (reason) {
+    case AnswersReason::plan:
+      return "the plan names them";
+    case AnswersReason::twin:
+      return "the model observer judges and the function of the twin is fitted";
+    case AnswersReason::weibull:
+      return "a Weibull function is off by more than the interval of graded answers";
+    case AnswersReason::lapse:
+      return "the plan has a lapse";
+    case AnswersReason::adaptive:
+      return "the schedule is adaptive";
+    case AnswersReason::grey_levels:
+      return "contrasts are those of grey levels";
+    case AnswersReason::few_presentations:
+      return "too few presentations tell how graded answers scatter";
+    case AnswersReason::no_function:
+      return "there is no function of the twin to fit graded answers with";
+    case AnswersReason::person:
+      return "a person answered";
+    case AnswersReason::package:
+      return "behind a package a Weibull function is fitted";
+    case AnswersReason::moving_target:
+      return "of a moving target a Weibull function is fitted";
+  }
+  return "unknown";
+}
+
+std::vector<Trial> as_binary(std::span<const Trial> trials) {
+  std::vector<Trial> out(trials.begin(), trials.end());
+  for (Trial& trial : out) {
+    trial.probability_correct.reset();
+    trial.frames = 1;
+  }
+  return out;
+}
+
 std::vector<GradedAnswer> graded_answers(std::span<const Trial> trials) {
   std::map<std::int64_t, int> presentations;
   std::map<Place, int> places;

@@ -1,9 +1,11 @@
 // Thresholds over contrast.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tod/presentation/trial.h"
@@ -11,6 +13,36 @@
 #include "tod/psychometric/psychometric_fit.h"
 
 namespace todbench {
+
+/// Why answers were graded, or right and wrong.
+enum class AnswersReason {
+  plan,               ///< the plan names them
+  twin,               ///< graded: the model observer judges, and the function of the twin is fitted
+  weibull,            ///< a Weibull function is off by more than the interval of graded answers
+  lapse,              ///< the plan has a lapse; graded answers are those of an observer without
+  adaptive,           ///< where an adaptive schedule ends by graded answers their intervals are not proven
+  grey_levels,        ///< nor where contrasts are those of grey levels
+  few_presentations,  ///< too few to tell how graded answers scatter
+  no_function,        ///< graded ones were taken, and there was no function of the twin to fit them with
+  person,             ///< a person answered
+  package,            ///< behind a package of enhancement, with a Weibull function
+  moving_target,      ///< likewise of a target that moves
+};
+inline constexpr std::array all_answers_reasons{
+    AnswersReason::plan,     AnswersReason::twin,        AnswersReason::weibull,           AnswersReason::lapse,
+    AnswersReason::adaptive, AnswersReason::grey_levels, AnswersReason::few_presentations, AnswersReason::no_function,
+    AnswersReason::person,   AnswersReason::package,     AnswersReason::moving_target};
+[[nodiscard]] std::string_view to_string(AnswersReason reason);
+/// In a sentence: "the plan names them".
+[[nodiscard]] std::string_view in_words(AnswersReason reason);
+
+/// The answers that a threshold rests on.
+struct AnswersTaken {
+  AnswerKind kind = AnswerKind::binary;
+  int frames = 1;  ///< of a presentation, over which graded answers are averaged
+  AnswersReason reason = AnswersReason::plan;
+  bool operator==(const AnswersTaken&) const = default;
+};
 
 /// One contrast of a TOD curve.
 struct TodPoint {
@@ -21,6 +53,7 @@ struct TodPoint {
   PsychometricFit fit;        ///< in mrad
   /// Why the fit is with a Weibull function or with that of the twin; nothing: not said.
   std::optional<EstimatorReason> estimator_reason;
+  std::optional<AnswersTaken> answers;            ///< nothing: not said
   std::optional<PsychometricFit> free_lapse_fit;  ///< the same with a free lapse, as a check
   bool lapse_warning = false;             ///< the free lapse explains the data significantly better (2 ln LR > 2.71)
   std::optional<Adequacy> adequacy;       ///< what speaks against the threshold; nothing: not examined
@@ -47,6 +80,9 @@ inline constexpr double boundary_drop = 2.705543454095404;
 /// by presentation and by place on the plate (which shares fixed pattern); the wider one is reported. A group all of
 /// whose answers are graded is fitted by fit_graded(), with both clusterings in one variance.
 [[nodiscard]] Result<TodCurve> tod_curve(std::span<const Trial> trials, const FitOptions& options);
+
+/// The same trials as right and wrong answers to one frame each.
+[[nodiscard]] std::vector<Trial> as_binary(std::span<const Trial> trials);
 
 /// Answers with their presentations and places; right and wrong ones as probabilities of 1 and 0.
 [[nodiscard]] std::vector<GradedAnswer> graded_answers(std::span<const Trial> trials);

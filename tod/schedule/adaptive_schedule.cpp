@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tod/psychometric/tod_curve.h"
+#include "tod/psychometric/twin_shape.h"
 
 namespace todbench {
 namespace {
@@ -33,9 +34,8 @@ PsiOptions prior_over(const std::vector<TargetPlate>& plates, double distance_m,
 }
 
 bool contradicted(const PsychometricFit& fit) {
-  // Graded answers have another function in the end, and their finding is its own; this one is off by more than they
-  // scatter.
-  if (is_quasi(fit.interval)) return false;
+  // How graded answers scatter is their finding.
+  if (fit.dispersion) return false;
   if (!fit.deviance || fit.degrees_of_freedom < 1 || *fit.deviance <= 0) return false;
   const boost::math::chi_squared law(fit.degrees_of_freedom);
   // Deviance over the clustered variance: trials of one presentation are not independent.
@@ -182,7 +182,11 @@ void AdaptiveSchedule::judge(Contrast& contrast) const {
   progress.half_width_percent.reset();
   progress.settled = false;
   if (!curve || curve->points.empty()) return;
-  const PsychometricFit& fit = curve->points.front().fit;
+  PsychometricFit fit = curve->points.front().fit;
+  if (const auto function = options_.functions.find(contrast.delta_t_k); function != options_.functions.end()) {
+    if (auto shaped = fit_twin_shape(graded_answers(contrast.trials), fit, function->second, options))
+      fit = *std::move(shaped);
+  }
   if (!fit.threshold || !fit.ci95.low || !fit.ci95.high || *fit.ci95.low <= 0) return;
   progress.half_width_percent = 100 * std::log(*fit.ci95.high / *fit.ci95.low) / 2;
   std::vector<double> sizes;

@@ -19,7 +19,9 @@ struct AdaptiveOptions {
   ConstantStimuliOptions stimuli;
   std::vector<TargetPlate> plates;  ///< identity mounting; the sizes that each shows
   double distance_m = 0;
-  FitOptions fit;                  ///< with which the result will be fitted
+  FitOptions fit;  ///< with which the result will be fitted
+  /// Of the twin by contrast, where the result will be fitted with them; a contrast without one has a Weibull function.
+  std::map<double, ProportionTable> functions{};
   double half_width_percent = 10;  ///< wanted: half the width of the 95 % interval of ln S75, at every contrast
   int max_presentations = 1000;    ///< hard cap, over all contrasts; at least one visit to each contrast is made
 };

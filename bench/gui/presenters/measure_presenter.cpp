@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "bench/plan/descriptions.h"
-#include "bench/plan/plan_options.h"
 #include "bench/report/tod_figures.h"
 #include "bench/run/replay.h"
 #include "bench/run/report_data.h"
@@ -143,6 +142,7 @@ void MeasurePresenter::begin(const Plan& plan) {
     inbox_.progress.reset();
   }
   ++run_;
+  running_fit_ = std::make_shared<RunningFit>(plan_);
   set_state(RunState::running);
   timer_.start();
   since_fit_.start();
@@ -286,16 +286,10 @@ void MeasurePresenter::fit() {
   std::vector<Trial> measured;
   measured.reserve(trials_.size());
   for (const auto& judged : trials_) measured.push_back(judged.trial);
-  FitOptions options = fit_options(plan_);
-  options.with_posterior = false;  // only reports show it
-  jobs_.start([this, run = run_, options, measured = std::move(measured), twin = twin_trials_](const std::stop_token&) {
-    const auto fitted = [&](const std::vector<Trial>& trials) -> std::optional<TodCurve> {
-      if (trials.empty()) return std::nullopt;
-      auto curve = tod_curve(trials, options);
-      if (!curve) return std::nullopt;
-      return std::move(*curve);
-    };
-    bench_.post([this, run, measured_curve = fitted(measured), twin_curve = fitted(twin)] {
+  // One job at a time has it.
+  jobs_.start([this, run = run_, fit = running_fit_, measured = std::move(measured),
+               twin = twin_trials_](const std::stop_token& stop) {
+    bench_.post([this, run, measured_curve = fit->curve_of(measured, stop), twin_curve = fit->curve_of(twin, stop)] {
       fitting_ = false;
       since_fit_.start();
       if (run != run_ || outcome_ || state_ == RunState::idle) return;

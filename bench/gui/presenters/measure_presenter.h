@@ -18,6 +18,7 @@
 #include "bench/gui/presenters/workbench.h"
 #include "bench/report/plot.h"
 #include "bench/run/experiment.h"
+#include "bench/run/running_fit.h"
 
 namespace todbench {
 
@@ -136,6 +137,7 @@ class MeasurePresenter final : public QObject {
   std::deque<JudgedTrial> recent_;
   std::size_t fitted_ = 0;
   bool fitting_ = false;
+  std::shared_ptr<RunningFit> running_fit_;  // of this run
   std::uint64_t run_ = 0;
   std::optional<TodCurve> measured_, twin_, predicted_;
   std::optional<ExperimentOutcome> outcome_;

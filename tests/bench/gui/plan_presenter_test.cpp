@@ -75,9 +75,9 @@ TEST(PlanPresenter, TakesChangesBackAndMakesThemAgain) {
 TEST(PlanPresenter, CountsTheAnswersOfAPlan) {
   Bench b;
 
-  // 2 plates of 20 triangles, 4 mountings, 3 contrasts, 12 phases.
-  EXPECT_EQ(b.presenter.outlook().presentations, 2u * 4 * 3 * 12);
-  EXPECT_EQ(b.presenter.outlook().trials, 2u * 20 * 4 * 3 * 12);
+  // 2 plates of 20 triangles, 4 mountings, 3 contrasts, 6 phases.
+  EXPECT_EQ(b.presenter.outlook().presentations, 2u * 4 * 3 * 6);
+  EXPECT_EQ(b.presenter.outlook().trials, 2u * 20 * 4 * 3 * 6);
 }
 
 TEST(PlanPresenter, NeedsFourTimesTheAnswersForHalfTheUncertainty) {

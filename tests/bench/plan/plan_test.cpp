@@ -91,7 +91,7 @@ Plan plan_with_rule() {
 
 Plan graded_plan() {
   Plan plan;
-  plan.schedule.answers = AnswerKind::graded;
+  plan.schedule.answers = AnswersChoice::graded;
   plan.schedule.frames_per_presentation = 4;
   plan.fit.estimator = EstimatorChoice::twin_shape;
   return plan;
@@ -168,12 +168,16 @@ TEST(Plan, ThatRequiresABudgetHasACompleteOne) {
 }
 
 TEST(Plan, SeveralFramesAreForGradedAnswers) {
-  const Result<Plan> refused = parse("[schedule]\nframes_per_presentation = 2\n");
+  const std::string two = "[schedule]\nframes_per_presentation = 2\n";
+  const Result<Plan> refused = parse(two + "answers = \"binary\"\n");
 
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::invalid_input);
   EXPECT_THAT(refused.error().message, HasSubstr("more than one frame needs answers = \"graded\""));
-  EXPECT_TRUE(parse("[schedule]\nframes_per_presentation = 2\nanswers = \"graded\"\n"));
+  EXPECT_TRUE(parse(two + "answers = \"graded\"\n"));
+  EXPECT_TRUE(parse(two)) << "graded is what answers are where nothing is said";
+  // It says how many there are of graded answers, where there are any.
+  EXPECT_EQ(chosen_answers(parse(two + "[fit]\nestimator = \"weibull\"\n").value(), {}).frames, 1);
 }
 
 TEST(Plan, GradedAnswersAreNotFittedWithAWeibullFunction) {
@@ -208,6 +212,36 @@ TEST(Plan, WithoutAnEstimatorTakesTheFunctionOfTheTwinWhereThereIsOne) {
   EXPECT_EQ(chosen("[fit]\nestimator = \"twin-shape\"\nlapse = 0.02\n", sensor).estimator, FitEstimator::twin_shape);
   EXPECT_EQ(chosen("[fit]\nestimator = \"weibull\"\n", sensor).reason, EstimatorReason::plan);
   EXPECT_FALSE(parse("[fit]\nestimator = \"twin-shape\"\n" + module));
+}
+
+TEST(Plan, WithoutAnswersTakesGradedOnesWhereTheirIntervalsAreProven) {
+  const auto chosen = [](const std::string& text, const SensorSpec& sensor = {}) {
+    return chosen_answers(parse(text).value(), sensor);
+  };
+  const auto binary = [](AnswersReason reason) { return AnswersTaken{AnswerKind::binary, 1, reason}; };
+  SensorSpec behind_module;
+  behind_module.modules.emplace_back();
+  const std::string schedule = "[schedule]\n", automatic = schedule + "answers = \"automatic\"\n";
+  for (const std::string& text : {std::string(), automatic, automatic + "frames_per_presentation = 0\n"})
+    EXPECT_EQ(chosen(text), (AnswersTaken{AnswerKind::graded, 4, AnswersReason::twin})) << text;
+  EXPECT_EQ(chosen(schedule + "frames_per_presentation = 1\n"),
+            (AnswersTaken{AnswerKind::graded, 1, AnswersReason::twin}));
+  EXPECT_EQ(chosen(schedule + "answers = \"graded\"\nframes_per_presentation = 7\n"),
+            (AnswersTaken{AnswerKind::graded, 7, AnswersReason::plan}));
+  EXPECT_EQ(chosen(schedule + "answers = \"binary\"\n"), binary(AnswersReason::plan));
+  EXPECT_EQ(chosen("[fit]\nestimator = \"weibull\"\n"), binary(AnswersReason::weibull));
+  EXPECT_EQ(chosen("", behind_module), binary(AnswersReason::weibull));
+  EXPECT_EQ(chosen("[[module]]\nplace = \"picture\"\ncommand = \"x\"\n"), binary(AnswersReason::weibull));
+  EXPECT_EQ(chosen("[fit]\nlapse = 0.02\n"), binary(AnswersReason::lapse));
+  EXPECT_EQ(chosen("[fit]\nlapse = \"free\"\n"), binary(AnswersReason::lapse));
+  EXPECT_EQ(chosen("[camera]\nid = \"sim:sc2000\"\nifov_mrad = 1\ncontrast = \"grey-levels\"\n"),
+            binary(AnswersReason::grey_levels));
+  EXPECT_EQ(chosen(schedule + "kind = \"adaptive\"\n"), binary(AnswersReason::adaptive));
+  const std::string one_plate = "[target]\ndistance_m = 2\nplates = [\"tcat-a\"]\nmountings = [\"identity\"]\n";
+  EXPECT_EQ(chosen(one_plate + "phases = 7\n"), binary(AnswersReason::few_presentations));
+  EXPECT_EQ(chosen(one_plate + "phases = 8\n").kind, AnswerKind::graded);
+  EXPECT_EQ(chosen(one_plate + "phases = 8\n[simulation]\nphases = 7\n").kind, AnswerKind::binary)
+      << "camera and twin have the same";
 }
 
 TEST(Plan, AnEmptyFileIsThePlanOfDefaults) {

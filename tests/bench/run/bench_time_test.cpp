@@ -111,8 +111,9 @@ TEST(BenchTime, OfTheDefaultPlanIsThatOfTheSlowestChangeOfEachPresentation) {
   EXPECT_EQ(time.contrast_changes, 24u);
   EXPECT_EQ(time.shift_changes, 384u);
   EXPECT_NEAR(time.changes_s, 2 * 60 + 6 * 30 + 16 * 20 + 360 * 0.1, 1e-9);
-  // 3 exposures a presentation, 32 to register each of 8 set-ups, 16 for each of their 24 contrasts.
-  EXPECT_EQ(time.frames, 384u * 3 + 8 * 32 + 24 * 16);
+  // 6 exposures a presentation, 2 of them discarded, 32 to register each of 8 set-ups, 16 for each of their 24
+  // contrasts.
+  EXPECT_EQ(time.frames, 384u * (2 + 4) + 8 * 32 + 24 * 16);
   EXPECT_DOUBLE_EQ(time.frames_s, time.frames / 50.0);
 }
 

@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "bench/run/precision_frontier.h"
+#include "bench/run/twin_shapes.h"
 
 namespace todbench {
 namespace {
@@ -21,17 +24,72 @@ TEST(GradedPrecision, IsThatOfDrawsWhereTheObserverMakesAllTheNoise) {
   EXPECT_NEAR(graded_variance_ratio({.sensor_share = 0, .frames = 4, .set_ups = 4}), 1.0 / 128 + 0.15, 1e-12);
 }
 
+TEST(GradedPrecision, KeepsMoreOfFewPhases) {
+  const double of_noise = 1.0 / 128;
+  EXPECT_NEAR(graded_variance_ratio({.frames = 4, .presentations = 24}), of_noise + 0.016, 1e-12) << "three phases";
+  EXPECT_NEAR(graded_variance_ratio({.frames = 4, .presentations = 128}), of_noise + 0.003, 1e-12);
+  EXPECT_NEAR(graded_variance_ratio({.frames = 4, .presentations = 8}), of_noise + 0.048, 1e-12);
+}
+
 TEST(GradedPrecision, IsWiderForFewSetUps) {
   // t of seven degrees of freedom, and chi square of seven at 95 %.
   EXPECT_NEAR(graded_interval_factor({.set_ups = 8}), 2.3646 * std::sqrt(14.067 / 7), 1e-3);
   EXPECT_GT(graded_interval_factor({.set_ups = 5}), graded_interval_factor({.set_ups = 16}));
 }
 
+/// Six presentations of five sizes, graded: the larger the more probable, and mostly right.
+std::vector<Trial> graded_trials() {
+  std::vector<Trial> trials;
+  for (int i = 0; i < 120; ++i) {
+    Trial trial;
+    trial.presentation = i / 20;
+    trial.triangle = std::to_string(i % 20);
+    trial.set_delta_t_k = trial.delta_t_k = 2;
+    trial.size_mrad = 1 + i % 5;
+    trial.probability_correct = 0.3 + 0.14 * (i % 5);
+    trial.frames = 4;
+    trial.truth = Apex::up;
+    trial.answer = (7 * i) % 10 < 3 + 1.4 * (i % 5) ? Apex::up : Apex::left;
+    trials.push_back(trial);
+  }
+  return trials;
+}
+
+TEST(GradedAnswers, WithoutAFunctionOfTheTwinAreFittedAsRightAndWrongOnes) {
+  const std::vector<Trial> trials = graded_trials();
+  auto curve = tod_curve(trials, {});
+  const auto binary = tod_curve(as_binary(trials), {});
+  ASSERT_TRUE(curve && binary);
+  ASSERT_TRUE(is_quasi(curve->points[0].fit.interval));
+
+  fit_right_and_wrong(*curve, trials, {});
+
+  const TodPoint &point = curve->points[0], &expected = binary->points[0];
+  EXPECT_FALSE(is_quasi(point.fit.interval));
+  EXPECT_EQ(point.fit.threshold, expected.fit.threshold);
+  EXPECT_EQ(point.fit.ci95.low, expected.fit.ci95.low);
+  EXPECT_EQ(point.levels.size(), expected.levels.size());
+  EXPECT_EQ(point.answers, (AnswersTaken{AnswerKind::binary, 1, AnswersReason::no_function}));
+}
+
+TEST(GradedAnswers, KeepTheFunctionOfTheTwinWhereTheyHaveIt) {
+  const std::vector<Trial> trials = graded_trials();
+  auto curve = tod_curve(trials, {});
+  ASSERT_TRUE(curve);
+  curve->points[0].fit.twin_shape = TwinShapeUse{};
+  const auto before = curve->points[0].fit.threshold;
+
+  fit_right_and_wrong(*curve, trials, {});
+
+  EXPECT_EQ(curve->points[0].fit.threshold, before);
+  EXPECT_FALSE(curve->points[0].answers);
+}
+
 TEST(PrecisionFrontier, HasEveryChoiceAndRecommendsOne) {
   Plan plan;
   plan.target.phases = plan.simulation.phases = 4;
   plan.simulation.accuracy = "draft";
-  plan.schedule.answers = AnswerKind::graded;
+  plan.schedule.answers = AnswersChoice::graded;
   plan.schedule.frames_per_presentation = 3;
   plan.fit.estimator = EstimatorChoice::twin_shape;
   EffectPlanner planner;

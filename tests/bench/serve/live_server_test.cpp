@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "bench/plan/plan_options.h"
+#include "bench/run/running_fit.h"
 #include "bench/serve/live_page.h"
 #include "bench/serve/live_run.h"
 #include "bench/text/json.h"
@@ -164,8 +164,8 @@ TEST(LiveCurve, IsTheCurveOfTheAnswersThatWereAdded) {
   }
 
   // The last fit is of all of them: it begins again as long as there are newer answers.
-  const auto expected = tod_curve(trials, fit_options(plan));
-  ASSERT_TRUE(expected) << expected.error().message;
+  const auto expected = RunningFit(plan).curve_of(trials, {});
+  ASSERT_TRUE(expected);
   const auto whole = [&] {
     const auto now = live.latest();
     return now && now->measured && now->measured->points.front().fit.trials == 400;

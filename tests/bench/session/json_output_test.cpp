@@ -62,6 +62,7 @@ TEST(CurveJson, HasExactlyThePublishedKeys) {
   point.fit = testing::full_fit(2);
   point.fit.ci95 = {1.5, 2.5};
   point.estimator_reason = EstimatorReason::twin;
+  point.answers = AnswersTaken{AnswerKind::graded, 4, AnswersReason::twin};
   point.direct_s75_mrad = 2.125;
   point.direct_s75_se_mrad = 0.25;
   const TodCurve curve{"hvs-1", "sc2000", {point}};
@@ -72,7 +73,8 @@ TEST(CurveJson, HasExactlyThePublishedKeys) {
       to_line(curve_json(curve, plan, {2.5, 100, {{"incomplete", 3}}})),
       R"({"observer":"hvs-1","sensor":"sc2000","points":[{"delta_t_k":16.9,"s75_mrad":2.0,"s75_ci95_mrad":[1.5,2.5],)"
       R"("s75_direct_mrad":2.125,"s75_direct_se_mrad":0.25,"acuity_per_mrad":0.5,"trials":640,"verdict":"ok",)"
-      R"("estimator":"twin-shape","estimator_reason":"twin","interval":"set_ups","dispersion":0.375,"clusters":32.0,)"
+      R"("estimator":"twin-shape","estimator_reason":"twin","answers":"graded","frames_per_presentation":4,"answers_reason":"twin",)"
+      R"("interval":"set_ups","dispersion":0.375,"clusters":32.0,)"
       R"("adequacy":null}],)"
       R"("plan":[{"name":"diffraction","decision":"skip","reason":"said so","predicted_change_percent":-1.5},)"
       R"({"name":"detector","decision":"simulate","reason":"never","predicted_change_percent":null}],)"

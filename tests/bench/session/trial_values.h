@@ -111,6 +111,7 @@ inline TodPoint full_point(double delta_t_k, double threshold_mrad) {
   point.free_lapse_fit = full_fit(threshold_mrad * 1.01);
   point.lapse_warning = true;
   point.estimator_reason = EstimatorReason::twin;
+  point.answers = AnswersTaken{AnswerKind::graded, 4, AnswersReason::plan};
   point.direct_s75_mrad = threshold_mrad * 1.002;
   point.direct_s75_se_mrad = 0.004;
   point.saturated_share = 0.0625;

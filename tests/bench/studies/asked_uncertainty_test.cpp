@@ -4,6 +4,20 @@
 namespace todbench::testing {
 namespace {
 
+// An adaptive schedule stops at the very interval that the result has.
+TEST(AskedUncertainty, OfAnAdaptiveRunIsThatOfItsResult) {
+  Plan plan = plan_to_study(ScheduleKind::adaptive, 14);
+  plan.target.plates = {"tcat-a"};
+  plan.measurement.registration_frames = 4;
+  plan.measurement.contrast_frames = 4;
+
+  const StudiedRun run = run_of(plan, 311);
+
+  ASSERT_EQ(run.contrasts.size(), 2u);
+  for (const AskedAndAchieved& one : run.contrasts) EXPECT_LE(one.achieved_percent, 14) << one.delta_t_k;
+  for (const TodPoint& point : run.curve.points) EXPECT_TRUE(point.fit.twin_shape) << point.set_delta_t_k;
+}
+
 // Promised for 95 % of runs; of 6 intervals at least 4: fewer has a probability of 2 in 10^3 at 95 %.
 TEST(AskedUncertainty, OfConstantAndAdaptiveRunsIsHardlyEverExceeded) {
   for (const ScheduleKind kind : {ScheduleKind::constant, ScheduleKind::adaptive}) {

@@ -1,6 +1,6 @@
 // Coverage of the true S75 over whole simulated runs, graded answers beside right and wrong ones of the same runs.
 // TODBENCH_STUDY_FOLDER: where runs are kept; what is there is not made again. TODBENCH_STUDY_RUNS: how many of each
-// design (600 and 200 without it). Prints the tables of docs/uncertainty.md.
+// design (600 and 200 without it). TODBENCH_STUDY_DESIGN: this one alone. Prints the tables of docs/uncertainty.md.
 #include <cstdio>
 #include <cstdlib>
 
@@ -31,6 +31,8 @@ std::vector<Studied> designs() {
   const SensorSpec rounded = with([](SensorSpec& s) { s.kelvin_per_count = s.netd_k; });
   return {{{.name = "demonstration"}, 600},
           {{.name = "quarter", .phases = 3}},
+          {{.name = "6 phases of 8 frames", .phases = 6, .frames = 8}},
+          {{.name = "4 phases of 12 frames", .phases = 4, .frames = 12}},
           {{.name = "fixed pattern 0.1 K", .camera = pattern, .twin = pattern}},
           {{.name = "rounding to one sigma", .camera = rounded, .twin = rounded}},
           {{.name = "microscan", .microscan = 2}},
@@ -47,7 +49,9 @@ TEST(GradedCoverage, OfTheTruthOverWholeRuns) {
   const std::string folder = kept != nullptr ? kept : temporary.path().string();
   GradedRecord record(folder + "/graded_runs.csv");
   std::printf("| design | contrast | estimator | runs | bias | scatter | stated | half-width | coverage | second |\n");
+  const char* only = std::getenv("TODBENCH_STUDY_DESIGN");
   for (const auto& [design, all] : designs()) {
+    if (only != nullptr && design.name != only) continue;
     const std::uint64_t runs = asked != nullptr ? std::strtoull(asked, nullptr, 10) : all;
     for (std::uint64_t seed = 1; seed <= runs; ++seed)
       if (!record.has(design.name, seed)) record.append(results_of(design, seed));
@@ -67,7 +71,7 @@ TEST(GradedCoverage, OfTheTruthOverWholeRuns) {
   }
 }
 
-/// What a plan has that says nothing about answers and estimator.
+/// What a plan has that says "binary" and nothing about the estimator.
 TEST(DefaultCoverage, OfTheTruthOverWholeRuns) {
   const TemporaryFolder temporary;
   const char* kept = std::getenv("TODBENCH_STUDY_FOLDER");

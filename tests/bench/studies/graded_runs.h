@@ -49,7 +49,7 @@ inline Plan plan_of(const GradedDesign& design, std::uint64_t seed) {
   plan.target.delta_t_k = design.delta_t_k;
   plan.simulation.phases = design.phases;
   plan.simulation.microscan = design.microscan;
-  plan.schedule.answers = AnswerKind::graded;
+  plan.schedule.answers = AnswersChoice::graded;
   plan.schedule.frames_per_presentation = design.frames;
   plan.fit.estimator = EstimatorChoice::twin_shape;
   return plan;
@@ -101,7 +101,8 @@ inline std::vector<GradedResult> results_of(const GradedDesign& design, std::uin
   std::vector<Trial> binary = graded;
   for (Trial& trial : binary) trial.probability_correct.reset();
   std::vector<GradedResult> results;
-  for (const auto& [trials, kind] : {std::pair(&std::as_const(binary), "binary"), std::pair(&graded, "graded")}) {
+  TodCurve known;  // of the graded answers: right and wrong ones have the same functions
+  for (const auto& [trials, kind] : {std::pair(&graded, "graded"), std::pair(&std::as_const(binary), "binary")}) {
     const auto curve = tod_curve(*trials, {.with_posterior = false});
     EXPECT_TRUE(curve) << design.name << " " << seed;
     if (!curve) continue;
@@ -109,18 +110,21 @@ inline std::vector<GradedResult> results_of(const GradedDesign& design, std::uin
     TodCurve shaped = *curve;
     std::map<double, double> shown;
     for (const TodPoint& point : shaped.points) shown[point.set_delta_t_k] = point.delta_t_k;
-    const auto outcome = fit_twin_shapes(shaped, *trials, twin, {}, direct_options(shaped, twin, shown, seed, {}));
+    const auto outcome = fit_twin_shapes(shaped, *trials, twin, {}, direct_options(shaped, twin, shown, seed, {}),
+                                         known.points.empty() ? nullptr : &known);
     EXPECT_TRUE(outcome.notes.empty()) << outcome.notes.front();
     add_results(results, design, seed, std::string(kind) + " twin-shape", shaped);
+    if (known.points.empty()) known = shaped;
   }
   return results;
 }
 
-/// What a plan without `answers` and `estimator` makes of the same run: right and wrong answers, one frame each, beside
-/// those of a Weibull function.
+/// What a plan with right and wrong answers and without `estimator` makes of the same run, one frame each, beside what
+/// a Weibull function does.
 inline std::vector<GradedResult> default_results_of(const GradedDesign& design, std::uint64_t seed) {
   Plan plan = plan_of(design, seed);
   plan.schedule = {};
+  plan.schedule.answers = AnswersChoice::binary;
   plan.fit = {};
   const ExperimentInputs camera = inputs_of(plan, design.camera), twin = inputs_of(plan, design.twin);
   const std::vector<Trial> trials = trials_of(plan, camera);

@@ -1,0 +1,38 @@
+#include "bench/run/functions_meanwhile.h"
+
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <utility>
+
+#include "bench/run/twin_shapes.h"
+
+namespace todbench {
+
+TodCurve known_functions(const std::map<double, ProportionTable>& tables, const TodCurve& curve) {
+  constexpr double nearby = 0.02;
+  TodCurve known;
+  for (const TodPoint& point : curve.points) {
+    const auto table = tables.find(point.set_delta_t_k);
+    if (table == tables.end()) continue;
+    if (!(std::abs(point.delta_t_k / point.set_delta_t_k - 1) < nearby)) continue;
+    TodPoint one;
+    one.set_delta_t_k = point.set_delta_t_k;
+    one.fit.twin_shape = TwinShapeUse{.table = table->second};
+    known.points.push_back(std::move(one));
+  }
+  return known;
+}
+
+FunctionsMeanwhile::FunctionsMeanwhile(const Plan& plan, const ExperimentInputs& inputs)
+    : made_(std::async(std::launch::async, [&plan, &inputs, stop = halt_.get_token()] {
+        return twin_tables(plan, inputs, std::nullopt, stop);
+      })) {}
+
+TodCurve FunctionsMeanwhile::known_for(const TodCurve& curve, std::stop_token stop) {
+  const std::stop_callback forward(std::move(stop), [this] { halt_.request_stop(); });
+  const auto tables = made_.get();
+  return tables ? known_functions(*tables, curve) : TodCurve{};
+}
+
+}  // namespace todbench
