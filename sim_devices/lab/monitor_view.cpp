@@ -41,7 +41,10 @@ void MonitorView::look(const std::shared_ptr<const cv::Mat1f>& levels) {
     surround_ = 0;
     return;
   }
-  const auto light = [&](float level) { return std::pow(std::max(0.0, static_cast<double>(level)), monitor_.gamma); };
+  // No panel is darker than black or brighter than white; what is no number is black.
+  const auto light = [&](float level) {
+    return std::pow(std::min(1.0, std::max(0.0, static_cast<double>(level))), monitor_.gamma);
+  };
   surround_ = light((*levels)(0, 0));
   cv::Mat1d above(levels->size());
   for (int row = 0; row < above.rows; ++row)

@@ -19,7 +19,7 @@ struct Monitor {
   double gamma = 1;        ///< light of a level from 0 to 1 is level^gamma; > 0
   /// The levels that it shows now, the same object as long as they are the same; null: black. Called with every
   /// exposure, from the thread of the camera. What is round the picture has the level of its first pixel.
-  std::function<std::shared_ptr<const cv::Mat1f>()> levels;
+  std::function<std::shared_ptr<const cv::Mat1f>()> levels{};
 };
 
 /// The camera looks at the middle of the monitor. One thread at a time.

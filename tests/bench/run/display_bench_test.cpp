@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
+#include <memory>
 #include <string>
 
 #include "bench/plan/descriptions.h"
@@ -11,6 +13,7 @@
 #include "bench/run/emulation.h"
 #include "bench/run/experiment.h"
 #include "sim_devices/lab/gvsp_laboratory.h"
+#include "sim_devices/lab/monitor_view.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "tests/support/temporary_folder.h"
 #include "tod/plate/test_pattern.h"
@@ -130,6 +133,30 @@ TEST(DisplayBench, SaysAtOnceWhatCannotBeShown) {
   EXPECT_EQ(code_of(fits, "env -u DISPLAY -u WAYLAND_DISPLAY -u QT_QPA_PLATFORM '" TODBENCH_GUI_PROGRAM "' --pictures"),
             ErrorCode::not_found);
   EXPECT_EQ(code_of(fits, "/no/such/program"), ErrorCode::not_found);
+}
+
+TEST(MonitorView, ShowsNoMoreThanWhiteAndNoLessThanBlack) {
+  SensorSpec spec;
+  spec.width = spec.height = 16;
+  const SensorModel model(spec, full_plan(spec, {}, {}), Accuracy::draft(), 1);
+  const auto frame_of = [&](float high, float low) {
+    cv::Mat1f levels(32, 32, 0.5F);
+    levels(cv::Rect(8, 8, 8, 8)) = high;
+    levels(cv::Rect(16, 16, 8, 8)) = low;
+    const auto shown = std::make_shared<const cv::Mat1f>(levels);
+    auto view = MonitorView::make({.pixel_mm = spec.ifov_mrad() / 2, .levels = [shown] { return shown; }}, model,
+                                  Accuracy::draft(), 1, {0, 0});
+    return view ? view->expose(0) : cv::Mat1w();
+  };
+  const cv::Mat1w right = frame_of(1, 0);
+  ASSERT_FALSE(right.empty());
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  for (const auto& [high, low] : {std::pair(2.0F, -1.0F), std::pair(infinity, -infinity),
+                                  std::pair(infinity, std::numeric_limits<float>::quiet_NaN())})
+    EXPECT_EQ(cv::norm(frame_of(high, low), right, cv::NORM_INF), 0);
+  EXPECT_GT(cv::norm(frame_of(0.9F, 0), right, cv::NORM_INF), 0);
+  for (const Monitor& wrong : {Monitor{.pixel_mm = 0}, Monitor{.pixel_mm = 10}, Monitor{.span_k = -1}})
+    EXPECT_FALSE(MonitorView::make(wrong, model, Accuracy::draft(), 1, {0, 0}));
 }
 
 }  // namespace
