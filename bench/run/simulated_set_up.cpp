@@ -9,7 +9,7 @@ namespace todbench {
 
 Result<SimulatedSetUp> simulated_set_up(const Plan& plan, const ExperimentInputs& inputs,
                                         std::map<double, double> shown_delta_t_k, std::stop_token stop,
-                                        ModuleSensor::OnLine on_error_line) {
+                                        const SimulatedSourceOptions& source) {
   const auto model = std::make_shared<const SensorModel>(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
   MeasurementOptions options = simulated_options(plan, inputs);
   auto response = simulated_responses(*model, plan, inputs.plates, options, std::move(stop));
@@ -17,7 +17,7 @@ Result<SimulatedSetUp> simulated_set_up(const Plan& plan, const ExperimentInputs
   options.contrast_response = std::move(*response);
   return SimulatedSetUp{.options = std::move(options),
                         .bench = simulated_bench(model, inputs.plates, plan.target.distance_m,
-                                                 std::move(shown_delta_t_k), inputs.motion, std::move(on_error_line)),
+                                                 std::move(shown_delta_t_k), inputs.motion, source),
                         .schedule = make_schedule(plan, inputs.plates, inputs.sensor.ifov_mrad(), Side::simulated,
                                                   RandomStream(plan.seed, "schedule.simulated"))};
 }
