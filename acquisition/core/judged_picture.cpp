@@ -7,4 +7,13 @@ Frame as_judged(Frame frame) {
   return frame;
 }
 
+int judged_samples_per_pixel(const Frame& frame) {
+  return frame.judged == nullptr ? 1 : frame.judged->samples_per_pixel;
+}
+
+cv::Point2d judged_place(const Frame& frame, cv::Point2d place_px) {
+  if (frame.judged == nullptr) return place_px;
+  return (place_px - frame.judged->first_px) * frame.judged->samples_per_pixel;
+}
+
 }  // namespace todbench

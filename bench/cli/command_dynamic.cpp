@@ -133,6 +133,8 @@ int run_dynamic(Console& console, const DynamicArguments& a, const Program& prog
     auto read = read_package(a.package);
     if (!read) return report_error(console, read.error());
     package = *std::move(read);
+    if (auto same = refuse_finer_pictures(package, "a target that moves"); !same)
+      return report_error(console, same.error());
     options.stages = [&package] { return made_stages(package, {}); };
   }
   console.phase("simulating " + sensor->name + " before a moving target");

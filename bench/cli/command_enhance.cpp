@@ -25,6 +25,7 @@ struct EnhanceArguments {
   std::string plan, out = "enhancement";
   std::vector<std::string> packages;
   bool overwrite = false;
+  int dither = 1;
   Opening opening{};
 };
 
@@ -52,9 +53,11 @@ Json enhancement_json(const Enhancement& enhancement, const std::string& folder)
                        {"frames", result.frames},
                        {"frame_ms", json_number(result.frame_ms)},
                        {"clipped_pixels", result.clipped_pixels},
+                       {"samples_per_pixel", result.samples_per_pixel},
                        {"error", result.error ? Json(result.error->message) : Json()}});
   }
   return {{"settle_frames", enhancement.settle_frames},
+          {"dither", enhancement.dither},
           {"results", results},
           {"camera", enhancement.camera},
           {"warnings", enhancement.warnings},
@@ -114,13 +117,16 @@ int run_enhance(Console& console, const EnhanceArguments& a, const Program& prog
   const bool recorded = std::filesystem::is_directory(a.plan, problem);
   const auto loaded = recorded ? recorded_plan(a.plan, a.opening) : read_plan(a.plan);
   if (!loaded) return report_error(console, loaded.error());
+  if (recorded && a.dither > 1)
+    return report_error(console, {ErrorCode::invalid_input, "--dither is for simulated frames, these are recorded"});
   const std::filesystem::path folder = a.out;
   const auto existing = a.overwrite ? ExistingResults::overwritten : ExistingResults::refused;
   if (auto made = make_result_folder(folder, existing); !made) return report_error(console, made.error());
   const EnhancementOptions options{
       .on_package =
           [&](const std::string& name) { console.phase((recorded ? "measuring with " : "simulating with ") + name); },
-      .on_progress = [&](std::size_t done, std::size_t planned) { console.progress(done, planned); }};
+      .on_progress = [&](std::size_t done, std::size_t planned) { console.progress(done, planned); },
+      .dither = a.dither};
   const auto stop = program.stop->token();
   const auto found = recorded ? compare_packages_recorded(a.plan, *loaded, packages, options, stop)
                               : compare_packages(*loaded, packages, options, stop);
@@ -153,6 +159,9 @@ void add_enhance_command(CLI::App& app, Program& program) {
       ->required();
   command->add_option("--packages", a->packages, "files of packages")->required()->expected(1, 16);
   command->add_option("--out", a->out, "folder for page, numbers and pictures")->capture_default_str();
+  command->add_option("--dither", a->dither, "n: the simulated sensor looks at n x n places of a pixel in turn")
+      ->capture_default_str()
+      ->check(whole_number(1, 4));
   command->add_flag("--force", a->overwrite, "overwrite what is in the folder");
   add_accept_changed(*command, a->opening.accept_changed);
   finish_command(*command, program, [a, &program](Console& console) { return run_enhance(console, *a, program); });

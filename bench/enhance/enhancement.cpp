@@ -71,6 +71,7 @@ void run_one(SimulatedSetUp set_up, const Plan& plan, const ExperimentInputs& in
   const auto on_error_line = [&result](std::string_view line) { keep_line(result, line); };
   auto stages = module_stages(modules, on_error_line);
   if (package != nullptr) std::ranges::move(made_stages(*package, on_error_line), std::back_inserter(stages));
+  result.samples_per_pixel = set_up.options.judged_samples_per_pixel = samples_per_pixel(stages);
   const auto camera =
       processed_source(std::move(set_up.bench.camera), std::move(stages), ProcessedAs::judged, picture_frame, record);
   TemplateObserver observer(inputs.observer, triangle_alternatives());
@@ -115,7 +116,8 @@ void run_simulated_one(const LoadedPlan& loaded, const ExperimentInputs& inputs,
                        int settle_frames, const EnhancementOptions& options, PackageResult& result,
                        const std::stop_token& stop) {
   const auto on_error_line = [&result](std::string_view line) { keep_line(result, line); };
-  auto set_up = simulated_set_up(loaded.plan(), inputs, {}, stop, on_error_line);
+  auto set_up =
+      simulated_set_up(loaded.plan(), inputs, {}, stop, {.on_error_line = on_error_line, .dither = options.dither});
   if (!set_up) {
     result.error = set_up.error();
     return;
@@ -286,6 +288,22 @@ std::vector<PairedRatio> paired_ratios(std::span<const Trial> with, std::span<co
 
 namespace {
 
+/// A scan whose places are not those of the sensor would make a finer picture of nothing.
+Result<void> check_scans(const std::vector<EnhancementPackage>& packages, int dither) {
+  for (const EnhancementPackage& package : packages) {
+    for (const StagePlan& stage : package.stages) {
+      const SuperResolutionStageOptions& finer = stage.super_resolution;
+      if (stage.kind != StagePlan::Kind::super_resolution || finer.shifts != FrameShifts::scan ||
+          finer.factor == dither)
+        continue;
+      return fail(ErrorCode::invalid_input,
+                  fmt::format("package {}: its scan is that of a sensor that is dithered over {} x {} places",
+                              package.name, finer.factor, finer.factor));
+    }
+  }
+  return {};
+}
+
 /// None first, then every package, with the ratios to none.
 Result<Enhancement> through_all(
     const Plan& plan, const std::vector<EnhancementPackage>& packages, const EnhancementOptions& options,
@@ -314,6 +332,11 @@ Result<Enhancement> compare_packages(const LoadedPlan& loaded, const std::vector
   const Plan& plan = loaded.plan();
   if (auto paired = check_paired_plan(plan); !paired) return tl::unexpected(paired.error());
   if (auto none = refuse_modules(plan, loaded.sensor()); !none) return tl::unexpected(none.error());
+  if (auto same = check_scans(packages, options.dither); !same) return tl::unexpected(same.error());
+  // The noise of a pixel is known from successive frames, whose edges are elsewhere.
+  if (options.dither > 1 && loaded.observer().sensor_noise_factor != 1)
+    return fail(ErrorCode::invalid_input,
+                "an observer whose noise is in proportion to that of the sensor does not judge dithered frames");
   const auto inputs = full_inputs(loaded);
   if (!inputs) return tl::unexpected(inputs.error());
   if (auto fits = check_simulated_geometry(plan, *inputs); !fits) return tl::unexpected(fits.error());
@@ -323,6 +346,7 @@ Result<Enhancement> compare_packages(const LoadedPlan& loaded, const std::vector
   });
   if (!enhancement) return enhancement;
   enhancement->settle_frames = settle;
+  enhancement->dither = options.dither;
   enhancement->camera = loaded.sensor().name;
   enhancement->frame_rate_hz = loaded.sensor().frame_rate_hz;
   return enhancement;

@@ -31,6 +31,7 @@ struct PackageResult {
   std::vector<PairedRatio> ratios;  ///< to none; of none itself empty
   double frame_ms = 0;              ///< median time of its stages for a frame
   std::size_t frames = 0, clipped_pixels = 0;
+  int samples_per_pixel = 1;             ///< of what is judged, along each axis
   cv::Mat1w picture;                     ///< one and the same frame for all
   std::optional<Error> error;            ///< why it ended early or could not be measured; the trials so far are kept
   std::vector<std::string> error_lines;  ///< what its modules wrote to standard error, the first hundred lines
@@ -40,12 +41,14 @@ struct Enhancement {
   int settle_frames = 0;               ///< exposures left out after every change, the same for all
   std::string camera;                  ///< whose frames they are
   double frame_rate_hz = 0;            ///< 0: unknown
+  int dither = 1;                      ///< as in the options; of recorded frames 1
   std::vector<std::string> warnings;   ///< a sentence each
 };
 
 struct EnhancementOptions {
   std::function<void(const std::string& name)> on_package{};
   std::function<void(std::size_t done, std::size_t planned)> on_progress{};
+  int dither = 1;  ///< n: the simulated sensor looks at n x n places of a pixel in turn (dither_px())
 };
 /// Simulates the plan's sensor with every effect, once without and once with each package, with the same random
 /// numbers: what the sensor exposes is the same bit for bit. Every exposure within the longest memory of all packages

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "bench/report/number_format.h"
@@ -78,6 +79,13 @@ Section record_section(const LoadedPlan& loaded, const std::vector<EnhancementPa
                                                  "file SHA-256 " + package.sha256)});
     for (const auto& record : package.provenance) values.values.push_back({package.name, plain(record)});
   }
+  for (const PackageResult& result : enhancement.results) {
+    if (result.samples_per_pixel > 1)
+      values.values.push_back(
+          {result.name, plain(fmt::format("judged at {0} x {0} samples a pixel", result.samples_per_pixel))});
+  }
+  if (enhancement.dither > 1)
+    values.values.push_back({"Dither", plain(fmt::format("{0} x {0} places of a pixel in turn", enhancement.dither))});
   return {"Record", {std::move(values)}};
 }
 
@@ -121,7 +129,10 @@ cv::Mat1b side_by_side(const Enhancement& enhancement) {
   const int rows = pictures.front().rows, columns = pictures.front().cols, count = static_cast<int>(pictures.size());
   cv::Mat1b strip(rows, count * columns + (count - 1) * gap, std::uint8_t{255});
   for (int i = 0; i < count; ++i) {
-    const cv::Mat1w& picture = pictures[static_cast<std::size_t>(i)];
+    // A finer picture is shown in the size of the others.
+    cv::Mat1w picture = pictures[static_cast<std::size_t>(i)];
+    if (picture.size() != pictures.front().size())
+      cv::resize(picture.clone(), picture, pictures.front().size(), 0, 0, cv::INTER_AREA);
     const double low = quantile(picture, 0.001), high = std::max(quantile(picture, 0.999), low + 1);
     cv::Mat1b shown;
     picture.convertTo(shown, CV_8U, 255 / (high - low), -low * 255 / (high - low));

@@ -347,6 +347,10 @@ Result<ModelComparison> compare_models(const LoadedPlan& plan, ComparedModel a, 
   comparison.keys = key_differences(a, b);
   comparison.a = std::move(a);
   comparison.b = std::move(b);
+  for (const ComparedModel* side : {&comparison.a, &comparison.b}) {
+    if (auto same = refuse_finer_pictures(side->package, "a comparison of transfer functions"); !same)
+      return tl::unexpected(same.error());
+  }
   for (const LoadedPlan* side : {&*plan_a, &*plan_b}) {
     if (auto possible = check_sensor_module(side->sensor(), side->plan().simulation.motion); !possible)
       return tl::unexpected(possible.error());

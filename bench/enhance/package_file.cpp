@@ -15,8 +15,8 @@
 namespace todbench {
 namespace {
 
-const std::vector<std::string> stage_kinds{"recursive", "sharpen", "median", "clahe",
-                                           "plateau",   "module",  "kernel", "agc"};
+const std::vector<std::string> stage_kinds{"recursive", "sharpen", "median", "clahe",           "plateau",
+                                           "module",    "kernel",  "agc",    "super-resolution"};
 
 StagePlan read_stage(TomlReader& table, std::vector<ModulePlan>& modules) {
   StagePlan stage;
@@ -54,6 +54,16 @@ StagePlan read_stage(TomlReader& table, std::vector<ModulePlan>& modules) {
         table.reject("values", "expected nine numbers, rows first");
       break;
     }
+    case StagePlan::Kind::super_resolution: {
+      SuperResolutionStageOptions& finer = stage.super_resolution;
+      finer.factor = static_cast<int>(table.whole("factor", 2, 4, finer.factor));
+      finer.frames = static_cast<int>(table.whole("frames", 4, 64, finer.factor * finer.factor));
+      if (finer.frames < finer.factor * finer.factor)
+        table.reject("frames", "are fewer than the cells of a pixel, the square of factor");
+      const std::vector<std::string> shifts{"measured", "scan"};
+      if (table.choice("shifts", shifts, shifts.front()) == "scan") finer.shifts = FrameShifts::scan;
+      break;
+    }
     case StagePlan::Kind::agc:
       stage.plateau_counts = static_cast<int>(table.whole("plateau_counts", 0, 100'000'000, 0));
       break;
@@ -80,6 +90,16 @@ Result<EnhancementPackage> read_package(const std::filesystem::path& file) {
   // Nothing is started before the whole file is known to be right.
   for (const auto& module : modules) package.provenance.push_back(text_of(module_record(module)));
   return package;
+}
+
+Result<void> refuse_finer_pictures(const EnhancementPackage& package, std::string_view what) {
+  for (const StagePlan& stage : package.stages) {
+    if (stage.kind == StagePlan::Kind::super_resolution)
+      return fail(ErrorCode::invalid_input,
+                  fmt::format("package {}: super-resolution is for 'enhance': {} works with the camera's own pixels",
+                              one_line(package.name), what));
+  }
+  return {};
 }
 
 std::vector<std::unique_ptr<ChainStage>> made_stages(const EnhancementPackage& package,
@@ -110,6 +130,9 @@ std::vector<std::unique_ptr<ChainStage>> made_stages(const EnhancementPackage& p
       }
       case StagePlan::Kind::kernel:
         stages.push_back(kernel_filter(plan.kernel));
+        break;
+      case StagePlan::Kind::super_resolution:
+        stages.push_back(super_resolution_stage(plan.super_resolution));
         break;
       case StagePlan::Kind::agc:
         stages.push_back(gain_control(plan.plateau_counts));

@@ -11,12 +11,23 @@
 
 #include "acquisition/core/result.h"
 #include "sim_devices/module/picture_stage.h"
+#include "sim_devices/sensor/super_resolution_stage.h"
 
 namespace todbench {
 
 /// What a stage does. The numbers are those of its kind alone.
 struct StagePlan {
-  enum class Kind { recursive, sharpen, median, clahe, plateau, module, kernel, agc } kind = Kind::recursive;
+  enum class Kind {
+    recursive,
+    sharpen,
+    median,
+    clahe,
+    plateau,
+    module,
+    kernel,
+    agc,
+    super_resolution
+  } kind = Kind::recursive;
   double share = 0.5;                                       ///< recursive
   double amount = 1;                                        ///< sharpen
   int size = 3;                                             ///< median
@@ -26,6 +37,7 @@ struct StagePlan {
   ModuleStageOptions module{};                              ///< module
   std::array<double, 9> kernel{0, 0, 0, 0, 1, 0, 0, 0, 0};  ///< kernel
   int plateau_counts = 0;                                   ///< agc
+  SuperResolutionStageOptions super_resolution{};           ///< super_resolution
 };
 struct EnhancementPackage {
   std::string name, description;
@@ -38,6 +50,10 @@ struct EnhancementPackage {
 /// memory_mib, restart_frames, network, settle_frames. Commands run in the folder of the caller. `invalid_input`
 /// "FILE:LINE: ..." in one sentence.
 [[nodiscard]] Result<EnhancementPackage> read_package(const std::filesystem::path& file);
+
+/// `invalid_input` in one sentence for a package with super-resolution, where `what` works with the camera's own
+/// pixels.
+[[nodiscard]] Result<void> refuse_finer_pictures(const EnhancementPackage& package, std::string_view what);
 
 /// The stages, ready for the first picture.
 [[nodiscard]] std::vector<std::unique_ptr<ChainStage>> made_stages(

@@ -371,6 +371,10 @@ Result<SceneDependence> plan_scene_dependence(const LoadedPlan& loaded, const En
                                               const SceneDependenceOptions& options, const ExperimentHost& host,
                                               std::stop_token stop) {
   const Plan& plan = loaded.plan();
+  if (package != nullptr) {
+    if (auto same = refuse_finer_pictures(*package, "the response to a bar"); !same)
+      return tl::unexpected(same.error());
+  }
   TemplateObserver observer(loaded.observer(), triangle_alternatives());
   const TargetState state = state_of(plan, loaded.plates());
   if (!plan.camera.id.empty()) {

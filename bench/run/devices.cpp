@@ -136,7 +136,7 @@ CameraRegistry camera_registry([[maybe_unused]] std::stop_token stop, [[maybe_un
 
 OpenedBench simulated_bench(std::shared_ptr<const SensorModel> model, const std::vector<TargetPlate>& plates,
                             double distance_m, std::map<double, double> shown_delta_t_k, SceneMotion motion,
-                            ModuleSensor::OnLine on_error_line) {
+                            const SimulatedSourceOptions& source) {
   PlateScene scene = empty_scene(distance_m);
   scene.motion = motion;
   scene.background_k = model->spec().scene_temperature_k;
@@ -145,7 +145,7 @@ OpenedBench simulated_bench(std::shared_ptr<const SensorModel> model, const std:
   if (!shown_delta_t_k.empty())
     target = std::make_unique<RemappedTarget>(std::move(target), std::move(shown_delta_t_k));
   OpenedBench bench;
-  bench.camera = simulated_source(std::move(model), holder, "1", std::move(on_error_line));
+  bench.camera = simulated_source(std::move(model), holder, "1", source);
   bench.target = std::move(target);
   bench.simulated = true;
   return bench;

@@ -42,10 +42,10 @@ struct OpenedBench {
                                              const OnTargetWait& on_wait = {});
 
 /// A simulated sensor behind a scene. `shown_delta_t_k`: set-point -> contrast really shown, so that a twin shows what
-/// a camera saw; set-points that are not in it are shown as they are. `on_error_line`: of simulated_source().
+/// a camera saw; set-points that are not in it are shown as they are. `source`: of simulated_source().
 [[nodiscard]] OpenedBench simulated_bench(std::shared_ptr<const SensorModel> model,
                                           const std::vector<TargetPlate>& plates, double distance_m,
                                           std::map<double, double> shown_delta_t_k, SceneMotion motion = {},
-                                          ModuleSensor::OnLine on_error_line = {});
+                                          const SimulatedSourceOptions& source = {});
 
 }  // namespace todbench

@@ -159,7 +159,7 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
                               std::stop_token stop) {
   const auto begin = Clock::now();
   const ModuleLine log_line = module_log(folder);
-  auto set_up = simulated_set_up(plan, inputs, shown_delta_t_k, stop, log_line);
+  auto set_up = simulated_set_up(plan, inputs, shown_delta_t_k, stop, {.on_error_line = log_line});
   if (!set_up) return tl::unexpected(set_up.error());
   set_up->bench.host = bench_host({.pause = host.pause});
   const auto modules = picture_modules(plan, inputs.sensor, Side::simulated);

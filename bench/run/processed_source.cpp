@@ -24,20 +24,20 @@ class ProcessedSource final : public ForwardingSource {
   [[nodiscard]] Result<Frame> next(std::chrono::milliseconds timeout) override {
     auto frame = ForwardingSource::next(timeout);
     if (!frame || frame->status != FrameStatus::complete) return frame;
-    auto counts = processed(*frame);
-    if (!counts) return tl::unexpected(counts.error());
-    if (record_->frame_ms.size() == picture_frame_ + 1) record_->picture = counts->clone();
+    auto answer = processed(*frame);
+    if (!answer) return tl::unexpected(answer.error());
+    if (record_->frame_ms.size() == picture_frame_ + 1) record_->picture = answer->counts.clone();
     if (as_ == ProcessedAs::judged)
-      frame->judged = std::make_shared<const JudgedPicture>(JudgedPicture{.counts = *std::move(counts)});
+      frame->judged = std::make_shared<const JudgedPicture>(*std::move(answer));
     else
-      frame->counts = *std::move(counts);
+      frame->counts = answer->counts;
     return frame;
   }
 
  private:
-  Result<cv::Mat1w> processed(const Frame& frame) {
+  Result<JudgedPicture> processed(const Frame& frame) {
     const auto begin = std::chrono::steady_clock::now();
-    cv::Mat1w counts = frame.counts;
+    JudgedPicture out{.counts = frame.counts};
     if (!stages_.empty()) {
       cv::Mat1f picture;
       frame.counts.convertTo(picture, CV_32F);
@@ -45,12 +45,14 @@ class ProcessedSource final : public ForwardingSource {
         auto answer = stage->process(picture);
         if (!answer) return tl::unexpected(answer.error());
         picture = *answer;
+        out.first_px += stage->first_px() / out.samples_per_pixel;
+        out.samples_per_pixel *= stage->samples_per_pixel();
       }
-      counts = counts_of(picture, frame.significant_bits);
+      out.counts = counts_of(picture, frame.significant_bits);
     }
     record_->frame_ms.push_back(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
-    return counts;
+    return out;
   }
   cv::Mat1w counts_of(const cv::Mat1f& picture, int significant_bits) {
     const float full = static_cast<float>((1 << significant_bits) - 1);
@@ -70,6 +72,12 @@ class ProcessedSource final : public ForwardingSource {
 };
 
 }  // namespace
+
+int samples_per_pixel(const std::vector<std::unique_ptr<ChainStage>>& stages) {
+  int samples = 1;
+  for (const auto& stage : stages) samples *= stage->samples_per_pixel();
+  return samples;
+}
 
 std::unique_ptr<FrameSource> processed_source(std::unique_ptr<FrameSource> camera,
                                               std::vector<std::unique_ptr<ChainStage>> stages, ProcessedAs as,

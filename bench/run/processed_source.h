@@ -19,8 +19,11 @@ struct ProcessingRecord {
 /// What becomes of the answers of the stages.
 enum class ProcessedAs {
   judged,  ///< Frame::judged: plate, contrast, noise and corrections are found in the counts as they came
-  counts,  ///< Frame::counts, as if the camera had sent them
+  counts,  ///< Frame::counts, as if the camera had sent them: stages of one sample a pixel
 };
+
+/// Samples per pixel and axis of what stages answer together.
+[[nodiscard]] int samples_per_pixel(const std::vector<std::unique_ptr<ChainStage>>& stages);
 
 /// `camera` with every complete frame through all stages, one after the other; answers are rounded to counts and cut
 /// off at the ends of their range. Frames that are not complete stay as they are. Errors of a stage are errors of

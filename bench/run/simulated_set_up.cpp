@@ -10,7 +10,7 @@ namespace todbench {
 
 Result<SimulatedSetUp> simulated_set_up(const Plan& plan, const ExperimentInputs& inputs,
                                         std::map<double, double> shown_delta_t_k, std::stop_token stop,
-                                        ModuleSensor::OnLine on_error_line) {
+                                        const SimulatedSourceOptions& source) {
   const auto model = std::make_shared<const SensorModel>(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
   MeasurementOptions options = simulated_options(plan, inputs);
   auto response = simulated_responses(*model, plan, inputs.plates, options, stop);
@@ -22,7 +22,7 @@ Result<SimulatedSetUp> simulated_set_up(const Plan& plan, const ExperimentInputs
                                 RandomStream(plan.seed, "schedule.simulated"), *functions);
   return SimulatedSetUp{.options = std::move(options),
                         .bench = simulated_bench(model, inputs.plates, plan.target.distance_m,
-                                                 std::move(shown_delta_t_k), inputs.motion, std::move(on_error_line)),
+                                                 std::move(shown_delta_t_k), inputs.motion, source),
                         .schedule = std::move(schedule),
                         .functions = *std::move(functions)};
 }

@@ -20,9 +20,9 @@ struct SimulatedSetUp {
   std::map<double, ProportionTable> functions{};  ///< that an adaptive schedule stops by (stopping_tables())
 };
 
-/// `shown_delta_t_k` and `on_error_line` as for simulated_bench(). Errors as contrast_response().
+/// `shown_delta_t_k` and `source` as for simulated_bench(). Errors as contrast_response().
 [[nodiscard]] Result<SimulatedSetUp> simulated_set_up(const Plan& plan, const ExperimentInputs& inputs,
                                                       std::map<double, double> shown_delta_t_k, std::stop_token stop,
-                                                      ModuleSensor::OnLine on_error_line = {});
+                                                      const SimulatedSourceOptions& source = {});
 
 }  // namespace todbench

@@ -19,11 +19,15 @@ class ChainStage {
   ChainStage() = default;
   ChainStage(const ChainStage&) = delete;
   ChainStage& operator=(const ChainStage&) = delete;
-  /// The answer has the size of the picture and finite numbers. Errors: those of ModuleProcess; none of the built-in
-  /// stages.
+  /// The answer has samples_per_pixel() times the size of the picture and finite numbers. Errors: those of
+  /// ModuleProcess; none of the built-in stages.
   [[nodiscard]] virtual Result<cv::Mat1f> process(const cv::Mat1f& picture) = 0;
   /// Pictures after which less than 0.1 % is left of what was seen before.
   [[nodiscard]] virtual int memory_frames() const { return 0; }
+  /// Samples of an answer along each axis for a sample of the picture.
+  [[nodiscard]] virtual int samples_per_pixel() const { return 1; }
+  /// Where sample (0, 0) of the last answer is, in samples of the picture.
+  [[nodiscard]] virtual cv::Point2d first_px() const { return {0, 0}; }
 };
 
 /// y_n = share x_n + (1 - share) y_(n-1), the first picture as it is; white noise is left with the variance share / (2

@@ -8,6 +8,7 @@
 #include "acquisition/core/camera_id.h"
 #include "acquisition/core/host_clock.h"
 #include "sim_devices/sensor/moving_scene.h"
+#include "sim_devices/sensor/super_resolution_stage.h"
 
 namespace todbench {
 namespace {
@@ -15,10 +16,10 @@ namespace {
 class SimulatedSource final : public FrameSource {
  public:
   SimulatedSource(std::shared_ptr<const SensorModel> model, std::shared_ptr<SceneHolder> scene, std::string serial,
-                  ModuleSensor::OnLine on_error_line)
-      : model_(std::move(model)), scene_(std::move(scene)) {
+                  const SimulatedSourceOptions& options)
+      : model_(std::move(model)), scene_(std::move(scene)), dither_(options.dither) {
     const SensorSpec& spec = model_->spec();
-    if (sensor_module(spec) != nullptr) module_.emplace(spec, model_->seed(), std::move(on_error_line));
+    if (sensor_module(spec) != nullptr) module_.emplace(spec, model_->seed(), options.on_error_line);
     const auto scale = RadiometricScale::linear({.kelvin_per_count = spec.kelvin_per_count, .offset_k = spec.offset_k});
     CV_Assert(scale.has_value());
     scale_ = std::make_shared<const RadiometricScale>(*scale);
@@ -47,7 +48,8 @@ class SimulatedSource final : public FrameSource {
     if (stopped_) return fail(ErrorCode::interrupted, "simulated camera " + info_.id + " is stopped");
     Frame frame;
     const double time_s = static_cast<double>(index_) / info_.frame_rate_hz;
-    const PlateScene scene = scene_->scene_at(time_s, model_->spec());
+    PlateScene scene = scene_->scene_at(time_s, model_->spec());
+    if (dither_ > 1) scene.centre_px += dither_px(dither_, index_);
     if (module_) {
       auto counts = module_->expose(scene, index_);
       if (!counts) return tl::unexpected(counts.error());
@@ -86,6 +88,7 @@ class SimulatedSource final : public FrameSource {
   std::shared_ptr<const SensorModel> model_;
   std::shared_ptr<SceneHolder> scene_;
   std::optional<ModuleSensor> module_;
+  int dither_;
   std::shared_ptr<const RadiometricScale> scale_;
   SourceInfo info_;
   std::uint64_t index_ = 0;
@@ -199,9 +202,8 @@ PlateRun SceneHolder::run_along_x(double to_mm, double speed_mm_s) {
 
 std::unique_ptr<FrameSource> simulated_source(std::shared_ptr<const SensorModel> model,
                                               std::shared_ptr<SceneHolder> scene, std::string serial,
-                                              ModuleSensor::OnLine on_error_line) {
-  return std::make_unique<SimulatedSource>(std::move(model), std::move(scene), std::move(serial),
-                                           std::move(on_error_line));
+                                              const SimulatedSourceOptions& options) {
+  return std::make_unique<SimulatedSource>(std::move(model), std::move(scene), std::move(serial), options);
 }
 
 std::unique_ptr<Target> scene_target(std::shared_ptr<SceneHolder> scene, std::vector<TargetPlate> plates) {

@@ -39,11 +39,16 @@ class SceneHolder {
   double time_s_ = 0;
 };
 
+struct SimulatedSourceOptions {
+  ModuleSensor::OnLine on_error_line{};  ///< of the program that is the sensor
+  int dither = 1;                        ///< n: frame k shows the scene displaced by dither_px(n, k)
+};
+
 /// Exposes as fast as it is asked: frame k is expose(scene at that moment, k), of the model or of the program that is
-/// the sensor, whose lines on standard error are told to `on_error_line`. `serial` distinguishes twins.
+/// the sensor. `serial` distinguishes twins.
 [[nodiscard]] std::unique_ptr<FrameSource> simulated_source(std::shared_ptr<const SensorModel> model,
                                                             std::shared_ptr<SceneHolder> scene, std::string serial,
-                                                            ModuleSensor::OnLine on_error_line = {});
+                                                            const SimulatedSourceOptions& options = {});
 
 /// Puts states into the scene at once. Plates in identity mounting.
 [[nodiscard]] std::unique_ptr<Target> scene_target(std::shared_ptr<SceneHolder> scene, std::vector<TargetPlate> plates);

@@ -184,8 +184,10 @@ class Run {
     // What the instrument said is kept also when the camera could not make anything of it.
     keep_presentation(state, *there_ns, registration.has_value());
     if (!registration) return tl::unexpected(registration.error());
-    const auto problems = windows_out_of_picture(mounted_plate, *registration, plate->sides(),
-                                                 {source_.info().width, source_.info().height});
+    std::vector<int> sides = plate->sides();
+    for (int& side : sides) side = in_pixels(side);
+    const auto problems =
+        windows_out_of_picture(mounted_plate, *registration, sides, {source_.info().width, source_.info().height});
     if (!problems.empty()) {
       std::string text;
       for (const auto& problem : problems) text += (text.empty() ? "" : "; ") + sentence(problem);
@@ -253,7 +255,9 @@ class Run {
     registered_[{state.plate, state.mounting}] = base_;
     if (scale_px_per_mm_ == 0) scale_px_per_mm_ = base_.scale_px_per_mm;
     if (plate.observers.empty()) {
-      if (auto prepared = prepare(plate, observer_, scale_px_per_mm_, options_.samples_per_pitch); !prepared)
+      const int finer = options_.judged_samples_per_pixel;
+      if (auto prepared = prepare(plate, observer_, scale_px_per_mm_ * finer, options_.samples_per_pitch * finer);
+          !prepared)
         return prepared;
     }
     return {};
@@ -279,22 +283,30 @@ class Run {
     for (int k = 0; k < options_.frames_per_presentation; ++k) {
       auto taken = taker_.next(stop_);
       if (!taken) return tl::unexpected(taken.error());
-      const Frame frame = as_judged(*std::move(taken));
+      if (judged_samples_per_pixel(*taken) != options_.judged_samples_per_pixel)
+        return fail(ErrorCode::internal, "frames are judged at another number of samples a pixel than was said");
+      const Frame frame = as_judged(*taken);
       const auto unit_per_k = of_a_kelvin(frame, mounted_plate, registration, state);
       if (!unit_per_k) return tl::unexpected(unit_per_k.error());
       for (std::size_t i = 0; i < count; ++i) {
         const PlateTriangle& t = mounted_plate.triangles[i];
-        const auto window = patch_window(registration.pixel(t.position_mm), plate.observers[i]->window_samples());
+        const cv::Point2d place = registration.pixel(t.position_mm);
+        const int side = plate.observers[i]->window_samples();
+        const auto window = patch_window(judged_place(*taken, place), side);
+        if ((window.pixels & cv::Rect({0, 0}, frame.counts.size())) != window.pixels)
+          return fail(ErrorCode::calibration, "the plate is too near the edge of the picture: " + t.name);
         auto kelvin = window_kelvin(frame, window.pixels);
         if (!kelvin) return tl::unexpected(kelvin.error());
         if (*unit_per_k != 1) *kelvin /= *unit_per_k;
         Patch patch{.kelvin = *std::move(kelvin), .phase = window.phase, .noise_k = seen_.noise_k};
         const GradedChoice judged = judge(*plate.observers[i], patch, i, k);
-        const int saturated = step_.saturated_pixels(frame, window.pixels);
+        const int saturated = options_.judged_samples_per_pixel == 1
+                                  ? step_.saturated_pixels(frame, window.pixels)
+                                  : step_.saturated_pixels(*taken, patch_window(place, in_pixels(side)).pixels);
         probabilities[i] += judged.answers.probability[static_cast<std::size_t>(t.apex)];
         if (k == 0) {
           Trial trial = first_answer(t, state, frame, judged.choice, window.phase);
-          trial.size_px = plate.size_px[i];
+          trial.size_px = plate.size_px[i] / options_.judged_samples_per_pixel;
           trials.push_back(std::move(trial));
           patches.push_back(std::move(patch));
         }
@@ -312,6 +324,12 @@ class Run {
       if (listener_.on_patch) listener_.on_patch(trials[i], patches[i]);
     }
     return {};
+  }
+
+  /// The side of a window of what is judged, in whole pixels, even as patch_window() wants it.
+  [[nodiscard]] int in_pixels(int side) const {
+    const int finer = options_.judged_samples_per_pixel;
+    return finer == 1 ? side : 2 * ((side + 2 * finer - 1) / (2 * finer) + 1);
   }
 
   /// What a kelvin is in this frame: 1, or its grey levels, which are kept.

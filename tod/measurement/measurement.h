@@ -34,6 +34,7 @@ struct MeasurementOptions {
   double min_reference_px = 4;      ///< triangles from this size measure the effective contrast
   ContrastUnit contrast_unit = ContrastUnit::kelvin;  ///< grey levels: the temperature scale of the camera is not used
   int samples_per_pitch = 1;  ///< displayed samples per detector pitch (2: 2x2 microscan); the IFOV is that of a sample
+  int judged_samples_per_pixel = 1;  ///< of JudgedPicture, in every frame; the IFOV stays that of a pixel
   /// By plate name: what effective_contrast() reads of a contrast of 1 K, blur included, from a simulated picture; 1
   /// where it is not known. Measured contrasts are divided by it.
   std::map<std::string, double> contrast_response;

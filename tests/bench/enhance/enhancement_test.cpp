@@ -16,6 +16,8 @@
 #include "bench/plan/plan.h"
 #include "bench/plan/plan_options.h"
 #include "bench/report/html.h"
+#include "sim_devices/prediction/direct_estimate.h"
+#include "sim_devices/sensor/super_resolution.h"
 #include "tests/bench/enhance/paired_ratio_coverage.h"
 #include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
@@ -97,6 +99,80 @@ TEST(ChainStages, OfEqualisationKeepOrderAndRange) {
   const cv::Mat1f uniform = plateau_equalisation(100)->process(picture).value();
   const double middle = (low + high) / 2;
   EXPECT_NEAR(cv::countNonZero(uniform < middle) / 3072.0, 0.5, 0.03);
+}
+
+/// A bright square with soft edges, displaced.
+cv::Mat1f soft_square(cv::Point2d displaced) {
+  cv::Mat1f picture(48, 64);
+  for (int j = 0; j < picture.rows; ++j) {
+    for (int i = 0; i < picture.cols; ++i) {
+      const double x = i - 30.3 - displaced.x, y = j - 22.8 - displaced.y;
+      picture(j, i) = static_cast<float>(300 + 10 * std::exp(-(std::pow(x / 9, 4) + std::pow(y / 7, 4))));
+    }
+  }
+  return picture;
+}
+
+TEST(SuperResolutionStage, GivesWhatTheLibraryGivesOfTheLastFrames) {
+  for (const FrameShifts kind : {FrameShifts::scan, FrameShifts::measured}) {
+    const auto stage = super_resolution_stage({.frames = 4, .factor = 2, .shifts = kind});
+    std::vector<cv::Mat1f> all;
+    cv::Mat1f answer;
+    for (std::uint64_t k = 0; k < 6; ++k) {
+      all.push_back(soft_square(dither_px(2, k)) + 0.01 * noise({64, 48}, k));
+      answer = stage->process(all.back()).value();
+      EXPECT_EQ(answer.size(), cv::Size(128, 96)) << "also before there are four";
+    }
+
+    const std::vector<cv::Mat1f> last(all.begin() + 2, all.end());
+    std::vector<cv::Point2d> shifts;
+    for (std::uint64_t k = 2; k < 6; ++k) shifts.push_back(dither_px(2, k) - dither_px(2, 2));
+    if (kind == FrameShifts::measured) shifts = frame_shifts(last).value();
+    const auto library = super_resolve(last, shifts);
+    ASSERT_TRUE(library) << library.error().message;
+    EXPECT_EQ(cv::norm(answer, library->picture, cv::NORM_INF), 0);
+    cv::Point2d mean(0, 0);
+    for (const auto& shift : shifts) mean += shift / 4.0;
+    EXPECT_EQ(stage->first_px(), library->first_px + mean);
+    EXPECT_EQ(stage->memory_frames(), 3);
+  }
+  const auto stage = super_resolution_stage({});
+  for (int k = 0; k < 3; ++k) (void)stage->process(soft_square({0, 0})).value();
+  const auto never_moved = stage->process(soft_square({0, 0}));
+  ASSERT_FALSE(never_moved) << "three cells of a pixel have no frame";
+  EXPECT_EQ(never_moved.error().code, ErrorCode::integrity);
+}
+
+TEST(Enhancement, BySuperResolutionOfADitheredSensorIsThatOfFinerSampling) {
+  const auto plan = small_plan("0.6", 8);
+  const StagePlan finer{.kind = StagePlan::Kind::super_resolution,
+                        .super_resolution = {.frames = 4, .factor = 2, .shifts = FrameShifts::scan}};
+
+  const auto found = compare_packages(plan, {package_of({finer})}, {.dither = 2}, {});
+
+  ASSERT_TRUE(found) << found.error().message;
+  const PackageResult& result = found->results[1];
+  ASSERT_FALSE(result.error) << result.error->message;
+  EXPECT_EQ(result.samples_per_pixel, 2);
+  EXPECT_EQ(result.trials.size(), 8u * 20);
+  SensorSpec fine = plan.sensor();
+  fine.super_resolution_frames = 4;
+  TemplateObserver observer(plan.observer(), triangle_alternatives());
+  const auto direct =
+      direct_estimate(fine, full_plan(fine, {}, {}), observer, {0.6}, {.accuracy = Accuracy::draft(), .seed = 1});
+  ASSERT_TRUE(direct) << direct.error().message;
+  const PsychometricFit& fit = result.curve.points.front().fit;
+  const double expected_mrad = direct->front().s75_pitch * fine.ifov_mrad();
+  EXPECT_LT(fit.ci95.low.value(), expected_mrad);
+  EXPECT_GT(fit.ci95.high.value(), expected_mrad);
+  // Pixels are those of the camera, and its contrast: sizes are the same in both.
+  EXPECT_EQ(result.trials.front().size_px, found->results[0].trials.front().size_px);
+  EXPECT_NEAR(result.curve.points.front().delta_t_k / 0.6, 1, 0.03);
+  EXPECT_LT(fit.ci95.high.value(), found->results[0].curve.points.front().fit.ci95.low.value())
+      << "finer sampling resolves more";
+  const auto at_rest = compare_packages(plan, {package_of({finer})}, {}, {});
+  ASSERT_FALSE(at_rest) << "a scan of a sensor that does not scan";
+  EXPECT_EQ(at_rest.error().code, ErrorCode::invalid_input);
 }
 
 TEST(Enhancement, OfNeutralStagesChangesNoAnswer) {
@@ -307,8 +383,9 @@ TEST(PackageFile, IsRefusedInASentence) {
   EXPECT_THAT(refusal("[[stage]]\nkind = \"median\"\nsize = 4\n"), HasSubstr("3 or 5"));
   EXPECT_THAT(refusal("[[stage]]\nkind = \"median\"\nshare = 1\n"), HasSubstr("share"));
   EXPECT_THAT(refusal("[[stage]]\nkind = \"module\"\n"), HasSubstr("command"));
+  EXPECT_THAT(refusal("[[stage]]\nkind = \"super-resolution\"\nfactor = 3\nframes = 8\n"), HasSubstr("frames"));
   EXPECT_EQ(refusal("[[stage]]\nkind = \"clahe\"\n[[stage]]\nkind = \"plateau\"\n"), "taken");
-  for (const char* name : {"recursive", "sharpen", "plateau", "module"}) {
+  for (const char* name : {"recursive", "sharpen", "plateau", "module", "super-resolution"}) {
     const auto package = read_package(source_file(std::string("docs/examples/packages/") + name + ".toml"));
     EXPECT_TRUE(package) << package.error().message;
   }
