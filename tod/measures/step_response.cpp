@@ -17,7 +17,7 @@ namespace {
 constexpr double seen_sigmas = 6, seen_part = 0.002;  // of noise and of the step: a sample that shows the step
 constexpr std::size_t least_fitted = 6;               // samples of a step
 constexpr double shortest_over_frame = 0.12;          // in frames: exp(-8) is left after one
-constexpr double longest_over_span = 0.4;             // in what was watched after a step
+constexpr double longest_over_watch = 0.4;            // in what was watched after a step
 constexpr double first_order_level = 1e-4, detected_level = 1e-6;
 constexpr double least_left = 2 * settling_left;  // of the step, behind the settling time of a target
 
@@ -67,7 +67,7 @@ struct LogRange {
 LogRange range_of(std::span<const FittedStep> steps, double frame_s) {
   double span_s = steps.front().time_s.back();
   for (const FittedStep& step : steps) span_s = std::min(span_s, step.time_s.back());
-  return {std::log(shortest_over_frame * frame_s), std::log(longest_over_span * span_s)};
+  return {std::log(shortest_over_frame * frame_s), std::log(longest_over_watch * span_s)};
 }
 
 double golden_minimum(std::span<const FittedStep> steps, double a, double b) {

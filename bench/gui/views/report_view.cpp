@@ -11,6 +11,7 @@
 #include "bench/gui/views/plot_view.h"
 #include "bench/judgement/demand_kinds.h"
 #include "bench/report/number_format.h"
+#include "tod/comparison/comparison.h"
 
 namespace todbench {
 namespace {
@@ -44,9 +45,11 @@ QString in_a_list(const QString& verdict) {
   return (verdict == "pass" ? "✓ " : verdict == "fail" ? "✗ " : "? ") + verdict;
 }
 
+/// The ratios that decide.
 QList<QStringList> ratio_rows(const Comparison& comparison) {
+  const Comparison decided = as_decided(comparison);
   QList<QStringList> rows;
-  for (const auto& p : comparison.points) {
+  for (const auto& p : decided.points) {
     rows << QStringList{QString::number(p.set_delta_t_k),
                         QString::fromStdString(with_interval(p.ratio, p.ratio_ci95)),
                         QString::fromStdString(with_interval(p.ratio, p.ratio_ci90)),
@@ -207,8 +210,7 @@ void ReportView::show_session() {
   const Verdict& verdict = *opened.report.verdict;
   verdict_->setText(verdict_text(report_verdict(opened.report)) +
                     (verdict.judged == JudgedWhen::afterwards ? ". " + text_of(remark_on(verdict.judged)) : QString()));
-  fill_table(*ratios_, opened.session.comparison ? ratio_rows(*opened.session.comparison) : QList<QStringList>());
-  fit_height(*ratios_, most_ratios);
+  show_ratios(opened.session.comparison);
   QList<QStringList> rows;
   for (const Demand& demand : verdict.demands) {
     const QString percent = demand.interval_percent == 95 ? "" : QString(" (%1 %)").arg(demand.interval_percent);
@@ -240,10 +242,17 @@ void ReportView::show_comparison() {
   verdict_->setText("Acuity ratio " + compared.a + " / " + compared.b + ": " +
                     text_of(to_string(compared.comparison.verdict)) +
                     (reasons.empty() ? QString() : ": " + QString::fromStdString(reasons)));
-  fill_table(*ratios_, ratio_rows(compared.comparison));
-  fit_height(*ratios_, most_ratios);
+  show_ratios(compared.comparison);
   fill_table(*limits_, {});
   show_plot();
+}
+
+void ReportView::show_ratios(const std::optional<Comparison>& comparison) {
+  fill_table(*ratios_, comparison ? ratio_rows(*comparison) : QList<QStringList>());
+  const QString kind = comparison && decided_by_pairs(*comparison) ? "Paired ratio" : "Acuity ratio";
+  ratios_->horizontalHeaderItem(1)->setText(kind + " [95 %]");
+  ratios_->horizontalHeaderItem(2)->setText(kind + " [90 %]");
+  fit_height(*ratios_, most_ratios);
 }
 
 void ReportView::show_plot() {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bench/gui/presenters/session_presenter.h"
+#include "tod/comparison/comparison.h"
 
 class QCheckBox;
 class QLabel;
@@ -41,6 +42,7 @@ class ReportView final : public QWidget {
   void list_sessions();
   void show_session();
   void show_comparison();
+  void show_ratios(const std::optional<Comparison>& comparison);
   void show_plot();
 
   SessionPresenter& presenter_;
