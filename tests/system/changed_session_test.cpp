@@ -78,6 +78,17 @@ TEST_F(ChangedSessions, AreRefusedByEveryCommandWhateverWasChanged) {
   EXPECT_EQ(run({"verify", "m"}).code, 0);
 }
 
+TEST_F(ChangedSessions, VerifySaysWhyASessionWithAForeignFileIsNotIntact) {
+  write("m/notes/mine.txt", "x");
+
+  const Ended ended = run({"verify", "m", "--json"});
+
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_EQ(one_object(ended)["condition"], "changed");
+  ASSERT_TRUE(one_object(ended)["reason"].is_string());
+  EXPECT_THAT(one_object(ended)["reason"].get<std::string>(), HasSubstr("foreign"));
+}
+
 TEST_F(ChangedSessions, VerifyTellsWhatWasChangedRemovedAndAdded) {
   const Json before = one_object(run({"verify", "m", "--json"}));
   change_a_digit("m/fits.json", 0.5);

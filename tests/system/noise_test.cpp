@@ -116,6 +116,8 @@ TEST(NoiseCommand, RefusesWhatIsNoRecording) {
   expect_refused(todbench({"noise", "none.seq"}), 2, "none.seq");
   expect_refused(todbench({"noise", recordings + "flir_sc660.seq", "--sensor", "nothing"}), 2, "nothing");
   expect_refused(todbench({"noise", recordings + "flir_sc660.seq", "--block-frames", "1"}), 2, "block-frames");
+  for (const char* list : {"1,,2", ",2", "2,"})
+    expect_refused(todbench({"noise", recordings + "flir_sc660.seq", "--contrast-over-noise", list}), 2, list);
 }
 
 }  // namespace
