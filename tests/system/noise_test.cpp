@@ -130,6 +130,20 @@ TEST(NoiseCommand, FindsNothingWrongWithWhiteNoise) {
   EXPECT_NEAR(json["lag1_correlation"].get<double>(), 0, 0.02);
 }
 
+TEST(NoiseCommand, SaysThatComponentsKnowNoMemory) {
+  const TemporaryFolder folder;
+  const std::string white = folder.write("white.raw", white_frames(8000, 5)).string();
+
+  const Ended lepton = todbench({"noise", recordings + "lepton_b_160x120_u16le.raw?width=160&height=120",
+                                 "--components-only", "--across-corrections", "--json"}),
+              none = todbench({"noise", white + "?width=80&height=60", "--components-only", "--json"});
+
+  ASSERT_EQ(lepton.code, 0) << lepton.err;
+  EXPECT_THAT(lepton.err, HasSubstr("correlated in time"));
+  ASSERT_EQ(none.code, 0) << none.err;
+  EXPECT_EQ(none.err, "");
+}
+
 TEST(NoiseCommand, WithholdsTheAcuityWhereTheSceneMoved) {
   const Ended ended = todbench({"noise", recordings + "flir_sc660.seq", "--json"});
 
