@@ -208,6 +208,25 @@ std::vector<std::string> lost_sessions(const std::vector<HistorySession>& sessio
   return lost;
 }
 
+/// A check of what is nowhere in the index, or against a limit that no value can have, would find nothing to report.
+Result<void> can_be_checked(const std::vector<HistorySession>& sessions, const HistoryArguments& a) {
+  if (!a.serial.empty() && sessions.empty())
+    return fail(ErrorCode::not_found, a.serial + ": no such unit in " + a.index);
+  if (a.measure.empty()) return {};
+  const auto limit = a.at_least ? a.at_least : a.at_most;
+  bool known = false;
+  for (const HistorySession& session : sessions) {
+    for (const HistoryValue& value : session.values) {
+      if (value.measure != a.measure) continue;
+      known = true;
+      if (limit && (!std::isfinite(*limit) || (value.scale == "ln" && !(*limit > 0))))
+        return fail(ErrorCode::invalid_input, "history check: a limit of " + a.measure + " is a number above 0");
+    }
+  }
+  if (!known) return fail(ErrorCode::not_found, "no value of measure '" + one_line(a.measure) + "' in " + a.index);
+  return {};
+}
+
 int run_check(Console& console, const HistoryArguments& a) {
   if (a.at_least && a.at_most)
     return report_error(console, {ErrorCode::invalid_input, "history check: one limit at a time"});
@@ -217,6 +236,7 @@ int run_check(Console& console, const HistoryArguments& a) {
   if (!index) return report_error(console, index.error());
   const auto sessions = index->sessions(a.serial.empty() ? std::nullopt : std::optional(a.serial));
   if (!sessions) return report_error(console, sessions.error());
+  if (auto possible = can_be_checked(*sessions, a); !possible) return report_error(console, possible.error());
   const auto all = history_series(*index, a.serial, a.measure);
   if (!all) return report_error(console, all.error());
   std::vector<std::string> warnings, predicted;

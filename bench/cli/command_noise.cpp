@@ -7,12 +7,14 @@
 
 #include "acquisition/core/camera_id.h"
 #include "acquisition/core/correction_watch.h"
+#include "acquisition/core/integrity_gate.h"
 #include "acquisition/recording/recording_backend.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/noise_components.h"
 #include "bench/judgement/verdict.h"
 #include "bench/plan/descriptions.h"
 #include "bench/studies/real_noise_study.h"
+#include "tod/measures/pixel_noise.h"
 #include "tod/measures/temporal_noise.h"
 #include "tod/plate/test_pattern.h"
 
@@ -37,6 +39,8 @@ constexpr double white_enough = 0.1;
 struct Frames {
   std::vector<TimedPicture> pictures;
   bool kelvin = false;
+  double unit_per_count = 1;   ///< 0: not known
+  double saturated_share = 0;  ///< of all pixels, at either end of the counts
 };
 
 /// In kelvin where the recording says how, else in counts.
@@ -73,6 +77,17 @@ class Segments {
   int segment_ = 0;
 };
 
+/// What a count is worth where the picture is, in kelvin; 0: not known.
+double kelvin_per_count(const Frame& frame, const RadiometricScale& scale) {
+  return std::abs(scale.kelvin_per_count(cv::mean(frame.counts)[0]).value_or(0));
+}
+
+double saturated_share(const Frame& frame) {
+  const double full = std::pow(2.0, frame.significant_bits) - 1;
+  const int ends = cv::countNonZero(frame.counts == 0) + cv::countNonZero(frame.counts >= full);
+  return ends / static_cast<double>(frame.counts.total());
+}
+
 /// All complete frames that are exposures of their own.
 Result<Frames> frames_of(const std::string& id) {
   auto source =
@@ -92,6 +107,10 @@ Result<Frames> frames_of(const std::string& id) {
     if (!segment) continue;
     auto picture = picture_of(*frame, frames.kelvin);
     if (!picture) return fail(id, picture.error());
+    if (frames.pictures.empty() && frames.kelvin)
+      frames.unit_per_count = kelvin_per_count(*frame, (*source)->info().scale);
+    const auto seen = static_cast<double>(frames.pictures.size());
+    frames.saturated_share += (saturated_share(*frame) - frames.saturated_share) / (seen + 1);
     frames.pictures.push_back({*std::move(picture), frame->sequence, *segment});
   }
 }
@@ -116,6 +135,7 @@ struct Found {
   RecordedNoise blocks;
   TemporalNoise time;
   bool kelvin = false;
+  double unit_per_count = 1, saturated_share = 0;
 };
 
 bool moved(const RecordedNoise& noise) {
@@ -126,8 +146,24 @@ bool correlated(const TemporalNoise& noise) {
   return noise.lag1_correlation && std::abs(*noise.lag1_correlation) > white_enough;
 }
 
+/// Rounding leaves of so little noise what depends on where between two counts a pixel lies.
+bool too_coarse(const Found& found) {
+  return found.time.successive < least_measurable_noise_counts * found.unit_per_count;
+}
+
+bool clipped(const Found& found) {
+  return found.saturated_share > IntegrityOptions{}.max_saturated_share;
+}
+
+/// The counts hold no noise that could be stated.
+bool no_number(const Found& found) {
+  return clipped(found) || too_coarse(found);
+}
+
 std::string_view verdict_of(const Found& found) {
+  if (clipped(found)) return "saturated";
   if (moved(found.blocks)) return "scene_moved";
+  if (too_coarse(found)) return "too_coarse";
   return correlated(found.time) ? "correlated" : "ok";
 }
 
@@ -175,7 +211,7 @@ Json noise_json(const Found& found, const std::vector<NoiseAcuity>& points, cons
           {"blocks", noise.blocks},
           {"block_frames", arguments.block_frames},
           {"usable_share", noise.usable_share},
-          {"temporal_noise", json_number(found.time.successive)},
+          {"temporal_noise", no_number(found) ? Json() : json_number(found.time.successive)},
           {"lag1_correlation", json_number(found.time.lag1_correlation)},
           {"structure_function", structure_json(found.time)},
           {"whole_to_successive", json_number(found.time.whole_to_successive)},
@@ -191,7 +227,8 @@ Json noise_json(const Found& found, const std::vector<NoiseAcuity>& points, cons
 
 void print_time(Console& console, const Found& found, const std::string& unit) {
   const TemporalNoise& time = found.time;
-  console.text("temporal noise " + fixed(time.successive, 4) + " " + unit + " (successive frames) over " +
+  const auto noise = no_number(found) ? std::nullopt : std::optional(time.successive);
+  console.text("temporal noise " + fixed(noise, 4) + " " + unit + " (successive frames) over " +
                fixed(100 * time.usable_share, 1) + " % of the pixels; correlation of successive frames " +
                fixed(time.lag1_correlation, 3));
   std::vector<TableRow> rows;
@@ -247,7 +284,12 @@ int run_noise(Console& console, NoiseArguments arguments, const Program& program
   const auto frames = frames_of(arguments.recording);
   if (!frames) return report_error(console, frames.error());
   const auto count = static_cast<int>(frames->pictures.size());
-  if (count < arguments.block_frames && count >= 2) {
+  if (count < 2) {
+    return report_error(console, {ErrorCode::invalid_input,
+                                  arguments.recording + ": noise needs two frames that differ, with no correction of " +
+                                      "the camera at the second; the recording holds " + std::to_string(count)});
+  }
+  if (count < arguments.block_frames) {
     console.note("the recording holds " + std::to_string(count) + " frames: they are one block");
     arguments.block_frames = count;
   }
@@ -255,9 +297,15 @@ int run_noise(Console& console, NoiseArguments arguments, const Program& program
   if (!blocks) return report_error(console, with_context(arguments.recording, blocks.error()));
   auto time = temporal_noise(frames->pictures);
   if (!time) return report_error(console, with_context(arguments.recording, time.error()));
-  const Found found{*std::move(blocks), *std::move(time), frames->kelvin};
+  const Found found{*std::move(blocks), *std::move(time), frames->kelvin, frames->unit_per_count,
+                    frames->saturated_share};
   std::vector<NoiseAcuity> points;
-  if (moved(found.blocks)) {
+  if (clipped(found)) {
+    console.note(fixed(100 * found.saturated_share, 1) +
+                 " % of the pixels are at an end of the counts: what is cut off there is missing in the noise");
+  } else if (too_coarse(found)) {
+    console.note("the noise is less than half a count: the scale is too coarse for a number");
+  } else if (moved(found.blocks)) {
     // Components and acuity would be those of the moving scene.
     console.note("neighbouring pixels change together: the scene or the camera moved, this is not the camera's noise");
   } else {
@@ -276,7 +324,7 @@ int run_noise(Console& console, NoiseArguments arguments, const Program& program
     print_components(console, found);
     if (!points.empty()) print_acuities(console, points);
   }
-  return moved(found.blocks) ? exit_code(VerdictKind::inconclusive) : 0;
+  return no_number(found) || moved(found.blocks) ? exit_code(VerdictKind::inconclusive) : 0;
 }
 
 }  // namespace

@@ -177,6 +177,9 @@ int run_verify(Console& console, const std::string& folder, const std::string& p
   const bool signature_holds = !*signature || (*signature)->valid;
   const ManifestCheck& files = check->files;
   const bool intact = check->condition == SessionCondition::intact;
+  const std::string reason = !check->sentence.empty() ? check->sentence
+                             : intact                 ? ""
+                                                      : "files are missing or foreign that nothing is read from";
   if (console.json()) {
     Json json{{"intact", intact},
               {"changed", files.changed},
@@ -185,7 +188,7 @@ int run_verify(Console& console, const std::string& folder, const std::string& p
               {"signed_by", *signature && signature_holds ? Json((*signature)->signature.key_sha256()) : Json()},
               {"manifest_sha256", files.manifest_sha256.empty() ? Json() : Json(files.manifest_sha256)},
               {"condition", to_string(check->condition)},
-              {"reason", check->sentence.empty() ? Json() : Json(check->sentence)}};
+              {"reason", reason.empty() ? Json() : Json(reason)}};
     if (*signature) json["signature"] = signature_json(**signature);
     console.object(json);
     return intact && signature_holds ? 0 : exit_code(ErrorCode::invalid_input);
@@ -206,11 +209,7 @@ int run_verify(Console& console, const std::string& folder, const std::string& p
     console.text("intact: every file is what the run wrote");
     return 0;
   }
-  const bool harmless = check->sentence.empty();
-  return report_error(console,
-                      {ErrorCode::invalid_input,
-                       folder + ": not intact: " +
-                           (harmless ? "files are missing or foreign that nothing is read from" : check->sentence)});
+  return report_error(console, {ErrorCode::invalid_input, folder + ": not intact: " + reason});
 }
 
 }  // namespace

@@ -82,6 +82,32 @@ CLI::Validator whole_number(std::int64_t low, std::int64_t high) {
 
 namespace {
 
+/// A list with an item that is nothing, such as "1,,2", as a sentence: the parser would leave the item out silently.
+std::optional<std::string> list_with_a_hole(const CLI::App& app, const std::vector<std::string>& words) {
+  const CLI::App* command = &app;
+  const CLI::Option* list = nullptr;
+  for (const std::string& word : words) {
+    std::string value = word;
+    if (word.starts_with("--")) {
+      const std::size_t equals = word.find('=');
+      list = command->get_option_no_throw(word.substr(0, equals));
+      if (equals == std::string::npos) continue;
+      value = word.substr(equals + 1);
+    } else if (list == nullptr) {
+      for (const CLI::App* below : command->get_subcommands({})) {
+        if (below->get_name() == word) command = below;
+      }
+    }
+    const bool hole = value.starts_with(',') || value.ends_with(',') || value.find(",,") != std::string::npos;
+    if (list != nullptr && list->get_delimiter() == ',' && hole) {
+      return command->get_name() + ": " + list->get_name() + ": expected values with one comma between two, found '" +
+             one_line(value) + "'";
+    }
+    list = nullptr;
+  }
+  return std::nullopt;
+}
+
 /// What is wrong with a command line, in one sentence that names the nearest thing that would have been right.
 std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& words) {
   std::vector<std::string> commands;
@@ -198,6 +224,10 @@ int run(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "complete") {
     print_completions(app, {argv + 2, argv + argc});
     return 0;
+  }
+  if (const auto list = list_with_a_hole(app, {argv + 1, argv + argc})) {
+    std::fprintf(stderr, "todbench: %s\n", list->c_str());
+    return exit_code(ErrorCode::invalid_input);
   }
   try {
     app.parse(argc, argv);

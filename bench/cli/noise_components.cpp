@@ -12,11 +12,15 @@
 namespace todbench {
 namespace {
 
+/// Below this correlation the variance of tvh is off by less than a quarter of a frame's share.
+constexpr double components_white_enough = 0.1;
+
 struct WholeRecording {
   NoiseTable table;
   bool kelvin = false;
-  int left_out = 0;  ///< frames that are not complete
-  int repeated = 0;  ///< frames that are bit-identical to the one before
+  int left_out = 0;   ///< frames that are not complete
+  int repeated = 0;   ///< frames that are bit-identical to the one before
+  double memory = 0;  ///< correlation of the pixels' noise in successive frames, where it is there
 };
 
 /// The camera says that it corrected itself between this frame and the last one.
@@ -73,6 +77,7 @@ Result<WholeRecording> whole_recording(const std::string& id, AcrossCorrections 
   const auto table = cube.table();
   if (!table) return tl::unexpected(table.error());
   whole.table = *table;
+  whole.memory = cube.pixel_memory();
   if (const auto change = cube.abrupt_change(); change && across == AcrossCorrections::refuse)
     return corrected(*change);
   return whole;
@@ -132,6 +137,11 @@ int run_noise_components(Console& console, const std::string& recording, AcrossC
     console.note(std::to_string(whole->repeated) +
                  " frames repeat the one before them: they are no exposures of their own, and the temporal components "
                  "are too small");
+  }
+  if (std::abs(whole->memory) > components_white_enough) {
+    console.note("the noise is correlated in time, by " + fixed(whole->memory, 2) +
+                 " in successive frames: the components take frames as independent, so tvh is too " +
+                 (whole->memory > 0 ? "small and vh too large" : "large and vh too small"));
   }
   if (console.json())
     console.object(components_json(*whole, recording));

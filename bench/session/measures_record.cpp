@@ -32,7 +32,10 @@ std::string conditions_of(const NoiseMeasure& noise) {
   std::string text = fmt::format("{} frames of {} x {} pixels, contrast 0, {:.2f} K", noise.frames, noise.columns,
                                  noise.rows, noise.mean_k);
   if (noise.since_correction_s) text += fmt::format(", up to {:.1f} s after a correction", *noise.since_correction_s);
-  return text + ", kelvin of the camera's scale, surface of second order taken out";
+  text += ", kelvin of the camera's scale, surface of second order taken out";
+  if (noise.table.pixel_memory != 0)
+    text += fmt::format(", a correlation of {:.2f} in time allowed for", noise.table.pixel_memory);
+  return text;
 }
 
 bool too_coarse(const NoiseMeasure& noise) {
@@ -51,6 +54,11 @@ void add_noise(MeasureLines& out, const CameraMeasures& measures) {
   }
   out.lines.push_back(deviation("temporal_noise", *measures.temporal_variance_k2(), conditions));
   out.lines.push_back({"lag1_correlation", "1", noise.lag1_correlation, {}, conditions});
+  if (noise.table.pixel_memory == 0 && noise.lag1_correlation.value_or(0) > 0.9)
+    out.reasons.push_back(
+        fmt::format("noise: {} frames do not tell noise that remembers so long (correlation {:.2f}) from drift: the "
+                    "temporal noise is too small, the fixed pattern too large",
+                    noise.frames, *noise.lag1_correlation));
   if (const auto netd = measures.netd_k()) {
     const double half = 1.96 * *netd * measures.netd_relative_u().value_or(0);
     out.lines.push_back({"netd", "K", netd, {*netd - half, *netd + half}, "temporal noise over the signal transfer"});

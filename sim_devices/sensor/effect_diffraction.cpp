@@ -9,6 +9,8 @@
 namespace todbench {
 namespace {
 
+constexpr double widest_spot_pitches = 100;  // lambda N; images of wider ones need more memory than there is
+
 constexpr double second_radiation_constant_um_k = 14387.768775;  // hc/k, exact in SI 2019, to 10 digits
 
 /// dL/dT of a black body over wavelength, up to a factor: lambda^-6 e^x / (e^x - 1)^2, x = c2 / (lambda T).
@@ -62,6 +64,12 @@ EffectRow effect_rows::diffraction() {
   row.title = "Diffraction";
   row.keys = {{"f_number", &SensorSpec::f_number, NumberRange::positive(), KeyPresence::required,
                "focal length over aperture"}};
+  row.impossible = [](const SensorSpec& spec) -> std::string {
+    const double spot = spec.wavelength_max_um * spec.f_number / spec.pitch_um;
+    return spot <= widest_spot_pitches ? ""
+                                       : "wavelength_max_um times f_number, the width of diffraction, is more than 100 "
+                                         "pitches: such a camera sees nothing";
+  };
   row.stage = stage::Optics{factor};
   row.band = [](const SensorSpec& spec, const Accuracy&) {
     return spec.pitch_um / (spec.wavelength_min_um * spec.f_number);

@@ -78,6 +78,31 @@ TEST_F(ChangedSessions, AreRefusedByEveryCommandWhateverWasChanged) {
   EXPECT_EQ(run({"verify", "m"}).code, 0);
 }
 
+TEST_F(ChangedSessions, AHistoryIsNotCheckedForWhatItDoesNotHold) {
+  ASSERT_EQ(run({"history", "add", "m", "--index", "index.sqlite"}).code, 0);
+  const auto check = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"history", "check", "--index", "index.sqlite"});
+    return run(words);
+  };
+
+  EXPECT_EQ(check({"--measure", "acuity", "--at-least", "0.000001"}).code, 0);
+  EXPECT_EQ(check({"--measure", "acuity", "--at-least", "1000000"}).code, 1);
+  expect_refused(check({"--measure", "acuitx", "--at-least", "1000000"}), 4, "acuitx");
+  expect_refused(check({"nobody"}), 4, "nobody");
+  expect_refused(check({"--measure", "acuity", "--at-least", "-1"}), 2, "above 0");
+}
+
+TEST_F(ChangedSessions, VerifySaysWhyASessionWithAForeignFileIsNotIntact) {
+  write("m/notes/mine.txt", "x");
+
+  const Ended ended = run({"verify", "m", "--json"});
+
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_EQ(one_object(ended)["condition"], "changed");
+  ASSERT_TRUE(one_object(ended)["reason"].is_string());
+  EXPECT_THAT(one_object(ended)["reason"].get<std::string>(), HasSubstr("foreign"));
+}
+
 TEST_F(ChangedSessions, VerifyTellsWhatWasChangedRemovedAndAdded) {
   const Json before = one_object(run({"verify", "m", "--json"}));
   change_a_digit("m/fits.json", 0.5);

@@ -1,5 +1,7 @@
 // The noise of recordings, as a user asks for it.
+#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "acquisition/core/rng.h"
@@ -78,19 +80,45 @@ TEST(NoiseCommand, GivesTemporalNoiseThatNoBlockLengthEntersAndSaysThatItRemembe
   EXPECT_EQ(noise[0], noise[2]);
 }
 
-TEST(NoiseCommand, FindsNothingWrongWithWhiteNoise) {
-  const TemporaryFolder folder;
+/// 40 frames of 80 x 60 pixels with white noise of so many counts, cut off above.
+std::string white_frames(double level, double sd, double most = 65535) {
   std::string frames;
   const RandomStream stream(5, "white recording");
   std::vector<float> z(80 * 60);
   for (std::uint64_t frame = 0; frame < 40; ++frame) {
     stream.sub(frame).fill_normal(z);
     for (const float value : z) {
-      const auto count = static_cast<std::uint16_t>(std::lround(8000 + 5 * value));
+      const auto count = static_cast<std::uint16_t>(std::lround(std::min(most, level + sd * value)));
       frames += {static_cast<char>(count & 255), static_cast<char>(count >> 8)};
     }
   }
-  const std::string file = folder.write("white.raw", frames).string();
+  return frames;
+}
+
+TEST(NoiseCommand, StatesNoNoiseOfCountsThatHoldNone) {
+  const TemporaryFolder folder;
+  const std::string coarse = folder.write("coarse.raw", white_frames(8000, 0.3)).string() + "?width=80&height=60",
+                    cut =
+                        folder.write("cut.raw", white_frames(4090, 10, 4095)).string() + "?width=80&height=60&bits=12",
+                    still = folder.write("still.raw", white_frames(8000, 0)).string() + "?width=80&height=60";
+
+  for (const auto& [file, verdict] : {std::pair{coarse, "too_coarse"},
+                                      {coarse + "&kelvin_per_count=0.1&offset_k=-500", "too_coarse"},
+                                      {cut, "saturated"}}) {
+    const Ended ended = todbench({"noise", file, "--contrast-over-noise", "8", "--json"});
+
+    EXPECT_EQ(ended.code, 3) << ended.err;
+    const Json json = one_object(ended);
+    EXPECT_EQ(json["verdict"], verdict);
+    EXPECT_TRUE(json["temporal_noise"].is_null()) << json["temporal_noise"];
+    EXPECT_EQ(json["points"].size(), 0u);
+  }
+  expect_refused(todbench({"noise", still}), 2, "two frames that differ");
+}
+
+TEST(NoiseCommand, FindsNothingWrongWithWhiteNoise) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("white.raw", white_frames(8000, 5)).string();
 
   const Ended ended = todbench({"noise", file + "?width=80&height=60", "--contrast-over-noise", "8", "--json"});
 
@@ -100,6 +128,20 @@ TEST(NoiseCommand, FindsNothingWrongWithWhiteNoise) {
   // 39 differences of 4800 pixels: 0.3 %, four times that; rounding adds 1/12.
   EXPECT_NEAR(json["temporal_noise"].get<double>() / std::sqrt(25 + 1.0 / 12), 1, 0.012);
   EXPECT_NEAR(json["lag1_correlation"].get<double>(), 0, 0.02);
+}
+
+TEST(NoiseCommand, SaysThatComponentsKnowNoMemory) {
+  const TemporaryFolder folder;
+  const std::string white = folder.write("white.raw", white_frames(8000, 5)).string();
+
+  const Ended lepton = todbench({"noise", recordings + "lepton_b_160x120_u16le.raw?width=160&height=120",
+                                 "--components-only", "--across-corrections", "--json"}),
+              none = todbench({"noise", white + "?width=80&height=60", "--components-only", "--json"});
+
+  ASSERT_EQ(lepton.code, 0) << lepton.err;
+  EXPECT_THAT(lepton.err, HasSubstr("correlated in time"));
+  ASSERT_EQ(none.code, 0) << none.err;
+  EXPECT_EQ(none.err, "");
 }
 
 TEST(NoiseCommand, WithholdsTheAcuityWhereTheSceneMoved) {
@@ -116,6 +158,8 @@ TEST(NoiseCommand, RefusesWhatIsNoRecording) {
   expect_refused(todbench({"noise", "none.seq"}), 2, "none.seq");
   expect_refused(todbench({"noise", recordings + "flir_sc660.seq", "--sensor", "nothing"}), 2, "nothing");
   expect_refused(todbench({"noise", recordings + "flir_sc660.seq", "--block-frames", "1"}), 2, "block-frames");
+  for (const char* list : {"1,,2", ",2", "2,"})
+    expect_refused(todbench({"noise", recordings + "flir_sc660.seq", "--contrast-over-noise", list}), 2, list);
 }
 
 }  // namespace

@@ -419,6 +419,7 @@ class Run {
     const auto table = cube.frames.table_without(shading.surface);
     if (!table) return tl::unexpected(table.error());
     noise.table = *table;
+    noise.table.pixel_memory = cube.frames.pixel_memory();
     noise.frames = table->frames, noise.rows = table->rows, noise.columns = table->columns;
     noise.mean_k = cv::mean(mean)[0];
     noise.shading_range_k = shading.range, noise.shading_sd_k = shading.sd;

@@ -140,7 +140,8 @@ Result<TemporalNoise> temporal_noise(std::span<const TimedPicture> pictures) {
     for (int steps = correlation_lag; steps >= 2 && !noise.lag1_correlation; --steps) {
       const auto found = pairs.find(steps * base);
       if (found == pairs.end() || 3 * found->second.size() < 2 * pairs.at(base).size()) continue;
-      const double of_base = first_order_correlation(at[steps * base].all / at[base].all, steps);
+      const double of_base = first_order_correlation(at[steps * base].pixels / at[base].pixels, steps);
+      // Of pixels: a drift of whole frames would be taken for memory, a bounce for the contrary.
       // Where only every so many exposures are there, theirs is the power of that.
       noise.lag1_correlation = base == 1 || of_base < 0 ? of_base : std::pow(of_base, 1.0 / base);
     }

@@ -30,7 +30,8 @@ struct TemporalNoise {
   /// What a single frame carries of noise that changes within the longest lag, over what successive frames show,
   /// without changes of whole frames, which move no decision. 1 for white noise.
   double whole_to_successive = 1;
-  /// Of a pixel in successive frames, for noise of first order; nothing: too few frames to say.
+  /// Of a pixel in successive frames, for noise of first order, changes of whole frames left out; nothing: too few
+  /// frames to say.
   std::optional<double> lag1_correlation;
   cv::Mat1b usable;  ///< 0: the scene moved there (more than twice the median pixel's), or the pixel never changes
   double usable_share = 1;  ///< of the pixels

@@ -99,6 +99,29 @@ std::string_view to_string(NoiseComponent component) {
 
 namespace {
 
+/// Expected mean squares of noise of first order over its variance.
+struct Memory {
+  double in_time = 1;  ///< about the mean of so many frames
+  double in_mean = 1;  ///< of that mean, times the frames
+};
+
+Memory memory_of(double rho, int frames) {
+  if (rho == 0) return {};
+  const double n = frames;
+  Memory memory;
+  double power = 1;
+  for (int k = 1; k < frames; ++k) memory.in_mean += 2 * (1 - k / n) * (power *= rho);
+  memory.in_time = 1 - (memory.in_mean - 1) / (n - 1);
+  return memory;
+}
+
+/// Degrees of freedom of a mean square. A variance of noise of first order is known as by (1 - rho^2) / (1 + rho^2) of
+/// its values (Bartlett 1946).
+double freedom_of(const NoiseTable& table, NoiseComponent component) {
+  const double rho = table.pixel_memory, freedom = table.degrees_of_freedom[component];
+  return component == tvh && rho != 0 ? std::max(1.0, freedom * (1 - rho * rho) / (1 + rho * rho)) : freedom;
+}
+
 /// An estimate is a sum of mean squares with factors, from their expected values (Scheffé 1959, ch. 7).
 struct MeanSquareTerm {
   NoiseComponent of;
@@ -107,6 +130,7 @@ struct MeanSquareTerm {
 
 std::vector<MeanSquareTerm> terms_of(const NoiseTable& table, NoiseComponent component) {
   const double n = table.frames, m = table.rows, l = table.columns;
+  const Memory memory = memory_of(table.pixel_memory, table.frames);
   switch (component) {
     case t:
       return {{t, 1 / (m * l)}, {tv, -1 / (m * l)}, {th, -1 / (m * l)}, {tvh, 1 / (m * l)}};
@@ -119,9 +143,9 @@ std::vector<MeanSquareTerm> terms_of(const NoiseTable& table, NoiseComponent com
     case th:
       return {{th, 1 / m}, {tvh, -1 / m}};
     case vh:
-      return {{vh, 1 / n}, {tvh, -1 / n}};
+      return {{vh, 1 / n}, {tvh, -memory.in_mean / memory.in_time / n}};
     case tvh:
-      return {{tvh, 1}};
+      return {{tvh, 1 / memory.in_time}};
   }
   return {};
 }
@@ -134,21 +158,30 @@ ComponentEstimate estimate_of(const NoiseTable& table, NoiseComponent component)
   double below = 0, above = 0;
   for (const auto& [of, factor] : terms) {
     const double part = factor * table.mean_squares[of];
-    const Reach reach = reach_of(table.degrees_of_freedom[of]);
+    const Reach reach = reach_of(freedom_of(table, of));
     estimate.variance += part;
     below += std::pow((factor > 0 ? reach.down : reach.up) * part, 2);
     above += std::pow((factor > 0 ? reach.up : reach.down) * part, 2);
   }
   if (terms.size() == 2) {
-    const double plus = table.degrees_of_freedom[terms[0].of], minus = table.degrees_of_freedom[terms[1].of];
+    const double plus = freedom_of(table, terms[0].of), minus = freedom_of(table, terms[1].of);
     const boost::math::fisher_f ratio(plus, minus);
     const Reach of_plus = reach_of(plus), of_minus = reach_of(minus);
     const double product =
         -terms[0].factor * terms[1].factor * table.mean_squares[terms[0].of] * table.mean_squares[terms[1].of];
     below += cross_term(boost::math::quantile(complement(ratio, each_side)), of_plus.down, of_minus.up) * product;
     above += cross_term(boost::math::quantile(ratio, each_side), of_plus.up, of_minus.down) * product;
-    if (table.mean_squares[tvh] > 0)
-      estimate.p_absent = cdf(complement(ratio, table.mean_squares[terms[0].of] / table.mean_squares[tvh]));
+    const double absent = -terms[1].factor * table.mean_squares[terms[1].of];  // all that there is without it
+    if (absent > 0)
+      estimate.p_absent = cdf(complement(ratio, terms[0].factor * table.mean_squares[terms[0].of] / absent));
+  }
+  if (table.pixel_memory != 0) {
+    NoiseTable forgetful = table;
+    forgetful.pixel_memory = 0;
+    double plain = 0;
+    for (const auto& [of, factor] : terms_of(forgetful, component)) plain += factor * table.mean_squares[of];
+    const double change = std::pow(0.5 * (estimate.variance - plain), 2);
+    below += change, above += change;
   }
   estimate.low = estimate.variance - std::sqrt(std::max(0.0, below));
   estimate.high = estimate.variance + std::sqrt(std::max(0.0, above));
@@ -158,12 +191,16 @@ ComponentEstimate estimate_of(const NoiseTable& table, NoiseComponent component)
 ComponentEstimate temporal_variance(const NoiseTable& table) {
   ComponentEstimate estimate;
   double below = 0, above = 0;
+  const double in_time = memory_of(table.pixel_memory, table.frames).in_time;
   for (const NoiseComponent of : {t, tv, th, tvh}) {
-    const double freedom = table.degrees_of_freedom[of];
-    const double part = table.mean_squares[of] * freedom / (table.rows * table.columns * (table.frames - 1.0));
-    const Reach reach = reach_of(freedom);
+    const double squares = table.mean_squares[of] * table.degrees_of_freedom[of];
+    // What memory keeps from the variance in time is missing in the means of rows, columns and frames, too.
+    const double kept = of == tvh ? table.mean_squares[tvh] * (1 / in_time - 1) : 0;
+    const double part = squares / (table.rows * table.columns * (table.frames - 1.0)) + kept;
+    const Reach reach = reach_of(freedom_of(table, of));
     estimate.variance += part;
-    below += std::pow(reach.down * part, 2), above += std::pow(reach.up * part, 2);
+    below += std::pow(reach.down * part, 2) + std::pow(0.5 * kept, 2);
+    above += std::pow(reach.up * part, 2) + std::pow(0.5 * kept, 2);
   }
   estimate.low = estimate.variance - std::sqrt(below);
   estimate.high = estimate.variance + std::sqrt(above);
@@ -286,7 +323,21 @@ std::optional<double> NoiseCube::lag1_correlation() const {
   const auto found = table();
   if (frames_ < 5 || !found || !(found->mean_squares[tvh] > 0)) return std::nullopt;
   const double step = std::accumulate(steps_.begin(), steps_.end(), 0.0) / static_cast<double>(steps_.size());
-  return 1 - step / (2 * found->mean_squares[tvh]);
+  const double ratio = step / (2 * found->mean_squares[tvh]);
+  // (1 - rho) / in_time falls from 2 at rho = -1 to 3 / (T + 1) at 1.
+  double low = -0.99, high = 0.99;
+  for (int round = 0; round < 50; ++round) {
+    const double rho = 0.5 * (low + high);
+    ((1 - rho) / memory_of(rho, frames_).in_time > ratio ? low : high) = rho;
+  }
+  return 0.5 * (low + high);
+}
+
+double NoiseCube::pixel_memory() const {
+  const auto rho = lag1_correlation();
+  const double values = (frames_ - 1.0) * (first_.rows - 1.0) * (first_.cols - 1.0);
+  const bool known = rho && *rho <= 0.95 && std::abs(*rho) > 5 / std::sqrt(values);
+  return known ? *rho : 0;
 }
 
 double ThreeDNoise::temporal() const {

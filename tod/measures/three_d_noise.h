@@ -55,13 +55,21 @@ struct NoiseTable {
   int frames = 0, rows = 0, columns = 0;
   ByComponent mean_squares;        ///< in the square of the frames' unit
   ByComponent degrees_of_freedom;  ///< t T-1, v V-1, h H-1, and their products
+  /// Correlation of tvh in successive frames, of first order, that the estimates allow for; 0: the plain analysis of
+  /// variance, whose cells are independent. T frames that remember hold less than their noise in time and leave more
+  /// than its T-th part in the mean frame: E Q_tvh = h tvh^2 and E Q_vh = T vh^2 + g tvh^2 with g = 1 + 2 sum over
+  /// k < T of (1 - k / T) rho^k and h = 1 - (g - 1) / (T - 1). At rho = 0.8 and 64 frames that is 6 % of the noise, and
+  /// a fixed pattern of a third of it that is not there. Below 1.
+  double pixel_memory = 0;
 };
 
 /// A variance component with what is known of it.
 struct ComponentEstimate {
   double variance = 0;  ///< signed and without bias; equal to the correction for finite sampling of Haefner and Burks
                         ///< (Appl. Opt. 54, 4907, 2015)
-  /// 95 %, of normal components: modified large sample (Ting et al. 1990, Graybill and Wang 1980). Signed too.
+  /// 95 %, of normal components: modified large sample (Ting et al. 1990, Graybill and Wang 1980). Signed too. Of noise
+  /// that remembers joined with half of what the memory changes: the mean of two frames with the same correlation as
+  /// noise of first order leaves half as much.
   double low = 0, high = 0;
   /// Of tv, th and vh: how often a component that is not there gives so large a mean square (F test against tvh).
   /// Nothing: no such test, or no noise to test against.
@@ -90,9 +98,13 @@ class NoiseCube {
   [[nodiscard]] Result<NoiseTable> table_without(const cv::Mat1d& fixed) const;
   /// Over all frames. Precondition: there is one.
   [[nodiscard]] cv::Mat1d mean_frame() const { return first_ + change_ / frames_; }
-  /// Of a pixel in successive frames, rows, columns and whole frames left out; too low by about 1 / frames. Nothing: no
-  /// noise, or fewer than five frames.
+  /// Of a pixel in successive frames, rows, columns and whole frames left out: the rho of noise of first order whose
+  /// successive differences and mean square have this ratio in so many frames, in [-0.99, 0.99]. Nothing: no noise, or
+  /// fewer than five frames.
   [[nodiscard]] std::optional<double> lag1_correlation() const;
+  /// What `NoiseTable::pixel_memory` is for these frames: lag1_correlation() where it is there with five standard
+  /// errors and up to 0.95, else 0. Beyond that so few frames do not tell it from drift.
+  [[nodiscard]] double pixel_memory() const;
   /// The first frame that differs from the one before it by more than the others do, pixel by pixel: a correction lies
   /// between them, or the scene moved. Told by the mean square of the difference without its rows, columns and mean,
   /// which is the same for every pair however the noise remembers: more than 1.69 of the median pair's, and in less

@@ -80,6 +80,8 @@ TEST(SensorSpec, RefusesSensorsThatCannotExist) {
 
   EXPECT_EQ(message([](SensorSpec&) {}), "");
   EXPECT_THAT(message([](SensorSpec& s) { s.f_number = -1; }), testing::HasSubstr("f_number"));
+  EXPECT_THAT(message([](SensorSpec& s) { s.f_number = 1e9; }), testing::HasSubstr("f_number"));
+  EXPECT_THAT(message([](SensorSpec& s) { s.wavelength_max_um = 1e6; }), testing::HasSubstr("wavelength_max_um"));
   EXPECT_THAT(message([](SensorSpec& s) { s.detector_um = 48; }), testing::HasSubstr("larger than pitch"));
   EXPECT_THAT(message([](SensorSpec& s) { s.focal_length_mm = 0; }), testing::HasSubstr("focal_length_mm"));
   EXPECT_THAT(message([](SensorSpec& s) { s.netd_k = std::nan(""); }), testing::HasSubstr("netd_k"));

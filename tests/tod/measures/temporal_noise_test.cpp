@@ -126,6 +126,18 @@ TEST(TemporalNoise, TakesSlowDriftNeitherForNoiseNorForMemory) {
   EXPECT_GT(noise->structure.back(), 2.5);  // it is in the structure function
 }
 
+TEST(TemporalNoise, TakesNeitherDriftNorBounceOfWholeFramesForMemory) {
+  auto drifting = sequence(100, 0), bouncing = sequence(60, 0.5);
+  for (auto& p : drifting) p.picture += 1.5 * static_cast<double>(p.sequence);
+  for (auto& p : bouncing) p.picture += 4.0 * std::sin(2.3 * static_cast<double>(p.sequence * p.sequence));
+
+  const auto drift = temporal_noise(drifting), bounce = temporal_noise(bouncing);
+
+  ASSERT_TRUE(drift && bounce);
+  EXPECT_NEAR(drift->lag1_correlation.value(), 0, 0.02);
+  EXPECT_NEAR(bounce->lag1_correlation.value(), 0.5, 0.03);
+}
+
 TEST(TemporalNoise, RefusesWhatHoldsNone) {
   const auto pictures = sequence(3, 0);
   const std::vector<TimedPicture> same{{pictures[0].picture, 0, 0}, {pictures[0].picture, 1, 0}};

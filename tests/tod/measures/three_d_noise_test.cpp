@@ -87,6 +87,67 @@ TEST(NoiseCube, HasTheSevenComponentsInsideTheirIntervalsInNineteenOfTwentySeeds
     EXPECT_GE(inside[component], 0.837 * seeds) << to_string(component);
 }
 
+TEST(NoiseCube, TakesNoNoiseThatRemembersForAFixedPattern) {
+  constexpr int frames = 40, rows = 24, columns = 30;
+  for (const double rho : {0.4, 0.8, -0.3}) {
+    for (const double pattern : {0.0, 0.5}) {
+      double fixed = 0, pixels = 0, plain = 0;
+      int fixed_inside = 0, pixels_inside = 0, whole_inside = 0;
+      constexpr int seeds = 20;
+      for (int seed = 1; seed <= seeds; ++seed) {
+        ByComponent sd;
+        sd[tvh] = 1;
+        const auto fresh = test::simulated_cube(frames, rows, columns, sd, static_cast<std::uint64_t>(seed));
+        sd[tvh] = 0, sd[vh] = pattern;
+        const auto still = test::simulated_cube(2, rows, columns, sd, static_cast<std::uint64_t>(seed));
+        NoiseCube cube;
+        cv::Mat1d state = fresh[0] - 8000;  // the level of the cubes
+        for (std::size_t k = 0; k < fresh.size(); ++k) {
+          if (k > 0) state = rho * state + std::sqrt(1 - rho * rho) * (fresh[k] - 8000);
+          ASSERT_TRUE(cube.add(cv::Mat1d(state + still[0])));
+        }
+        // 27000 values, and the variance of a correlation falls as 1 - rho^2.
+        EXPECT_NEAR(cube.lag1_correlation().value(), rho, 4 * std::sqrt((1 - rho * rho) / (frames * rows * columns)));
+        NoiseTable table = cube.table().value();
+        plain += estimate_of(table, vh).variance / seeds;
+        table.pixel_memory = cube.pixel_memory();
+        const ComponentEstimate of_fixed = estimate_of(table, vh), of_pixels = estimate_of(table, tvh),
+                                whole = temporal_variance(table);
+        fixed += of_fixed.variance / seeds, pixels += of_pixels.variance / seeds;
+        const double truth = pattern * pattern;
+        if (of_fixed.low <= truth && truth <= of_fixed.high) ++fixed_inside;
+        if (of_pixels.low <= 1 && 1 <= of_pixels.high) ++pixels_inside;
+        if (whole.low <= 1 && 1 <= whole.high) ++whole_inside;
+      }
+      // Four standard errors of a mean square over 667 pixels and 20 seeds, of (1 + rho) / (1 - rho) / 40 and the
+      // pattern.
+      const double left = (1 + rho) / (1 - rho) / frames, scatter = std::sqrt(2.0 / (23 * 29) / seeds);
+      EXPECT_NEAR(fixed, pattern * pattern, 4 * scatter * (left + pattern * pattern)) << rho;
+      EXPECT_NEAR(pixels, 1, 0.015) << rho;
+      EXPECT_GT(std::abs(plain - pattern * pattern), std::abs(left - 1.0 / frames) / 2) << rho;
+      // 95 % less four standard errors of a proportion from 20 seeds.
+      EXPECT_GE(fixed_inside, 15) << rho << ' ' << pattern;
+      EXPECT_GE(pixels_inside, 15) << rho;
+      EXPECT_GE(whole_inside, 15) << rho;
+    }
+  }
+}
+
+TEST(NoiseCube, HasNoMemoryWhereItIsChanceOrDrift) {
+  ByComponent sd;
+  sd[tvh] = 1;
+  const auto frames = test::simulated_cube(40, 24, 30, sd, 1);
+  NoiseCube white, drifting;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    ASSERT_TRUE(white.add(frames[k]));
+    ASSERT_TRUE(drifting.add(cv::Mat1d(frames[k] + 10.0 * static_cast<double>(k) * frames[0])));
+  }
+
+  EXPECT_EQ(white.pixel_memory(), 0);
+  EXPECT_EQ(drifting.pixel_memory(), 0);
+  EXPECT_GT(drifting.lag1_correlation().value(), 0.95);
+}
+
 TEST(NoiseCube, LosesNothingUnderASceneOfManyTimesTheNoiseAndJumpsOfWholeFrames) {
   const std::vector<cv::Mat1d> quiet = test::simulated_cube(
       6, 8, 9,
