@@ -8,6 +8,7 @@
 #include "bench/cli/chain_options.h"
 #include "bench/judgement/verdict.h"
 #include "bench/plan/descriptions.h"
+#include "bench/report/tod_figures.h"
 #include "bench/studies/identification_study.h"
 
 namespace todbench {
@@ -54,9 +55,11 @@ Json criterion_json_of(const SetCriterion& criterion) {
   return {{"value", json_number(criterion.value)}, {"ci95", json_interval(criterion.ci95)}};
 }
 
+/// Wilson's, of as many independent answers as have the scatter of the draws; where all draws agree, of the draws.
 Interval interval_of(const IdentificationPoint& point) {
-  const double p = point.proportion(), reach = 1.96 * point.standard_error();
-  return {std::max(0.0, p - reach), std::min(1.0, p + reach)};
+  const double p = point.proportion(), variance = std::pow(point.standard_error(), 2);
+  const double answers = variance > 0 ? p * (1 - p) / variance : static_cast<double>(point.by_draw.size());
+  return wilson_interval(p * answers, answers);
 }
 
 Json effort_json(const IdentificationEffort& effort) {

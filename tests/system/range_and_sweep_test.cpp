@@ -283,7 +283,13 @@ TEST(IdentifyCommand, SaysWhereASetIsToldApartAndWhatTheTodCurveWouldHaveSaid) {
   EXPECT_LE(json["r75_ci95_m"][0].get<double>(), r75_m);
   EXPECT_NEAR(json["v50"]["value"].get<double>(), json["m75"]["value"].get<double>() / 0.6, 1e-9);
   EXPECT_TRUE(json["predicted"]["r75_m"].is_number());
-  EXPECT_EQ(identify("./set.toml", "500,800").code, 3);  // always right: 75 % lies beyond
+  const Ended always_right = identify("./set.toml", "100,200");
+  EXPECT_EQ(always_right.code, 3);  // 75 % lies beyond
+  const Json near = one_object(always_right)["ranges"][0];
+  ASSERT_EQ(near["proportion_correct"].get<double>(), 1);
+  // Wilson 1927, of 64 draws that all agree.
+  EXPECT_NEAR(near["ci95"][0].get<double>(), 64 / (64 + 1.959964 * 1.959964), 1e-6);
+  EXPECT_EQ(near["ci95"][1].get<double>(), 1);
   expect_refused(identify("./twins.toml", "500,800"), 2, "named twice");
   expect_refused(identify("./set.toml", "800,500"), 2, "increase");
   expect_refused(identify("no-such-set", "500,800"), 2, "small-craft");
