@@ -45,7 +45,8 @@ SensorSpec with_counts_of(CameraModel model, SensorSpec sensor) {
 }
 
 ConnectCamera connect_gvsp(GvspCameraConfig config) {
-  return [config](const SensorSpec& sensor, LaboratoryExposure exposure) -> Result<std::unique_ptr<LaboratoryCamera>> {
+  return [config = std::move(config)](const SensorSpec& sensor,
+                                      LaboratoryExposure exposure) -> Result<std::unique_ptr<LaboratoryCamera>> {
     auto camera = GvspCamera::start(as_sensor(config, sensor), std::move(exposure));
     if (!camera) return fail("starting the emulated GigE camera", camera.error());
     return std::make_unique<GvspLaboratoryCamera>(std::move(*camera));

@@ -25,7 +25,7 @@ class GigeLaboratoryCamera final : public LaboratoryCamera {
   std::unique_ptr<EmulatedGigeCamera> camera_;
 };
 
-ConnectCamera connect_gige(EmulatedGigeCameraConfig config, EmulatedGigeCamera::NucObserver on_nuc) {
+ConnectCamera connect_gige(const EmulatedGigeCameraConfig& config, EmulatedGigeCamera::NucObserver on_nuc) {
   return [config, on_nuc = std::move(on_nuc)](
              const SensorSpec& sensor, LaboratoryExposure exposure) -> Result<std::unique_ptr<LaboratoryCamera>> {
     auto camera = EmulatedGigeCamera::start(as_sensor(config, sensor), std::move(exposure), on_nuc);

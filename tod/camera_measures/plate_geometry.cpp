@@ -201,7 +201,7 @@ PlateGeometry described(const std::vector<LocatedTriangle>& located, const Lens&
   // Few residuals that are small by chance do not make a place better than its noise.
   const DerivedQuantity derived(fit, t * std::max(1.0, std::sqrt(fit.chi2 / freedom)));
   const double w = plate.width_mm / 2, h = plate.height_mm / 2;
-  const auto mm_per_px = [&](cv::Vec2d direction) {
+  const auto mm_per_px = [&](const cv::Vec2d& direction) {
     return derived([&, direction](const LensParameters& p) {
       return cv::norm(undistorted_scale(lens, p, {0, 0}).inv() * direction);
     });
