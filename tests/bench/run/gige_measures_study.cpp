@@ -5,10 +5,7 @@
 #include <cmath>
 
 #include "bench/plan/descriptions.h"
-#include "bench/plan/plan_options.h"
-#include "bench/run/devices.h"
-#include "bench/run/emulation.h"
-#include "tod/camera_measures/camera_measures.h"
+#include "tests/bench/run/emulated_measures.h"
 
 namespace todbench {
 namespace {
@@ -24,17 +21,9 @@ Result<DriftLaw> drift_of_seed(double level_k_per_min, double pattern_k_per_min,
   EmulationArguments arguments = emulation_for(plan);
   arguments.seed = seed;
   arguments.drift_k_per_min = level_k_per_min, arguments.drift_pattern_k_per_min = pattern_k_per_min;
-  auto laboratory = start_laboratory(arguments);
-  if (!laboratory) return tl::unexpected(laboratory.error());
-  const auto loaded = LoadedPlan::load(with_laboratory(plan, **laboratory));
-  if (!loaded) return tl::unexpected(loaded.error());
-  auto bench = open_bench(*loaded, {});
-  if (!bench) return tl::unexpected(bench.error());
   CameraMeasuresOptions options;
   options.drift_s = 4;
-  options.transfer_steps_k = {16.9};
-  options.measurement = measurement_options(loaded->plan(), loaded->plates(), plan.camera.ifov_mrad);
-  const auto measures = measure_camera(*bench->camera, *bench->target, options, *bench->host, {});
+  const auto measures = testing::measured(plan, arguments, options);
   if (!measures) return tl::unexpected(measures.error());
   if (!measures->drift) return fail(ErrorCode::internal, measures->reasons.empty() ? "" : measures->reasons.front());
   return measures->drift->law;

@@ -5,9 +5,8 @@
 #include <string>
 
 #include "bench/plan/descriptions.h"
-#include "bench/plan/plan_options.h"
-#include "bench/run/devices.h"
 #include "bench/run/emulation.h"
+#include "tests/bench/run/emulated_measures.h"
 #include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
 #include "tod/camera_measures/camera_measures.h"
@@ -28,19 +27,6 @@ Plan wire_plan() {
   return plan;
 }
 
-/// What a laboratory's camera is measured to be; nothing of the trials.
-Result<CameraMeasures> measured(const Plan& plan, const EmulationArguments& arguments, CameraMeasuresOptions options) {
-  auto laboratory = start_laboratory(arguments);
-  if (!laboratory) return tl::unexpected(laboratory.error());
-  const auto loaded = LoadedPlan::load(with_laboratory(plan, **laboratory));
-  if (!loaded) return tl::unexpected(loaded.error());
-  auto bench = open_bench(*loaded, {});
-  if (!bench) return tl::unexpected(bench.error());
-  options.transfer_steps_k = {16.9};
-  options.measurement = measurement_options(loaded->plan(), loaded->plates(), plan.camera.ifov_mrad);
-  return measure_camera(*bench->camera, *bench->target, options, *bench->host, {});
-}
-
 TEST(GigeMeasures, FindTheResponseTimeOfTheEmulatedCamera) {
   const testing::TemporaryFolder folder;
   Plan plan = wire_plan();
@@ -51,7 +37,7 @@ TEST(GigeMeasures, FindTheResponseTimeOfTheEmulatedCamera) {
   CameraMeasuresOptions options;
   options.response = ResponseOptions{.plate = {}, .steps = 8, .frames = 12, .settling_s = 0.001};
 
-  const auto measures = measured(plan, arguments, options);
+  const auto measures = testing::measured(plan, arguments, options);
 
   ASSERT_TRUE(measures) << measures.error().message;
   EXPECT_THAT(measures->reasons, ::testing::IsEmpty());
@@ -67,7 +53,7 @@ TEST(GigeMeasures, RefuseAResponseTimeThatTheBlackBodyCovers) {
   CameraMeasuresOptions options;
   options.response = ResponseOptions{.plate = {}, .steps = 4, .frames = 12, .settling_s = 0.3};
 
-  const auto measures = measured(plan, emulation_for(plan), options);
+  const auto measures = testing::measured(plan, emulation_for(plan), options);
 
   ASSERT_TRUE(measures) << measures.error().message;
   EXPECT_FALSE(measures->response);
@@ -82,7 +68,7 @@ TEST(GigeMeasures, FindTheDriftThatTheEmulatedCameraIsTold) {
   CameraMeasuresOptions options;
   options.drift_s = 3;
 
-  const auto measures = measured(plan, arguments, options);
+  const auto measures = testing::measured(plan, arguments, options);
 
   ASSERT_TRUE(measures) << measures.error().message;
   EXPECT_THAT(measures->reasons, ::testing::IsEmpty());
