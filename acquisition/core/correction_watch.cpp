@@ -89,8 +89,8 @@ std::optional<CorrectionSign> CorrectionWatch::see(const Frame& frame) {
   remember(seen.spread, range);
   if (!ready) return std::nullopt;
   if (range < options_.shutter_range_ratio * usual_range) return CorrectionSign::shutter;
-  if (std::abs(seen.level) > options_.level_jump * usual) return CorrectionSign::level_jump;
   if (seen.spread > options_.pattern_ratio * usual) return CorrectionSign::pattern_change;
+  if (std::abs(seen.level) > options_.level_jump * usual) return CorrectionSign::level_jump;
   return std::nullopt;
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 
 #include "acquisition/core/frame.h"
+#include "acquisition/core/result.h"
 
 namespace todbench {
 
@@ -12,6 +14,7 @@ struct JudgedPicture {
   cv::Mat1w counts;
   int samples_per_pixel = 1;      ///< along each axis
   cv::Point2d first_px = {0, 0};  ///< where sample (0, 0) is, in pixels of the frame
+  std::optional<Error> none{};    ///< why there is no picture of this frame, which nobody may judge then
 };
 
 /// The frame with what is judged in it as its counts.

@@ -1,5 +1,6 @@
 #include "hvs/observer/identification_bank.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -22,36 +23,6 @@ TransferFunction eye_filter(double sigma_samples) {
   };
 }
 
-/// Indices of the places at which projections are computed: all, or nine near the nodes of Chebyshev and Lobatto.
-std::vector<int> node_places(int places) {
-  std::vector<int> nodes;
-  constexpr int most = 9;
-  if (places <= most) {
-    for (int p = 0; p < places; ++p) nodes.push_back(p);
-    return nodes;
-  }
-  for (int k = 0; k < most; ++k) {
-    const double x = (1 - std::cos(std::numbers::pi * k / (most - 1))) / 2;
-    const int place = static_cast<int>(std::lround(x * (places - 1)));
-    if (nodes.empty() || place > nodes.back()) nodes.push_back(place);
-  }
-  return nodes;
-}
-
-cv::Mat1f lagrange_weights(int places, const std::vector<int>& nodes) {
-  cv::Mat1f weights(places, static_cast<int>(nodes.size()));
-  for (int p = 0; p < places; ++p) {
-    for (std::size_t k = 0; k < nodes.size(); ++k) {
-      double weight = 1;
-      for (std::size_t l = 0; l < nodes.size(); ++l) {
-        if (l != k) weight *= static_cast<double>(p - nodes[l]) / (nodes[k] - nodes[l]);
-      }
-      weights(p, static_cast<int>(k)) = static_cast<float>(weight);
-    }
-  }
-  return weights;
-}
-
 double reach_of(std::span<const AlternativeAspects> alternatives) {
   double reach = 0;
   for (const auto& alternative : alternatives) {
@@ -63,22 +34,20 @@ double reach_of(std::span<const AlternativeAspects> alternatives) {
   return reach;
 }
 
-/// Where a window of samples lies on the fine picture of a target, at every node of the search.
+/// Where a window of samples lies on the fine picture of a target, at every place of the search.
 struct PlacedWindow {
   int side = 0, search = 0;  ///< in samples; in steps each way
   int per_sample = 1;        ///< points of the fine picture to the sample
   int stride = 1;            ///< and to the step of the search
   int period = 1;            ///< of the fine picture, in points
-  std::span<const int> nodes;
 
-  /// One row per node, each without its mean.
+  /// One row per place, each without its mean.
   [[nodiscard]] cv::Mat1d centred(const cv::Mat1d& fine) const {
-    const auto on_axis = static_cast<int>(nodes.size());
+    const int on_axis = 2 * search + 1;
     cv::Mat1d out(on_axis * on_axis, side * side);
-    for (int node = 0; node < out.rows; ++node) {
-      const int dx = nodes[static_cast<std::size_t>(node % on_axis)] - search;
-      const int dy = nodes[static_cast<std::size_t>(node / on_axis)] - search;
-      double* values = out[node];
+    for (int place = 0; place < out.rows; ++place) {
+      const int dx = place % on_axis - search, dy = place / on_axis - search;
+      double* values = out[place];
       double mean = 0;
       for (int j = 0; j < side; ++j) {
         const int y = ((2 * j - side + 1) * per_sample / 2 - dy * stride + 2 * period) % period;
@@ -87,20 +56,42 @@ struct PlacedWindow {
           mean += * values++ = fine(y, x);
         }
       }
-      out.row(node) -= mean / (static_cast<double>(side) * side);
+      out.row(place) -= mean / (static_cast<double>(side) * side);
     }
     return out;
   }
 };
 
-/// The product at a place of the search from those at the nodes.
-double interpolated_product(const cv::Mat1f& weights, const cv::Mat1d& gram, int x, int y) {
-  const int on_axis = weights.cols;
-  cv::Mat1d own(gram.rows, 1);
-  for (int node = 0; node < own.rows; ++node) {
-    own(node) = static_cast<double>(weights(x, node % on_axis)) * static_cast<double>(weights(y, node / on_axis));
+constexpr double template_tolerance = 1e-4;
+
+/// Rows of norm 1 as sums of few orthonormal ones.
+struct FewTemplates {
+  Eigen::MatrixXf basis;         ///< one column each
+  Eigen::MatrixXf coefficients;  ///< [row of the basis][place]
+};
+
+/// Gram and Schmidt, each time with the row that is described worst, until what is left of every row is shorter than
+/// the tolerance. Divides the rows by their norms. Nothing where a row is 0.
+std::optional<FewTemplates> few_templates(cv::Mat1d& rows) {
+  // Its columns are the rows.
+  Eigen::Map<Eigen::MatrixXd> templates(rows.ptr<double>(), rows.cols, rows.rows);
+  const Eigen::RowVectorXd norms = templates.colwise().norm();
+  if (!(norms.minCoeff() > 0)) return std::nullopt;
+  templates.array().rowwise() /= norms.array();
+  const Eigen::Index most = std::min(templates.rows(), templates.cols());
+  Eigen::MatrixXd basis(templates.rows(), most), coefficients(most, templates.cols());
+  Eigen::RowVectorXd left = Eigen::RowVectorXd::Ones(templates.cols());  // squares of what is not described
+  Eigen::Index found = 0, at = 0;
+  for (; found < most && left.maxCoeff(&at) >= template_tolerance * template_tolerance; ++found) {
+    const auto known = basis.leftCols(found);
+    Eigen::VectorXd next = templates.col(at);
+    for (int again = 0; again < 2; ++again) next -= known * (known.transpose() * next).eval();
+    basis.col(found) = next.normalized();
+    coefficients.row(found) = basis.col(found).transpose() * templates;
+    left -= coefficients.row(found).cwiseAbs2();
+    left(at) = 0;
   }
-  return own.dot(cv::Mat1d(gram * own));
+  return FewTemplates{basis.leftCols(found).cast<float>(), coefficients.topRows(found).cast<float>()};
 }
 
 TODBENCH_MULTIVERSION
@@ -123,6 +114,21 @@ float largest_sum(const float* signal, const float* first, float first_scale, co
   return *std::max_element(top, top + lanes);
 }
 
+/// In eight sums, the same on every instruction set.
+TODBENCH_MULTIVERSION
+float inner_product(const float* a, const float* b, int count) {
+  constexpr int lanes = 8;
+  float sums[lanes] = {};
+  int i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    for (int l = 0; l < lanes; ++l) sums[l] += a[i + l] * b[i + l];
+  }
+  for (; i < count; ++i) sums[0] += a[i] * b[i];
+  float sum = 0;
+  for (const float part : sums) sum += part;
+  return sum;
+}
+
 }  // namespace
 
 int identification_window_samples(const TemplateObserverSpec& spec, std::span<const AlternativeAspects> alternatives,
@@ -143,24 +149,15 @@ Result<IdentificationBank> IdentificationBank::build(const TemplateObserverSpec&
   bank.places_ = 2 * search + 1;
   bank.window_ = identification_window_samples(spec, alternatives, samples_per_pitch);
   const int half = bank.window_ / 2;
-  const std::vector<int> nodes = node_places(bank.places_);
-  bank.weights_ = lagrange_weights(bank.places_, nodes);
-  bank.first_aspect_.push_back(0);
-  std::size_t count = 0;
-  for (const auto& alternative : alternatives) {
-    if (alternative.empty()) return fail(ErrorCode::invalid_input, "an alternative is seen from no side");
-    count += alternative.size();
-    bank.first_aspect_.push_back(count);
-  }
   const auto samples = static_cast<std::size_t>(bank.window_) * static_cast<std::size_t>(bank.window_);
-  const std::size_t per_aspect = nodes.size() * nodes.size();
-  bank.blocks_ = (count * per_aspect + identification_block - 1) / identification_block;
-  if (samples * bank.blocks_ * identification_block * sizeof(float) > TemplateBank::max_bytes) {
+  const auto places = static_cast<std::size_t>(bank.places_ * bank.places_);
+  const auto too_large = [&](std::size_t bytes) { return bytes > TemplateBank::max_bytes; };
+  const auto refusal = [&] {
     return fail(ErrorCode::invalid_input,
                 "targets of " + std::to_string(2 * reach) +
                     " samples are too large for this observer: their templates would need over 1 GiB");
-  }
-  bank.nodes_.assign(bank.blocks_ * identification_block * samples, 0.0F);
+  };
+  if (too_large(samples * places * sizeof(double))) return refusal();
 
   const double band =
       camera ? camera->band_per_sample : std::sqrt(27.631 / 2) / (std::numbers::pi * spec.blur_sigma_samples);
@@ -174,30 +171,30 @@ Result<IdentificationBank> IdentificationBank::build(const TemplateObserverSpec&
                             .search = search,
                             .per_sample = per_sample,
                             .stride = per_sample / steps,
-                            .period = period * per_sample,
-                            .nodes = nodes};
+                            .period = period * per_sample};
+  bank.first_aspect_.push_back(0);
   std::size_t index = 0;
   for (const auto& alternative : alternatives) {
+    if (alternative.empty()) return fail(ErrorCode::invalid_input, "an alternative is seen from no side");
     for (const auto& edges : alternative) {
-      if (edges.empty()) return fail(ErrorCode::invalid_input, "an alternative cannot be told from its background");
-      const cv::Mat1d shown = window.centred(fine_step_image(edges, filter, per_sample));
-      // Norms at every place from the products of the nodes.
-      cv::Mat1d gram;
-      cv::mulTransposed(shown, gram, false);
-      Aspect aspect;
-      for (int place = 0; place < bank.places_ * bank.places_; ++place) {
-        const double square = interpolated_product(bank.weights_, gram, place % bank.places_, place / bank.places_);
-        if (!(square > 0)) return fail(ErrorCode::invalid_input, "an alternative cannot be told from its background");
-        aspect.inverse_norms.push_back(static_cast<float>(1 / std::sqrt(square)));
-      }
-      bank.aspects_.push_back(std::move(aspect));
-      for (std::size_t node = 0; node < per_aspect; ++node, ++index) {
-        float* target = bank.nodes_.data() + index / identification_block * identification_block * samples +
+      cv::Mat1d shown = edges.empty() ? cv::Mat1d() : window.centred(fine_step_image(edges, filter, per_sample));
+      auto few = edges.empty() ? std::nullopt : few_templates(shown);
+      if (!few) return fail(ErrorCode::invalid_input, "an alternative cannot be told from its background");
+      const std::size_t end = index + static_cast<std::size_t>(few->basis.cols());
+      const std::size_t blocks = (end + identification_block - 1) / identification_block;
+      if (too_large(blocks * identification_block * samples * sizeof(float))) return refusal();
+      bank.basis_.resize(blocks * identification_block * samples, 0.0F);
+      for (Eigen::Index column = 0; column < few->basis.cols(); ++column, ++index) {
+        float* target = bank.basis_.data() + index / identification_block * identification_block * samples +
                         index % identification_block;
-        const double* values = shown[static_cast<int>(node)];
-        for (std::size_t s = 0; s < samples; ++s) target[s * identification_block] = static_cast<float>(values[s]);
+        const float* values = few->basis.col(column).data();
+        for (std::size_t s = 0; s < samples; ++s) target[s * identification_block] = values[s];
       }
+      bank.aspects_.push_back(
+          cv::Mat1f(static_cast<int>(places), static_cast<int>(few->coefficients.rows()), few->coefficients.data())
+              .clone());
     }
+    bank.first_aspect_.push_back(bank.aspects_.size());
   }
   return bank;
 }
@@ -205,33 +202,16 @@ Result<IdentificationBank> IdentificationBank::build(const TemplateObserverSpec&
 std::vector<float> IdentificationBank::project(const cv::Mat1f& patch) const {
   const auto samples = static_cast<std::size_t>(window_) * static_cast<std::size_t>(window_);
   CV_Assert(patch.rows == window_ && patch.cols == window_ && patch.isContinuous());
-  std::vector<float> products(blocks_ * identification_block);
-  for (std::size_t b = 0; b < blocks_; ++b) {
-    block_product(nodes_.data() + b * identification_block * samples, patch.ptr<float>(), samples,
-                  &products[b * identification_block]);
-  }
-  const int on_axis = weights_.cols;
-  const auto places = static_cast<std::size_t>(places_);
-  std::vector<float> out(scores());
-  std::vector<float> along(places * static_cast<std::size_t>(on_axis));  // [node in y][place in x]
-  for (std::size_t a = 0; a < aspects_.size(); ++a) {
-    const float* own = &products[a * static_cast<std::size_t>(on_axis * on_axis)];
-    for (int k = 0; k < on_axis; ++k) {
-      for (int p = 0; p < places_; ++p) {
-        float sum = 0;
-        for (int l = 0; l < on_axis; ++l) sum += weights_(p, l) * own[k * on_axis + l];
-        along[static_cast<std::size_t>(k) * places + static_cast<std::size_t>(p)] = sum;
-      }
-    }
-    float* scores_of_aspect = &out[a * places * places];
-    for (int q = 0; q < places_; ++q) {
-      for (std::size_t p = 0; p < places; ++p) {
-        float sum = 0;
-        for (int k = 0; k < on_axis; ++k) sum += weights_(q, k) * along[static_cast<std::size_t>(k) * places + p];
-        const std::size_t place = static_cast<std::size_t>(q) * places + p;
-        scores_of_aspect[place] = sum * aspects_[a].inverse_norms[place];
-      }
-    }
+  const std::size_t block_values = identification_block * samples;
+  std::vector<float> products(basis_.size() / samples);
+  for (std::size_t from = 0; from < basis_.size(); from += block_values)
+    block_product(&basis_[from], patch.ptr<float>(), samples, &products[from / samples]);
+  std::vector<float> out;
+  out.reserve(scores());
+  const float* own = products.data();
+  for (const auto& aspect : aspects_) {
+    for (int place = 0; place < aspect.rows; ++place) out.push_back(inner_product(aspect[place], own, aspect.cols));
+    own += aspect.cols;
   }
   return out;
 }

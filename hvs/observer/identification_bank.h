@@ -37,10 +37,9 @@ struct KnownCamera {
 /// in place of display and eye, and without noise the alternative that is shown has the largest score (Cauchy and
 /// Schwarz).
 ///
-/// Templates of one picture at places next to each other are smooth functions of the place. Projections are computed at
-/// up to nine places per axis and interpolated in between (polynomials of Lagrange, nodes near those of Chebyshev and
-/// Lobatto); of a triangle of 1.6 samples that changes scores by less than 1e-4 of the contrast
-/// (IdentificationBank.ScoresTrianglesAsTheTemplateObserverDoes). Immutable, thread-safe.
+/// The templates of one picture at all places, 289 in hvs-1, are sums of fewer orthonormal ones (30 to 70 for triangles
+/// up to 4 samples), found so that what is left of every template is below 1e-4 of its norm. A score is off by at most
+/// that much of the length of what is seen. Immutable, thread-safe.
 class IdentificationBank {
  public:
   /// `camera`: nothing: ideal templates, as of triangles.
@@ -66,16 +65,11 @@ class IdentificationBank {
                        std::span<const float> second, float second_scale, std::span<float> largest) const;
 
  private:
-  struct Aspect {
-    std::vector<float> inverse_norms;  ///< by place
-  };
   IdentificationBank() = default;
-  int window_ = 0, places_ = 0;  ///< places per axis
-  cv::Mat1f weights_;            ///< [place on an axis][node]
-  std::vector<Aspect> aspects_;
+  int window_ = 0, places_ = 0;            ///< places per axis
+  std::vector<cv::Mat1f> aspects_;         ///< [place][of the aspect's own part of the basis]
   std::vector<std::size_t> first_aspect_;  ///< of each alternative, and the end
-  std::size_t blocks_ = 0;
-  std::vector<float> nodes_;  ///< [block of templates][sample][template in block], as TemplateBank
+  std::vector<float> basis_;  ///< of all aspects: [block][sample][in block], as the templates of TemplateBank
 };
 
 }  // namespace todbench

@@ -5,70 +5,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <mutex>
-#include <numbers>
+#include <type_traits>
 #include <vector>
 
 #include "acquisition/core/multiversion.h"
+#include "hvs/shape/corner_transform.h"
 
 namespace todbench {
 namespace {
 
 using Complex = std::complex<double>;
 
-/// exp(+2 pi i turns), exact for multiples of half a turn.
-Complex turn(double turns) {
-  const double angle = 2 * std::numbers::pi * (turns - std::nearbyint(turns));
-  return {std::cos(angle), std::sin(angle)};
-}
-
 /// Remainder in [0, n).
 int wrapped(int index, int n) {
   return ((index % n) + n) % n;
-}
-
-/// Columns summed together, in registers.
-constexpr std::size_t lanes = 16;
-
-std::size_t padded(std::size_t columns) {
-  return (columns + lanes - 1) / lanes * lanes;
-}
-
-/// A complex matrix, real and imaginary parts apart, rows padded with zeros to whole lanes: the form in which sums over
-/// rows vectorise.
-struct SplitMatrix {
-  std::size_t stride;
-  std::vector<double> re, im;
-  SplitMatrix(std::size_t rows, std::size_t columns) : stride(padded(columns)), re(rows * stride), im(re.size()) {}
-};
-
-/// Eight numbers added or multiplied element by element (GCC and Clang): an explicit vector, because the compiler's own
-/// choice pairs real with imaginary parts and shuffles more than it computes.
-using Eight = double __attribute__((vector_size(64)));
-using EightInMemory = double __attribute__((vector_size(64), aligned(8), may_alias));
-static_assert(lanes == 2 * 8);
-
-/// `lanes` columns of sum_b factor_b row_b, b = 0..rows-1 in this order, real and imaginary parts.
-TODBENCH_MULTIVERSION
-void sum_rows(const double* re, const double* im, std::size_t stride, const Complex* factors, std::size_t rows,
-              double* sum_re, double* sum_im) {
-  Eight r0 = {}, r1 = {}, i0 = {}, i1 = {};
-  for (std::size_t b = 0; b < rows; ++b) {
-    const double fr = factors[b].real();
-    const double fi = factors[b].imag();
-    const auto* row_re = reinterpret_cast<const EightInMemory*>(re + b * stride);
-    const auto* row_im = reinterpret_cast<const EightInMemory*>(im + b * stride);
-    r0 += row_re[0] * fr - row_im[0] * fi;
-    r1 += row_re[1] * fr - row_im[1] * fi;
-    i0 += row_re[0] * fi + row_im[0] * fr;
-    i1 += row_re[1] * fi + row_im[1] * fr;
-  }
-  auto* out_re = reinterpret_cast<EightInMemory*>(sum_re);
-  auto* out_im = reinterpret_cast<EightInMemory*>(sum_im);
-  out_re[0] = r0;
-  out_re[1] = r1;
-  out_im[0] = i0;
-  out_im[1] = i1;
 }
 
 /// Rows read together: as many streams as the memory system follows.
@@ -109,22 +62,6 @@ void add_row(const double* re, const double* im, Complex factor, std::size_t col
   }
 }
 
-/// The same, real part only.
-TODBENCH_MULTIVERSION
-void sum_rows_real(const double* re, const double* im, std::size_t stride, const double* factors_re,
-                   const double* factors_im, std::size_t rows, double* sum) {
-  Eight r0 = {}, r1 = {};
-  for (std::size_t b = 0; b < rows; ++b) {
-    const auto* row_re = reinterpret_cast<const EightInMemory*>(re + b * stride);
-    const auto* row_im = reinterpret_cast<const EightInMemory*>(im + b * stride);
-    r0 += factors_re[b] * row_re[0] - factors_im[b] * row_im[0];
-    r1 += factors_re[b] * row_re[1] - factors_im[b] * row_im[1];
-  }
-  auto* out = reinterpret_cast<EightInMemory*>(sum);
-  out[0] = r0;
-  out[1] = r1;
-}
-
 /// values * factors, number by number.
 TODBENCH_MULTIVERSION
 void product(const double* re, const double* im, const Complex* factors, std::size_t n, double* __restrict out_re,
@@ -145,65 +82,80 @@ void add_products(const double* re, const double* im, const Complex* factors, st
   }
 }
 
-/// out[j][i] = Re sum_b sum_k folded[b][k] exp(2 pi i (b j + k i) / n): a small inverse transform of which only a
-/// corner is wanted. Every sum runs over b and k in increasing order, whatever the instruction set.
-cv::Mat1d corner_of_inverse(const SplitMatrix& folded, int points, cv::Size size) {
-  const auto n = static_cast<std::size_t>(points);
-  const auto width = static_cast<std::size_t>(size.width);
-  std::vector<Complex> roots(n);
-  for (std::size_t i = 0; i < n; ++i) roots[i] = turn(static_cast<double>(i) / points);
-  SplitMatrix along(n, width);  // row k: exp(2 pi i k i / n)
-  for (std::size_t k = 0; k < n; ++k) {
-    for (std::size_t i = 0, bin = 0; i < width; ++i, bin = (bin + k) % n) {
-      along.re[k * along.stride + i] = roots[bin].real();
-      along.im[k * along.stride + i] = roots[bin].imag();
+/// Adds to every row b the conjugate of row -b, as they were before.
+void add_conjugates(SplitMatrix& rows) {
+  const std::size_t n = rows.re.size() / rows.stride;
+  for (std::size_t b = 0; 2 * b <= n; ++b) {
+    const std::size_t at = b * rows.stride, mirror = (n - b) % n * rows.stride;
+    for (std::size_t m = 0; m < rows.stride; ++m) {
+      rows.re[mirror + m] = rows.re[at + m] += rows.re[mirror + m];
+      rows.im[at + m] -= rows.im[mirror + m];
+      rows.im[mirror + m] = -rows.im[at + m];
     }
   }
-  cv::Mat1d out(size);
-  std::vector<Complex> factors(n);
-  std::vector<double> re(folded.stride), im(folded.stride), row(along.stride);
-  for (int j = 0; j < size.height; ++j) {
-    for (std::size_t b = 0; b < n; ++b) factors[b] = roots[b * static_cast<std::size_t>(j) % n];
-    for (std::size_t k = 0; k < folded.stride; k += lanes)
-      sum_rows(&folded.re[k], &folded.im[k], folded.stride, factors.data(), n, &re[k], &im[k]);
-    for (std::size_t i = 0; i < along.stride; i += lanes)
-      sum_rows_real(&along.re[i], &along.im[i], along.stride, re.data(), im.data(), n, &row[i]);
-    std::copy_n(row.begin(), width, out[j]);
+}
+
+/// turn(m * turns) for m = first..first+count-1, as products of two of fewer: a rounding more than each by itself.
+std::vector<Complex> turns_of(int first, int count, double turns) {
+  constexpr int together = 16;
+  std::array<Complex, together> fine;
+  for (int i = 0; i < together; ++i) fine[static_cast<std::size_t>(i)] = turn(i * turns);
+  std::vector<Complex> out;
+  out.reserve(static_cast<std::size_t>(count + together));
+  for (int m = first; m < first + count; m += together) {
+    const Complex coarse = turn(m * turns);
+    for (const Complex& own : fine)
+      out.emplace_back(coarse.real() * own.real() - coarse.imag() * own.imag(),
+                       coarse.real() * own.imag() + coarse.imag() * own.real());
   }
   return out;
 }
 
-/// Complex-to-real inverse transform of n x n points in place, of which only the first `columns` columns of each row
-/// are not zero. Only the first `rows` and the last `rows` rows of the result are computed. FFTW_ESTIMATE, so that
+struct DestroyPlan {
+  void operator()(fftw_plan plan) const { fftw_destroy_plan(plan); }
+};
+using OwnedPlan = std::unique_ptr<std::remove_pointer_t<fftw_plan>, DestroyPlan>;
+
+/// Inverse transforms of n points, contiguous: of complex numbers in place, and to real ones. FFTW_ESTIMATE, so that
 /// results repeat bit for bit.
-void inverse_in_place(fftw_complex* data, int n, int columns, int rows) {
+struct InversePlans {
+  OwnedPlan complex, real;
+};
+
+/// Planned once for each length, kept until the program ends; addresses are to be multiples of 16 bytes.
+const InversePlans& inverse_plans(int n) {
   static std::mutex planner;  // FFTW's planner is not thread-safe; executing a plan is
-  const int half = n / 2 + 1;
-  const auto along_rows = [&](int first, int count) {
-    fftw_complex* begin = data + static_cast<std::ptrdiff_t>(first) * half;
-    return fftw_plan_many_dft_c2r(1, &n, count, begin, nullptr, 1, half, reinterpret_cast<double*>(begin), nullptr, 1,
-                                  2 * half, FFTW_ESTIMATE);
-  };
-  std::array<fftw_plan, 3> plans{};
-  {
-    const std::scoped_lock lock(planner);
-    plans[0] = fftw_plan_many_dft(1, &n, columns, data, nullptr, half, 1, data, nullptr, half, 1, FFTW_BACKWARD,
-                                  FFTW_ESTIMATE);
-    if (2 * rows >= n) {
-      plans[1] = along_rows(0, n);
-    } else {
-      plans[1] = along_rows(0, rows);
-      plans[2] = along_rows(n - rows, rows);
-    }
-  }
-  for (fftw_plan plan : plans) {
-    if (plan != nullptr) fftw_execute(plan);
-  }
+  static std::map<int, InversePlans> plans;
   const std::scoped_lock lock(planner);
-  for (fftw_plan plan : plans) {
-    if (plan != nullptr) fftw_destroy_plan(plan);
+  InversePlans& own = plans[n];
+  if (own.real == nullptr) {
+    cv::Mat1d in(1, 2 * n), out(1, n);
+    auto* numbers = reinterpret_cast<fftw_complex*>(in[0]);
+    own.complex.reset(fftw_plan_dft_1d(n, numbers, numbers, FFTW_BACKWARD, FFTW_ESTIMATE));
+    own.real.reset(fftw_plan_dft_c2r_1d(n, numbers, out[0], FFTW_ESTIMATE));
   }
+  return own;
 }
+
+/// (x, y) -> (-y, x), so often.
+cv::Point2d turned_point(cv::Point2d p, int quarters) {
+  for (int k = 0; k < wrapped(quarters, 4); ++k) p = {-p.y, p.x};
+  return p;
+}
+
+/// Whether x -> -x maps the polygon onto itself, to the last bit.
+bool is_mirrored(const Polygon& polygon) {
+  const std::size_t n = polygon.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    std::size_t i = 0;
+    while (i < n && polygon[i] == cv::Point2d(-polygon[(k + n - i) % n].x, polygon[(k + n - i) % n].y)) ++i;
+    if (i == n) return true;
+  }
+  return false;
+}
+
+/// Spectra of this many columns are brought into order together: a line of the cache.
+constexpr int columns_at_once = 8;
 
 }  // namespace
 
@@ -219,21 +171,60 @@ FilterTable::FilterTable(FrequencyLattice lattice, const TransferFunction& trans
     while (extent > 0 && values_(row, extent - 1) == Complex(0, 0)) --extent;
     extents_.push_back(static_cast<std::size_t>(extent));
   }
+  for (int w = 0; w <= lattice.band && even_; ++w) {
+    for (int u = 0; u <= lattice.band && even_; ++u) {
+      const Complex value = values_(lattice.band + w, u);
+      even_ = value.imag() == 0 && value == values_(lattice.band - w, u);
+      turns_alike_ = turns_alike_ && value == values_(lattice.band + u, w);
+    }
+  }
+  turns_alike_ = turns_alike_ && even_;
 }
 
-PolygonImage::PolygonImage(const Polygon& polygon, const FilterTable& filter) : lattice_(filter.lattice()) {
-  const cv::Size size(static_cast<int>(padded(static_cast<std::size_t>(lattice_.band) + 1)), 2 * lattice_.band + 1);
+PolygonImage::PolygonImage(const Polygon& polygon, const FilterTable& filter)
+    : lattice_(filter.lattice()), turns_alike_(filter.turns_alike()) {
+  Polygon shape = polygon;
+  half_ = filter.even() && is_mirrored(shape);
+  if (!half_ && turns_alike_) {
+    for (auto& vertex : shape) vertex = turned_point(vertex, -1);
+    half_ = is_mirrored(shape);
+    turns_ = half_ ? 1 : 0;
+    if (!half_) shape = polygon;
+  }
+  const int top = half_ ? lattice_.band : 0;
+  const cv::Size size(static_cast<int>(whole_lanes(static_cast<std::size_t>(lattice_.band) + 1)),
+                      2 * lattice_.band + 1 - top);
   re_ = cv::Mat1d(size, 0.0);
   im_ = cv::Mat1d(size, 0.0);
-  PolygonSpectrumRows spectrum(polygon, lattice_);
+  PolygonSpectrumRows spectrum(shape, lattice_);
   for (int row = 0; row < re_.rows; ++row) {
-    const auto [re, im] = spectrum.row(row, filter.extent(row));
-    extents_.push_back(padded(re.size()));
-    product(re.data(), im.data(), filter.values()[row], re.size(), re_[row], im_[row]);
+    const auto [re, im] = spectrum.row(top + row, filter.extent(top + row));
+    extents_.push_back(whole_lanes(re.size()));
+    product(re.data(), im.data(), filter.values()[top + row], re.size(), re_[row], im_[row]);
   }
 }
 
+PolygonImage PolygonImage::turned(int quarters) const {
+  PolygonImage out = *this;
+  out.turns_ = wrapped(turns_ + quarters, 4);
+  return out;
+}
+
 cv::Mat1d PolygonImage::sample(cv::Point2d first, double step, cv::Size size) const {
+  if (turns_ == 0) return sample_upright(first, step, size);
+  // The two corners of the window turned back; between them lie the samples of the spectrum's own image.
+  const cv::Point2d a = turned_point(first, -turns_);
+  const cv::Point2d b = turned_point(first + step * cv::Point2d(size.width - 1, size.height - 1), -turns_);
+  const bool odd = turns_ % 2 == 1;
+  const cv::Mat1d upright =
+      sample_upright({std::min(a.x, b.x), std::min(a.y, b.y)}, step, odd ? cv::Size(size.height, size.width) : size);
+  constexpr std::array<int, 3> codes{cv::ROTATE_90_CLOCKWISE, cv::ROTATE_180, cv::ROTATE_90_COUNTERCLOCKWISE};
+  cv::Mat1d out;
+  cv::rotate(upright, out, codes[static_cast<std::size_t>(turns_ - 1)]);
+  return out;
+}
+
+cv::Mat1d PolygonImage::sample_upright(cv::Point2d first, double step, cv::Size size) const {
   const int n = static_cast<int>(std::lround(lattice_.period / step));
   CV_Assert(std::abs(n * step - lattice_.period) < 1e-9 * lattice_.period);
   const int band = lattice_.band;
@@ -242,12 +233,14 @@ cv::Mat1d PolygonImage::sample(cv::Point2d first, double step, cv::Size size) co
 
   // Rows: shift to first.y, then fold frequencies that the sampling cannot tell apart: every n-th row into one.
   const auto bins = static_cast<std::size_t>(n);
+  const int lowest = half_ ? 0 : -band;
   SplitMatrix rows(bins, columns);
-  std::vector<Complex> ramps;
+  std::vector<Complex> ramps, turns = turns_of(lowest, re_.rows, first.y / period);
+  if (half_) turns[0] = 0.5;
   for (int top = 0; top < std::min(n, re_.rows); ++top) {
     ramps.clear();
-    for (int row = top; row < re_.rows; row += n) ramps.push_back(turn((row - band) * first.y / period));
-    const std::size_t at = static_cast<std::size_t>(wrapped(top - band, n)) * rows.stride;
+    for (int row = top; row < re_.rows; row += n) ramps.push_back(turns[static_cast<std::size_t>(row)]);
+    const std::size_t at = static_cast<std::size_t>(wrapped(top + lowest, n)) * rows.stride;
     const std::size_t stride = bins * re_.step1();
     const auto extent = [&](std::size_t b) { return extents_[static_cast<std::size_t>(top) + b * bins]; };
     std::size_t b = 0;
@@ -260,20 +253,20 @@ cv::Mat1d PolygonImage::sample(cv::Point2d first, double step, cv::Size size) co
     for (; b < ramps.size(); ++b)
       add_row(re_[top] + b * stride, im_[top] + b * stride, ramps[b], extent(b), &rows.re[at], &rows.im[at]);
   }
+  if (half_) add_conjugates(rows);
   // Columns likewise. Frequencies u > 0 count twice, for their mirror images; the real part is taken at the end.
-  ramps.clear();
-  for (std::size_t m = 0; m < columns; ++m)
-    ramps.push_back(turn(static_cast<double>(m) * first.x / period) * (m == 0 ? 1.0 : 2.0));
+  turns = turns_of(0, band + 1, first.x / period);
+  turns[0] = 0.5;
   SplitMatrix folded(bins, bins);
   for (std::size_t row = 0; row < bins; ++row) {
     const double* re = &rows.re[row * rows.stride];
     const double* im = &rows.im[row * rows.stride];
     const std::size_t at = row * folded.stride;
     for (std::size_t m = 0; m < columns; m += bins)
-      add_products(re + m, im + m, &ramps[m], std::min(bins, columns - m), &folded.re[at], &folded.im[at]);
+      add_products(re + m, im + m, &turns[m], std::min(bins, columns - m), &folded.re[at], &folded.im[at]);
   }
   cv::Mat1d out = corner_of_inverse(folded, n, size);
-  out /= period * period;
+  out *= 2 / (period * period);
   return out;
 }
 
@@ -284,32 +277,66 @@ cv::Mat1d PolygonImage::fine_image(int per_unit) const {
 cv::Mat1d PolygonImage::fine_image(int per_unit, int reach) const {
   CV_Assert(reach > 0);
   const int n = per_unit * lattice_.period;
-  const int band = lattice_.band;
-  CV_Assert(n > 2 * band);
-  // Transformed in place: rows of n / 2 + 1 complex numbers become rows of n real ones with padding behind.
-  const int half = n / 2 + 1;
-  cv::Mat1d data(n, 2 * half);
-  data.colRange(2 * (band + 1), 2 * half) = 0;
-  data(cv::Range(band + 1, n - band), cv::Range(0, 2 * (band + 1))) = 0;
-  for (int row = 0; row < re_.rows; ++row) {
-    const double* re = re_[row];
-    const double* im = im_[row];
-    double* target = data[wrapped(row - band, n)];
-    for (int m = 0; m <= band; ++m) {
-      target[2 * m] = re[m];
-      target[2 * m + 1] = im[m];
+  CV_Assert(n > 2 * lattice_.band);
+  const int points = std::min(n, 2 * reach * per_unit);
+  if (turns_ == 0) return fine_rows(n, (points + 1) / 2);
+  const cv::Mat1d upright = fine_rows(n, points / 2 + 1);
+  cv::Mat1d out(n, n);
+  for (int y = -points / 2; y < (points + 1) / 2; ++y) {
+    double* row = out[wrapped(y, n)];
+    for (int x = -points / 2; x < (points + 1) / 2; ++x) {
+      const cv::Point p = turns_ == 1 ? cv::Point(y, -x) : turns_ == 2 ? cv::Point(-x, -y) : cv::Point(-y, x);
+      row[wrapped(x, n)] = upright(wrapped(p.y, n), wrapped(p.x, n));
     }
   }
-  const int rows = std::min(n, reach * per_unit);
-  inverse_in_place(reinterpret_cast<fftw_complex*>(data.ptr<double>()), n, band + 1, rows);
-  cv::Mat1d out = data.colRange(0, n);
-  const double scale = 1.0 / (static_cast<double>(lattice_.period) * lattice_.period);
-  for (int row = 0; row < n; ++row) {
-    if (row >= rows && row < n - rows) continue;
-    double* values = out[row];
-    for (int column = 0; column < n; ++column) values[column] *= scale;
-  }
   return out;
+}
+
+/// The first `rows` and the last `rows` of n, by transforms along the columns and then along those rows. A spectrum of
+/// which half is kept has real columns.
+cv::Mat1d PolygonImage::fine_rows(int n, int rows) const {
+  const int band = lattice_.band;
+  const int half = n / 2 + 1;
+  const InversePlans& plans = inverse_plans(n);
+  const double scale = 1.0 / (static_cast<double>(lattice_.period) * lattice_.period);
+  const auto wanted = [&](int row) { return row < rows || row >= n - rows; };
+  cv::Mat1d data(n, 2 * half);  // rows of `half` complex numbers become rows of n real ones with padding behind
+  cv::Mat1d spectra(columns_at_once, 2 * n), real(columns_at_once, n + n % 2);
+  for (int first = 0; first <= band; first += columns_at_once) {
+    const int count = std::min(columns_at_once, band + 1 - first);
+    spectra = 0;
+    for (int row = 0; row < re_.rows; ++row) {
+      const int at = 2 * (half_ ? row : wrapped(row - band, n));
+      for (int k = 0; k < count; ++k) {
+        spectra(k, at) = scale * re_(row, first + k);
+        spectra(k, at + 1) = scale * im_(row, first + k);
+      }
+    }
+    for (int k = 0; k < count; ++k) {
+      auto* column = reinterpret_cast<fftw_complex*>(spectra[k]);
+      if (half_) {
+        fftw_execute_dft_c2r(plans.real.get(), column, real[k]);
+      } else {
+        fftw_execute_dft(plans.complex.get(), column, column);
+      }
+    }
+    for (int row = 0; row < n; ++row) {
+      if (!wanted(row)) continue;
+      double* target = data[row] + 2 * first;
+      for (int k = 0; k < count; ++k) {
+        target[2 * k] = half_ ? real(k, row) : spectra(k, 2 * row);
+        target[2 * k + 1] = half_ ? 0.0 : spectra(k, 2 * row + 1);
+      }
+    }
+  }
+  cv::Mat1d line(1, 2 * half);
+  for (int row = 0; row < n; ++row) {
+    if (!wanted(row)) continue;
+    std::copy_n(data[row], 2 * (band + 1), line[0]);
+    std::fill(line[0] + 2 * (band + 1), line[0] + 2 * half, 0.0);
+    fftw_execute_dft_c2r(plans.real.get(), reinterpret_cast<fftw_complex*>(line[0]), data[row]);
+  }
+  return data.colRange(0, n);
 }
 
 }  // namespace todbench

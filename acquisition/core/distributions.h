@@ -1,0 +1,52 @@
+// Distributions of statistics: the functions of Boost.Math, compiled in one place. Every source that used the templates
+// would compile them anew, for seconds.
+#pragma once
+
+namespace todbench::distribution {
+
+struct Normal {
+  explicit Normal(double m = 0, double s = 1) : mean(m), sd(s) {}
+  double mean, sd;
+};
+
+/// Student's t.
+struct StudentsT {
+  explicit StudentsT(double freedom) : degrees_of_freedom(freedom) {}
+  double degrees_of_freedom;
+};
+
+struct ChiSquared {
+  explicit ChiSquared(double freedom) : degrees_of_freedom(freedom) {}
+  double degrees_of_freedom;
+};
+
+/// The ratio of two mean squares.
+struct FisherF {
+  FisherF(double above, double below) : numerator_freedom(above), denominator_freedom(below) {}
+  double numerator_freedom, denominator_freedom;
+};
+
+/// Probability above instead of below, without the cancellation of 1 - p.
+template <class Law>
+struct Complement {
+  Law law;
+  double value;  ///< of the variable in cdf(), a probability in quantile()
+};
+template <class Law>
+[[nodiscard]] Complement<Law> complement(const Law& law, double value) {
+  return {law, value};
+}
+
+/// Of the four laws above. Throw std::domain_error where Boost.Math does: no positive freedom, a probability outside
+/// 0..1.
+template <class Law>
+[[nodiscard]] double cdf(const Law& law, double x);
+template <class Law>
+[[nodiscard]] double cdf(const Complement<Law>& above);
+template <class Law>
+[[nodiscard]] double quantile(const Law& law, double probability);
+template <class Law>
+[[nodiscard]] double quantile(const Complement<Law>& above);
+[[nodiscard]] double pdf(const Normal& law, double x);
+
+}  // namespace todbench::distribution

@@ -1,0 +1,39 @@
+// A small inverse transform in sums of a fixed order: the same bits whatever the instruction set.
+#pragma once
+
+#include <complex>
+#include <cstddef>
+#include <opencv2/core.hpp>
+#include <vector>
+
+namespace todbench {
+
+/// exp(+2 pi i turns), as exact for many turns as for few.
+[[nodiscard]] std::complex<double> turn(double turns);
+
+/// Columns summed together, in registers, and columns filled up to whole such groups.
+inline constexpr std::size_t lanes = 16;
+
+inline std::size_t whole_lanes(std::size_t columns) {
+  return (columns + lanes - 1) / lanes * lanes;
+}
+
+/// A complex matrix, real and imaginary parts apart, rows padded with zeros to whole lanes: the form in which sums over
+/// rows vectorise.
+struct SplitMatrix {
+  std::size_t stride;
+  std::vector<double> re, im;
+  SplitMatrix(std::size_t rows, std::size_t columns) : stride(whole_lanes(columns)), re(rows * stride), im(re.size()) {}
+};
+
+/// Eight numbers added or multiplied element by element (GCC and Clang): an explicit vector, because the compiler's own
+/// choice pairs real with imaginary parts and shuffles more than it computes.
+using Eight = double __attribute__((vector_size(64)));
+using EightInMemory = double __attribute__((vector_size(64), aligned(8), may_alias));
+static_assert(lanes == 2 * 8);
+
+/// out[j][i] = Re sum_b sum_k folded[b][k] exp(2 pi i (b j + k i) / n), n = `points`, over the n rows b and the first n
+/// columns k; j and i within `size`, beyond n periodic.
+[[nodiscard]] cv::Mat1d corner_of_inverse(const SplitMatrix& folded, int points, cv::Size size);
+
+}  // namespace todbench
