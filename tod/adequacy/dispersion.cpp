@@ -1,16 +1,14 @@
 #include "tod/adequacy/dispersion.h"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <map>
 #include <optional>
 
+#include "acquisition/core/distributions.h"
+
 namespace todbench {
 namespace {
-
-namespace bm = boost::math;
 
 // A sum of squares with its mean and variance under the model.
 struct SumOfSquares {
@@ -104,27 +102,29 @@ template <typename Function>
 double with_law(const Dispersion& dispersion, const Function& function) {
   if (!(dispersion.degrees_of_freedom > 0)) return 1;
   if (dispersion.denominator_freedom > 0)
-    return function(bm::fisher_f(dispersion.degrees_of_freedom, dispersion.denominator_freedom));
-  return function(bm::chi_squared(dispersion.degrees_of_freedom));
+    return function(distribution::FisherF(dispersion.degrees_of_freedom, dispersion.denominator_freedom));
+  return function(distribution::ChiSquared(dispersion.degrees_of_freedom));
 }
 
 }  // namespace
 
 double Dispersion::p_more() const {
-  return with_law(*this, [&](const auto& law) { return bm::cdf(bm::complement(law, scaled(*this, ratio))); });
+  return with_law(
+      *this, [&](const auto& law) { return distribution::cdf(distribution::complement(law, scaled(*this, ratio))); });
 }
 
 double Dispersion::p_less() const {
-  return with_law(*this, [&](const auto& law) { return bm::cdf(law, scaled(*this, ratio)); });
+  return with_law(*this, [&](const auto& law) { return distribution::cdf(law, scaled(*this, ratio)); });
 }
 
 double Dispersion::upper_limit(double probability) const {
-  return with_law(*this,
-                  [&](const auto& law) { return bm::quantile(bm::complement(law, probability)) / scaled(*this, 1); });
+  return with_law(*this, [&](const auto& law) {
+    return distribution::quantile(distribution::complement(law, probability)) / scaled(*this, 1);
+  });
 }
 
 double Dispersion::lower_limit(double probability) const {
-  return with_law(*this, [&](const auto& law) { return bm::quantile(law, probability) / scaled(*this, 1); });
+  return with_law(*this, [&](const auto& law) { return distribution::quantile(law, probability) / scaled(*this, 1); });
 }
 
 Dispersions dispersions(const ModelResiduals& model, std::span<const Level> levels, std::span<const Direction> besides,

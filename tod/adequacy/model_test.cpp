@@ -1,20 +1,19 @@
 #include "tod/adequacy/model_test.h"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <vector>
+
+#include "acquisition/core/distributions.h"
 
 namespace todbench {
 namespace {
 
-namespace bm = boost::math;
-
 // Exceeded with `probability` on one side, by a normal variable or Student's t of clusters.
 double limit_of(double probability, double clusters) {
-  if (clusters > 1) return bm::quantile(bm::complement(bm::students_t(clusters - 1), probability));
-  return bm::quantile(bm::complement(bm::normal(), probability));
+  if (clusters > 1)
+    return distribution::quantile(distribution::complement(distribution::StudentsT(clusters - 1), probability));
+  return distribution::quantile(distribution::complement(distribution::Normal(), probability));
 }
 
 // The member of another family nearest to the fitted function: fitted to the answers that the fit expects, so that it

@@ -1,12 +1,12 @@
 #include "tod/adequacy/twin_scatter.h"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <set>
 #include <utility>
 #include <vector>
 
+#include "acquisition/core/distributions.h"
 #include "tod/psychometric/psychometric_model.h"
 #include "tod/psychometric/twin_mean.h"
 
@@ -76,8 +76,8 @@ std::optional<LapseTest> twin_lapse_test(const PsychometricFit& fit, const Psych
                                          double probability) {
   const double gain = twin_lapse_gain(fit, free_fit);
   if (!(gain > 0) || !(fit.clusters > 1)) return std::nullopt;
-  const boost::math::students_t law(fit.clusters - 1);
-  const double limit = boost::math::quantile(boost::math::complement(law, probability));
+  const distribution::StudentsT law(fit.clusters - 1);
+  const double limit = distribution::quantile(distribution::complement(law, probability));
   return LapseTest{free_fit.lapse, gain, limit * limit};
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/core/distributions.h"
 #include "tod/measurement/target_change.h"
 #include "tod/measures/pixel_noise.h"
 #include "tod/measures/shading.h"
@@ -310,11 +311,15 @@ class Run {
     const auto where = field();
     if (!where) return tl::unexpected(where.error());
     if (auto shown = show(0); !shown) return tl::unexpected(shown.error());
-    const auto commanded = correct();
+    const bool simulated = !options_.measurement.free_running;
+    const auto commanded = simulated ? Result<bool>(false) : correct();
     if (!commanded) return tl::unexpected(commanded.error());
-    return measure_drift(
-        taker_, *where,
-        {.drift_s = *options_.drift_s, .frame_rate_hz = source_.info().frame_rate_hz, .commanded = *commanded}, stop_);
+    return measure_drift(taker_, *where,
+                         {.drift_s = *options_.drift_s,
+                          .frame_rate_hz = source_.info().frame_rate_hz,
+                          .commanded = *commanded,
+                          .simulated = simulated},
+                         stop_);
   }
 
   Result<ResponseMeasure> time_response() {
@@ -472,18 +477,22 @@ std::optional<double> PlatePicture::residual_over_noise() const {
   return residual_k / (seen.temporal_noise_k / std::sqrt(seen.frames));
 }
 
+double TransferMeasure::slope_half_width() const {
+  return quantile(distribution::StudentsT(line.degrees_of_freedom), 0.975) * line.slope_u;
+}
+
 std::optional<double> CameraMeasures::netd_k() const {
   if (!noise || !transfer || !(transfer->line.slope > 0)) return std::nullopt;
   if (noise->noise_counts && *noise->noise_counts < least_measurable_noise_counts) return std::nullopt;
   return std::sqrt(std::max(0.0, temporal_variance_k2()->variance)) / transfer->line.slope;
 }
 
-std::optional<double> CameraMeasures::netd_relative_u() const {
+std::optional<double> CameraMeasures::netd_relative_half_width() const {
   const auto netd = netd_k();
   if (!netd || !(*netd > 0)) return std::nullopt;
   const ComponentEstimate variance = *temporal_variance_k2();
-  const double of_noise = 0.25 * (variance.high - variance.low) / 1.96 / variance.variance;
-  return std::hypot(of_noise, transfer->line.slope_u / transfer->line.slope);
+  const double of_noise = 0.25 * (variance.high - variance.low) / variance.variance;
+  return std::hypot(of_noise, transfer->slope_half_width() / transfer->line.slope);
 }
 
 Result<CameraMeasures> measure_camera(FrameSource& source, Target& target, const CameraMeasuresOptions& options,

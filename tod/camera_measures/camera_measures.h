@@ -69,6 +69,8 @@ struct TransferMeasure {
   int frames_each = 0;
   std::vector<TransferStep> steps;
   SignalTransfer line;  ///< seen over said: 1 where the camera's temperature scale is right
+  /// Of the slope's 95 % interval, by Student's t of the steps.
+  [[nodiscard]] double slope_half_width() const;
 };
 
 /// IFOV and distortion from the first plate.
@@ -80,8 +82,8 @@ struct GeometryMeasure {
   double stated_ifov_mrad = 0;  ///< as the measurement has it
   cv::Size picture{0, 0};
   PlateGeometry geometry;
-  std::optional<double> distance_relative_u{};  ///< standard; nothing: none is stated
-  std::optional<double> model_ifov_mrad{};      ///< of a simulated sensor
+  std::optional<double> distance_relative_u{};                          ///< standard; nothing: none is stated
+  std::optional<double> model_ifov_mrad{}, model_distortion_percent{};  ///< of a simulated sensor
 
   /// Along x or y, with the interval of the picture alone.
   [[nodiscard]] GeometryValue ifov_mrad(EdgeAxis axis) const;
@@ -153,8 +155,8 @@ struct CameraMeasures {
   /// Temporal noise over the slope of the signal transfer; nothing without both, or where the noise is below half a
   /// count and cannot be measured.
   [[nodiscard]] std::optional<double> netd_k() const;
-  /// Relative standard uncertainty of it: of the noise (half the interval over 1.96) and of the slope.
-  [[nodiscard]] std::optional<double> netd_relative_u() const;
+  /// Relative half-width of its 95 % interval: those of the noise and of the slope, as the root of the sum of squares.
+  [[nodiscard]] std::optional<double> netd_relative_half_width() const;
 };
 
 /// Starts the source, measures and stops it. What cannot be measured is a reason and no failure; a run that is stopped

@@ -23,6 +23,8 @@ struct DriftOptions {
   double drift_s = 20;       ///< over which the camera is watched, > 0
   double frame_rate_hz = 0;  ///< stated by the camera; 0: it states none
   bool commanded = false;    ///< the correction was commanded just now; otherwise the camera's own is waited for
+  /// A sensor model: frames are made when they are asked for, time is that of its clock, it needs no correction.
+  bool simulated = false;
 };
 
 /// Times are those of the camera's clock, where it counts frames at the stated rate, otherwise those of the host's.

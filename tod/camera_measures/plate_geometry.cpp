@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -11,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "acquisition/core/distributions.h"
 #include "acquisition/core/median.h"
 #include "tod/plate/plate_outlines.h"
 #include "tod/registration/shift_fit.h"
@@ -197,7 +197,7 @@ double area_scale(const Lens& lens, const LensParameters& p, cv::Point2d mm) {
 PlateGeometry described(const std::vector<LocatedTriangle>& located, const Lens& lens, const LensFit& fit,
                         const TargetPlate& plate) {
   const double freedom = static_cast<double>(2 * located.size()) - lens_parameters;
-  const double t = quantile(boost::math::students_t(freedom), 0.975);
+  const double t = quantile(distribution::StudentsT(freedom), 0.975);
   // Few residuals that are small by chance do not make a place better than its noise.
   const DerivedQuantity derived(fit, t * std::max(1.0, std::sqrt(fit.chi2 / freedom)));
   const double w = plate.width_mm / 2, h = plate.height_mm / 2;

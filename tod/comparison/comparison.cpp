@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 
+#include "acquisition/core/distributions.h"
 #include "tod/psychometric/threshold_pair.h"
 
 namespace todbench {
@@ -17,16 +16,15 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 // Probability above `x` of the standard normal, or of Student's t where the degrees of freedom are finite.
 double upper_tail(double x, double degrees_of_freedom) {
-  namespace bm = boost::math;
-  if (!std::isfinite(degrees_of_freedom)) return bm::cdf(bm::complement(bm::normal(), x));
-  return bm::cdf(bm::complement(bm::students_t(degrees_of_freedom), x));
+  if (!std::isfinite(degrees_of_freedom)) return distribution::cdf(distribution::complement(distribution::Normal(), x));
+  return distribution::cdf(distribution::complement(distribution::StudentsT(degrees_of_freedom), x));
 }
 
 // Where upper_tail() is `probability`.
 double upper_quantile(double probability, double degrees_of_freedom) {
-  namespace bm = boost::math;
-  if (!std::isfinite(degrees_of_freedom)) return bm::quantile(bm::complement(bm::normal(), probability));
-  return bm::quantile(bm::complement(bm::students_t(degrees_of_freedom), probability));
+  if (!std::isfinite(degrees_of_freedom))
+    return distribution::quantile(distribution::complement(distribution::Normal(), probability));
+  return distribution::quantile(distribution::complement(distribution::StudentsT(degrees_of_freedom), probability));
 }
 
 // Largest of the two one-sided probabilities that a ratio at or beyond the margin gives this estimate (Schuirmann

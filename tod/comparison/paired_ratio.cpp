@@ -1,10 +1,10 @@
 #include "tod/comparison/paired_ratio.h"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <vector>
 
+#include "acquisition/core/distributions.h"
 #include "tod/psychometric/clustered_variance.h"
 #include "tod/psychometric/twin_shape.h"
 
@@ -12,13 +12,11 @@ namespace todbench {
 namespace {
 
 double t_upper_tail(double x, double degrees_of_freedom) {
-  namespace bm = boost::math;
-  return bm::cdf(bm::complement(bm::students_t(degrees_of_freedom), x));
+  return distribution::cdf(distribution::complement(distribution::StudentsT(degrees_of_freedom), x));
 }
 
 double t_upper_quantile(double tail, double degrees_of_freedom) {
-  namespace bm = boost::math;
-  return bm::quantile(bm::complement(bm::students_t(degrees_of_freedom), tail));
+  return distribution::quantile(distribution::complement(distribution::StudentsT(degrees_of_freedom), tail));
 }
 
 /// Everything that follows from the ratio and its standard error.

@@ -1,24 +1,24 @@
 #include "tod/comparison/planning.h"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cassert>
 #include <cmath>
 #include <string>
 
+#include "acquisition/core/distributions.h"
 #include "tod/psychometric/psychometric_model.h"
 
 namespace todbench {
 namespace {
 
-const boost::math::normal standard_normal;
+const distribution::Normal standard_normal;
 
 double normal_cdf(double z) {
-  return boost::math::cdf(standard_normal, z);
+  return distribution::cdf(standard_normal, z);
 }
 double normal_quantile(double p) {
-  return boost::math::quantile(standard_normal, p);
+  return distribution::quantile(standard_normal, p);
 }
 
 constexpr double one_sided_level = 0.05;

@@ -1,10 +1,11 @@
 #include "tod/measurement/grey_levels.h"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numbers>
 #include <vector>
+
+#include "acquisition/core/distributions.h"
 
 namespace todbench {
 
@@ -54,7 +55,7 @@ double rounding_variance(double noise_steps) {
 }
 
 double GreyContrast::half_width() const {
-  return boost::math::quantile(boost::math::students_t(degrees_of_freedom), 0.975) * standard_uncertainty;
+  return distribution::quantile(distribution::StudentsT(degrees_of_freedom), 0.975) * standard_uncertainty;
 }
 
 Result<GreyContrast> grey_contrast(const cv::Mat1d& levels, const TargetPlate& mounted_plate,

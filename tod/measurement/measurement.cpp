@@ -204,7 +204,10 @@ class Run {
     const bool new_set_up = !current_set_up_ || *current_set_up_ != set_up;
     const bool new_contrast = new_set_up || *current_contrast_ != state.delta_t_k;
     if (new_contrast) read_back_noted_ = false;
-    if (!read_back_noted_) read_back_noted_ = step_.compare_with_what_was_set(state, presented_);
+    if (const auto deviation = read_back_noted_ ? std::nullopt : step_.read_back_deviation(state, presented_)) {
+      note(*deviation);
+      read_back_noted_ = true;
+    }
     if (new_set_up) {
       if (auto located = locate(plate, mounted_plate, state); !located) return tl::unexpected(located.error());
     }
@@ -280,9 +283,12 @@ class Run {
     std::vector<Trial> trials;
     std::vector<Patch> patches;
     std::vector<double> probabilities(count);
-    for (int k = 0; k < options_.frames_per_presentation; ++k) {
+    const auto own = options_.frames_at_contrast.find(state.delta_t_k);
+    const int frames = own == options_.frames_at_contrast.end() ? options_.frames_per_presentation : own->second;
+    for (int k = 0; k < frames; ++k) {
       auto taken = taker_.next(stop_);
       if (!taken) return tl::unexpected(taken.error());
+      if (taken->judged != nullptr && taken->judged->none) return tl::unexpected(*taken->judged->none);
       if (judged_samples_per_pixel(*taken) != options_.judged_samples_per_pixel)
         return fail(ErrorCode::internal, "frames are judged at another number of samples a pixel than was said");
       const Frame frame = as_judged(*taken);
@@ -316,8 +322,8 @@ class Run {
     if (const auto failure = observer_.failure()) return fail("the observer", *failure);
     for (std::size_t i = 0; i < count; ++i) {
       if (options_.answers == AnswerKind::graded) {
-        trials[i].probability_correct = std::min(1.0, probabilities[i] / options_.frames_per_presentation);
-        trials[i].frames = options_.frames_per_presentation;
+        trials[i].probability_correct = std::min(1.0, probabilities[i] / frames);
+        trials[i].frames = frames;
       }
       result_.trials.push_back(trials[i]);
       if (listener_.on_trial) listener_.on_trial(trials[i]);

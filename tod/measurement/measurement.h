@@ -43,9 +43,10 @@ struct MeasurementOptions {
   static constexpr int graded_draws = 32;   ///< of the observer's own noise, for the probabilities of one frame
   AnswerKind answers = AnswerKind::binary;  ///< graded: Trial::probability_correct too
   int frames_per_presentation = 1;          ///< successive good ones, over which graded answers are averaged; 1 or more
-  int frames_after_change = 2;              ///< exposures discarded after the target moved (frames in flight)
-  double nuc_interval_s = 0;                ///< correct the camera's non-uniformity this often; 0: never commanded
-  double nuc_wait_s = 1;                    ///< frames within this time after a correction are not measured
+  std::map<double, int> frames_at_contrast;  ///< by set contrast, where there is another number of them
+  int frames_after_change = 2;               ///< exposures discarded after the target moved (frames in flight)
+  double nuc_interval_s = 0;                 ///< correct the camera's non-uniformity this often; 0: never commanded
+  double nuc_wait_s = 1;                     ///< frames within this time after a correction are not measured
   /// Beyond it, what the target says it shows is a note beside what it was told; 0: what it says is not looked at.
   double max_readback_deviation_k = 0;
   double max_rejected_share = 0.05;  ///< beyond it, after 100 frames, the run ends with `integrity`

@@ -180,7 +180,7 @@ class MovingRun {
   Result<void> one_contrast(const MovingSetUp& set_up, double delta_t_k) {
     if (auto shown = present(set_up, delta_t_k, {0, 0}); !shown) return shown;
     const TargetState state = at(set_up, delta_t_k, {0, 0});
-    step_.compare_with_what_was_set(state, presented_);
+    if (const auto deviation = step_.read_back_deviation(state, presented_)) note(*deviation);
     const auto contrast = step_.contrast(set_up.plate, set_up.base, state, presented_, stop_);
     if (!contrast) return tl::unexpected(contrast.error());
     seen_ = *contrast;

@@ -117,14 +117,13 @@ Result<Registration> SetUpStep::find(const AveragedPicture& picture, const Targe
   return registration;
 }
 
-bool SetUpStep::compare_with_what_was_set(const TargetState& set, const PresentedTarget& said) const {
+std::optional<std::string> SetUpStep::read_back_deviation(const TargetState& set, const PresentedTarget& said) const {
   const double deviation_k = said.state.delta_t_k - set.delta_t_k;
   if (options_.max_readback_deviation_k <= 0 || std::abs(deviation_k) <= options_.max_readback_deviation_k)
-    return false;
-  note_(fmt::format("{}: the target says it shows {:.4f} K where {:.4f} K were set ({:+.4f} K, tolerance {:.4f} K)",
-                    plate_and_mounting(set), said.state.delta_t_k, set.delta_t_k, deviation_k,
-                    options_.max_readback_deviation_k));
-  return true;
+    return std::nullopt;
+  return fmt::format("{}: the target says it shows {:.4f} K where {:.4f} K were set ({:+.4f} K, tolerance {:.4f} K)",
+                     plate_and_mounting(set), said.state.delta_t_k, set.delta_t_k, deviation_k,
+                     options_.max_readback_deviation_k);
 }
 
 double SetUpStep::response(const std::string& plate) const {

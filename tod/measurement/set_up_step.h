@@ -51,8 +51,9 @@ class SetUpStep {
   /// polarity.
   [[nodiscard]] Result<Registration> find(const AveragedPicture& picture, const TargetPlate& mounted_plate,
                                           const TargetState& state) const;
-  /// A note where the target says that it shows another contrast than it was told. Whether it does.
-  bool compare_with_what_was_set(const TargetState& set, const PresentedTarget& said) const;
+  /// What to note where the target says that it shows another contrast than it was told.
+  [[nodiscard]] std::optional<std::string> read_back_deviation(const TargetState& set,
+                                                               const PresentedTarget& said) const;
   /// Takes the frames of the effective contrast. Errors: those of effective_contrast(), a contrast of the wrong sign.
   [[nodiscard]] Result<SeenContrast> contrast(const TargetPlate& mounted_plate, const Registration& registration,
                                               const TargetState& set, const PresentedTarget& said,

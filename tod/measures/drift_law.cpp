@@ -1,13 +1,11 @@
 #include "tod/measures/drift_law.h"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/fisher_f.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <functional>
 #include <optional>
 
+#include "acquisition/core/distributions.h"
 #include "tod/measures/shading.h"
 
 namespace todbench {
@@ -103,7 +101,7 @@ TimeConstant best_time_constant(const Regression& data) {
   best = 0.5 * (a + b);
   TimeConstant out{std::exp(best), {}, left(best)};
   const double freedom = data.freedom() - 1;
-  const double f95 = quantile(boost::math::fisher_f(1, freedom), 0.95);
+  const double f95 = quantile(distribution::FisherF(1, freedom), 0.95);
   const double bound = out.left * (1 + f95 / freedom);
   const auto side = [&](double end) -> std::optional<double> {
     if (left(end) <= bound) return std::nullopt;
@@ -129,7 +127,7 @@ TimeConstant choose_shape(DriftFit& fit, const Regression& data, std::optional<T
   const double along = direction_of(data.groups, std::nullopt).unit.dot(direction_of(data.groups, best.best_s).unit);
   const double by_search = data.series > 1 ? 2 * std::sqrt(data.series * std::max(0.0, 1 - along * along)) : 0;
   const double f = (straight - best.left) / variance - far * by_search;
-  fit.p_linear = f > 0 ? cdf(complement(boost::math::fisher_f(1, freedom), f)) : 1;
+  fit.p_linear = f > 0 ? cdf(complement(distribution::FisherF(1, freedom), f)) : 1;
   if (fit.p_linear >= drift_test_level) return best;
   constant = best;
   fit.shape = DriftShape::approach;
@@ -147,7 +145,8 @@ Regression regression_of(const GroupTimes& groups, const cv::Mat1d& series, doub
   return {groups, white * white.t(), freedom};
 }
 
-DriftFit level_fit(const GroupTimes& groups, const cv::Mat1d& levels) {
+/// `pattern_u_k`: standard deviation of the mean of what the pixels change each for itself.
+DriftFit level_fit(const GroupTimes& groups, const cv::Mat1d& levels, double pattern_u_k) {
   DriftFit fit;
   const std::vector<double>& time_s = groups.time_s;
   const Regression data = regression_of(groups, levels, 1);
@@ -180,8 +179,10 @@ DriftFit level_fit(const GroupTimes& groups, const cv::Mat1d& levels) {
   const cv::Mat1d gradient = design.row(last) - design.row(0);
   const cv::Mat1d of_change = gradient * covariance * gradient.t();
   fit.change_k = solution(1, 0) * (f(last, 0) - f(0, 0));
-  const double half =
-      quantile(boost::math::students_t(freedom), 0.975) * std::sqrt(std::max(0.0, variance * of_change(0, 0)));
+  constexpr double k95 = 1.96;
+  const double half = std::hypot(
+      quantile(distribution::StudentsT(freedom), 0.975) * std::sqrt(std::max(0.0, variance * of_change(0, 0))),
+      k95 * pattern_u_k);
   fit.change_ci95 = {.low = fit.change_k - half, .high = fit.change_k + half};
   for (int k = 0; k <= last; ++k) {
     fit.seen_k.push_back(levels(k, 0));
@@ -196,12 +197,12 @@ struct SignedVariance {
 
 /// Of (first - second) / divisor, both mean squares (Graybill and Wang 1980, without the cross term).
 SignedVariance difference_of(double first, double first_freedom, double second, double second_freedom, double divisor) {
-  const boost::math::chi_squared one(first_freedom), two(second_freedom);
+  const distribution::ChiSquared one(first_freedom), two(second_freedom);
   constexpr double each_side = 0.025;
-  const auto down = [&](const boost::math::chi_squared& chi, double n) {
+  const auto down = [&](const distribution::ChiSquared& chi, double n) {
     return 1 - n / quantile(complement(chi, each_side));
   };
-  const auto up = [&](const boost::math::chi_squared& chi, double n) { return n / quantile(chi, each_side) - 1; };
+  const auto up = [&](const distribution::ChiSquared& chi, double n) { return n / quantile(chi, each_side) - 1; };
   const double below = std::hypot(down(one, first_freedom) * first, up(two, second_freedom) * second);
   const double above = std::hypot(up(one, first_freedom) * first, down(two, second_freedom) * second);
   return {(first - second) / divisor, (first - second - below) / divisor, (first - second + above) / divisor};
@@ -302,8 +303,8 @@ Result<DriftLaw> drift_law(std::span<const DriftGroup> groups) {
     pattern.reshape(1, 1).copyTo(patterns.row(k));
   }
   const GroupTimes times = times_of(groups);
-  law.level = level_fit(times, levels);
   law.pattern = pattern_fit(times, patterns);
+  law.level = level_fit(times, levels, law.pattern.change_k / std::sqrt(patterns.cols));
   return law;
 }
 

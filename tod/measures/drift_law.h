@@ -44,7 +44,9 @@ struct DriftFit {
 /// Growth after a correction.
 struct DriftLaw {
   std::vector<double> time_s;  ///< of the groups
-  DriftFit level;              ///< mean of the picture
+  /// Mean of the picture. These pixels stand for those of the camera: what the mean of so many draws of the pattern is
+  /// beside 0 is in the interval.
+  DriftFit level;
   /// Standard deviation over the pixels of their change since the first group, without white noise, mean and shading of
   /// second order. Its change is never below 0; an interval that begins at 0 leaves open whether there is any.
   DriftFit pattern;

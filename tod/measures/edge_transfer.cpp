@@ -1,10 +1,11 @@
 #include "tod/measures/edge_transfer.h"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <complex>
 #include <numbers>
+
+#include "acquisition/core/distributions.h"
 
 namespace todbench {
 namespace {
@@ -106,7 +107,7 @@ EdgeTransfer edge_transfer(const EdgeGroups& groups, const EdgeWindow& window,
   const auto variance = [&](double sum, double square) {
     return std::max(0.0, (square - sum * sum / count) * (count - 1) / count);
   };
-  const double t = boost::math::quantile(boost::math::students_t(count - 1), 0.975);
+  const double t = distribution::quantile(distribution::StudentsT(count - 1), 0.975);
   EdgeTransfer found;
   for (std::size_t k = 0; k < whole.size(); ++k) {
     const double noise = variance(across[k], across_square[k]);

@@ -1,11 +1,11 @@
 #include "tod/measures/pixel_noise.h"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <numbers>
 
+#include "acquisition/core/distributions.h"
 #include "tod/measures/medians.h"
 
 namespace todbench {
@@ -63,9 +63,9 @@ Result<PixelNoise> pixel_noise(std::span<const cv::Mat1d> frames) {
   noise.mean_frame = frames[0] + sums.change / n;
   const double variance = cv::mean(about_mean)[0] / (n - 1);
   noise.sd_rms = std::sqrt(variance);
-  const boost::math::chi_squared squares(pixels * (n - 1));
-  noise.sd_rms_ci95 = {noise.sd_rms * std::sqrt(pixels * (n - 1) / boost::math::quantile(complement(squares, 0.025))),
-                       noise.sd_rms * std::sqrt(pixels * (n - 1) / boost::math::quantile(squares, 0.025))};
+  const distribution::ChiSquared squares(pixels * (n - 1));
+  noise.sd_rms_ci95 = {noise.sd_rms * std::sqrt(pixels * (n - 1) / distribution::quantile(complement(squares, 0.025))),
+                       noise.sd_rms * std::sqrt(pixels * (n - 1) / distribution::quantile(squares, 0.025))};
   noise.sd_rms_detrended = std::sqrt(std::max(0.0, cv::mean(about_mean - of_line)[0]) / (n - 2));
   noise.sd_frame_differences = std::sqrt(cv::mean(sums.steps)[0] / (n - 1) / 2);
   noise.mean_of_pixel_sd = cv::mean(noise.pixel_sd)[0];

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <vector>
 
+#include "acquisition/core/distributions.h"
 #include "acquisition/core/median.h"
 
 namespace todbench {
@@ -109,7 +109,7 @@ SubstitutedPixels substituted_pixels(std::span<const cv::Mat1f> frames, const cv
     const double freedom = effective_freedom(frames.size(), correlation);
     if (freedom < 2) continue;
     const double p = rules.chance / (static_cast<double>(constant.total()) * static_cast<double>(all.size()));
-    const double limit = std::min(quantile(boost::math::chi_squared(freedom), p) / freedom, quietest_live);
+    const double limit = std::min(quantile(distribution::ChiSquared(freedom), p) / freedom, quietest_live);
     // Rounding of the pixel and of the sources is left of a copy; half again for its scatter.
     const double rounding =
         rules.unit_per_count * rules.unit_per_count / 12 * (1 + 1.0 / static_cast<double>(sources.size()));

@@ -1,9 +1,10 @@
 #include "tod/measures/signal_transfer.h"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <string>
+
+#include "acquisition/core/distributions.h"
 
 namespace todbench {
 namespace {
@@ -77,7 +78,7 @@ Result<SignalTransfer> signal_transfer(std::span<const TemperatureStep> steps) {
     line.chi2 = squares / unit / unit;
     if (!std::isfinite(*line.chi2))
       return fail(ErrorCode::invalid_input, "the stated uncertainties are too small for the residuals");
-    line.p = cdf(complement(boost::math::chi_squared(line.degrees_of_freedom), *line.chi2));
+    line.p = cdf(complement(distribution::ChiSquared(line.degrees_of_freedom), *line.chi2));
   }
   if (!std::isfinite(line.slope) || !std::isfinite(line.offset) || !std::isfinite(line.slope_u) || line.slope == 0)
     return fail(ErrorCode::invalid_input, "the steps give no slope");

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/fisher_f.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numeric>
 #include <string>
 
+#include "acquisition/core/distributions.h"
 #include "acquisition/core/median.h"
 
 namespace todbench {
@@ -96,7 +95,7 @@ double best_log(std::span<const FittedStep> steps, LogRange range) {
 /// Where the sum of squares is not above the least by more than chance (F); nothing: not within the range.
 std::optional<double> profile_side(std::span<const FittedStep> steps, double best, double end) {
   const double freedom = freedom_of(steps), least = left_by(steps, std::exp(best));
-  const double bound = least * (1 + quantile(boost::math::fisher_f(1, freedom), 0.95) / freedom);
+  const double bound = least * (1 + quantile(distribution::FisherF(1, freedom), 0.95) / freedom);
   if (left_by(steps, std::exp(end)) <= bound) return std::nullopt;
   double inside = best, outside = end;
   while (std::abs(outside - inside) > 1e-6)
@@ -118,7 +117,7 @@ double jackknife_half(std::span<const FittedStep> steps, double best, LogRange r
   const double mean = std::accumulate(logs.begin(), logs.end(), 0.0) / n;
   double squares = 0;
   for (const double log : logs) squares += (log - mean) * (log - mean);
-  return quantile(boost::math::students_t(n - 1), 0.975) * std::sqrt((n - 1) / n * squares);
+  return quantile(distribution::StudentsT(n - 1), 0.975) * std::sqrt((n - 1) / n * squares);
 }
 
 Error not_told(std::string sentence) {
@@ -143,7 +142,7 @@ Result<StepTimeConstant> time_constant_of(std::span<const FittedStep> steps, con
   for (const FittedStep& step : steps) still += step_line(step, 1e-3 * options.frame_s).left;
   const auto more = static_cast<double>(steps.size()) + 1;
   const double f = (still - left) / more / (left / freedom);
-  if (!(f > 0) || cdf(complement(boost::math::fisher_f(more, freedom), f)) > detected_level)
+  if (!(f > 0) || cdf(complement(distribution::FisherF(more, freedom), f)) > detected_level)
     return tl::unexpected(not_told(
         fmt::format("nothing of a step is left {}: the camera's time constant is too short for frames of {:.3g} ms",
                     options.settling_s > 0 ? "after the settling time of the target" : "after its first frame",
@@ -188,7 +187,7 @@ double p_of_first_order(std::span<const FittedStep> steps, double time_constant_
   if (!(across > 1e-9 * ss) || freedom < 1) return 1;
   const double explained = along * along / across, left = rr - rt * rt / tt - explained;
   if (!(left > 0)) return 1;
-  return cdf(complement(boost::math::fisher_f(1, freedom), explained / (left / freedom)));
+  return cdf(complement(distribution::FisherF(1, freedom), explained / (left / freedom)));
 }
 
 double mean_of(std::span<const double> values) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "tod/measures/medians.h"
@@ -83,6 +84,21 @@ cv::Mat1b usable_pixels(std::span<const TimedPicture> pictures, const std::map<i
 }
 
 }  // namespace
+
+bool level_stays_changed(std::span<const double> before, std::span<const double> behind) {
+  constexpr std::size_t least = 5;
+  constexpr double standard_errors = 6;
+  if (before.empty() || behind.empty() || before.size() + behind.size() < least) return true;
+  const auto mean_of = [](std::span<const double> levels) {
+    return std::accumulate(levels.begin(), levels.end(), 0.0) / static_cast<double>(levels.size());
+  };
+  const double low = mean_of(before), high = mean_of(behind);
+  double squares = 0;
+  for (const double level : before) squares += (level - low) * (level - low);
+  for (const double level : behind) squares += (level - high) * (level - high);
+  const auto n = static_cast<double>(before.size()), m = static_cast<double>(behind.size());
+  return std::abs(high - low) > standard_errors * std::sqrt(squares / (n + m - 2) * (1 / n + 1 / m));
+}
 
 double first_order_correlation(double ratio, int lag) {
   const auto sum = [&](double rho) {

@@ -44,6 +44,11 @@ inline constexpr int longest_lag = 64;
 /// most 128 pairs, evenly spread over the sequence, are compared.
 [[nodiscard]] Result<TemporalNoise> temporal_noise(std::span<const TimedPicture> pictures);
 
+/// Whether whole frames are at another level behind a jump, as behind a correction, and not only up and down: the means
+/// of the levels of successive frames before and behind it differ by more than six of their standard errors. Of fewer
+/// than five frames in all nobody knows: true.
+[[nodiscard]] bool level_stays_changed(std::span<const double> before, std::span<const double> behind);
+
 /// The lag-1 correlation of noise of first order (Box and Jenkins 1970, 3.2.3) whose squared structure function at
 /// `lag`
 /// >= 2 is `ratio` times that at lag 1: the root of 1 + rho + ... + rho^(lag - 1) = ratio, in [-1, 1]. Neither a mean

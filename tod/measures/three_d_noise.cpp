@@ -1,10 +1,10 @@
 #include "tod/measures/three_d_noise.h"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <numeric>
+
+#include "acquisition/core/distributions.h"
 
 namespace todbench {
 namespace {
@@ -64,9 +64,9 @@ struct Reach {
 constexpr double each_side = 0.025;
 
 Reach reach_of(double degrees_of_freedom) {
-  const boost::math::chi_squared squares(degrees_of_freedom);
-  return {1 - degrees_of_freedom / boost::math::quantile(complement(squares, each_side)),
-          degrees_of_freedom / boost::math::quantile(squares, each_side) - 1};
+  const distribution::ChiSquared squares(degrees_of_freedom);
+  return {1 - degrees_of_freedom / distribution::quantile(complement(squares, each_side)),
+          degrees_of_freedom / distribution::quantile(squares, each_side) - 1};
 }
 
 /// The additional term of a difference of two mean squares that makes the limit exact where one of them vanishes (Ting
@@ -165,12 +165,12 @@ ComponentEstimate estimate_of(const NoiseTable& table, NoiseComponent component)
   }
   if (terms.size() == 2) {
     const double plus = freedom_of(table, terms[0].of), minus = freedom_of(table, terms[1].of);
-    const boost::math::fisher_f ratio(plus, minus);
+    const distribution::FisherF ratio(plus, minus);
     const Reach of_plus = reach_of(plus), of_minus = reach_of(minus);
     const double product =
         -terms[0].factor * terms[1].factor * table.mean_squares[terms[0].of] * table.mean_squares[terms[1].of];
-    below += cross_term(boost::math::quantile(complement(ratio, each_side)), of_plus.down, of_minus.up) * product;
-    above += cross_term(boost::math::quantile(ratio, each_side), of_plus.up, of_minus.down) * product;
+    below += cross_term(distribution::quantile(complement(ratio, each_side)), of_plus.down, of_minus.up) * product;
+    above += cross_term(distribution::quantile(ratio, each_side), of_plus.up, of_minus.down) * product;
     const double absent = -terms[1].factor * table.mean_squares[terms[1].of];  // all that there is without it
     if (absent > 0)
       estimate.p_absent = cdf(complement(ratio, terms[0].factor * table.mean_squares[terms[0].of] / absent));
@@ -311,7 +311,7 @@ std::optional<int> NoiseCube::abrupt_change() const {
   if (!(*middle > 0)) return std::nullopt;
   constexpr double least_ratio = 1.69, by_chance = 1e-9;  // 1.3 times the difference
   const double freedom = (first_.rows - 1.0) * (first_.cols - 1.0);
-  const boost::math::fisher_f ratios(freedom, freedom);
+  const distribution::FisherF ratios(freedom, freedom);
   for (std::size_t k = 0; k < steps_.size(); ++k) {
     const double ratio = steps_[k] / *middle;
     if (ratio > least_ratio && cdf(complement(ratios, ratio)) < by_chance / frames_) return static_cast<int>(k) + 1;

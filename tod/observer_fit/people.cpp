@@ -1,9 +1,9 @@
 #include "tod/observer_fit/people.h"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+
+#include "acquisition/core/distributions.h"
 
 namespace todbench {
 namespace {
@@ -83,23 +83,23 @@ PeopleSpread spread_over(std::span<const PersonEstimate> estimates) {
   out.persons = static_cast<int>(estimates.size());
   if (estimates.size() < 2) return out;
   const double degrees = out.persons - 1;
-  const boost::math::chi_squared chi2(degrees);
+  const distribution::ChiSquared chi2(degrees);
   const double between = most_likely_between(estimates);
   const Weighted at = weighted(estimates, between);
   out.mean = at.mean;
   out.between_sd = std::sqrt(between);
   // Not below the interval of a known variance: people who agree by chance do not make a mean exact.
   const double se = std::sqrt(std::max(1.0, at.q / degrees) / at.weight);
-  const double half = boost::math::quantile(boost::math::students_t(degrees), 0.975) * se;
+  const double half = distribution::quantile(distribution::StudentsT(degrees), 0.975) * se;
   out.mean_ci95 = {at.mean - half, at.mean + half};
   const double most = most_between(estimates);
   const auto root = [](const std::optional<double>& v) { return v ? std::optional(std::sqrt(*v)) : std::nullopt; };
   const auto above = [&](double quantile) {
     return [&estimates, quantile](double variance) { return weighted(estimates, variance).q - quantile; };
   };
-  out.between_sd_ci95 = {root(falls_to_zero(above(boost::math::quantile(chi2, 0.975)), most)),
-                         root(falls_to_zero(above(boost::math::quantile(chi2, 0.025)), most))};
-  out.heterogeneity_p = boost::math::cdf(boost::math::complement(chi2, weighted(estimates, 0).q));
+  out.between_sd_ci95 = {root(falls_to_zero(above(distribution::quantile(chi2, 0.975)), most)),
+                         root(falls_to_zero(above(distribution::quantile(chi2, 0.025)), most))};
+  out.heterogeneity_p = distribution::cdf(distribution::complement(chi2, weighted(estimates, 0).q));
   return out;
 }
 

@@ -1,14 +1,13 @@
 #include "tod/psychometric/psychometric_clusters.h"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <set>
 #include <vector>
 
+#include "acquisition/core/distributions.h"
 #include "tod/psychometric/clustered_variance.h"
 
 namespace todbench {
@@ -152,11 +151,11 @@ double confidence_drop(const ClusterEffect& effect, double confidence) {
   const double tail = (1 - confidence) / 2;
   double z = 0;
   if (effect.clusters == 0) {
-    z = boost::math::quantile(boost::math::complement(boost::math::normal(), tail));
+    z = distribution::quantile(distribution::complement(distribution::Normal(), tail));
   } else if (effect.clusters < 2) {
     return std::numeric_limits<double>::infinity();
   } else {
-    z = boost::math::quantile(boost::math::complement(boost::math::students_t(effect.clusters - 1), tail));
+    z = distribution::quantile(distribution::complement(distribution::StudentsT(effect.clusters - 1), tail));
   }
   return effect.inflation * z * z;
 }

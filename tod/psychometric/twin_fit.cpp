@@ -1,12 +1,12 @@
 #include <Eigen/Dense>
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "acquisition/core/distributions.h"
 #include "tod/psychometric/clustered_variance.h"
 #include "tod/psychometric/psychometric_model.h"
 #include "tod/psychometric/twin_mean.h"
@@ -158,7 +158,7 @@ ClusteredVariance variance_of(const TwinShape& shape, const TwinMaximum& at, std
 }
 
 double t_quantile(double tail, double degrees_of_freedom) {
-  return boost::math::quantile(boost::math::complement(boost::math::students_t(degrees_of_freedom), tail));
+  return distribution::quantile(distribution::complement(distribution::StudentsT(degrees_of_freedom), tail));
 }
 
 /// Probability at which a further parameter is taken in, or is a finding.

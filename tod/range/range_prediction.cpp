@@ -280,7 +280,8 @@ ThresholdSelection thresholds_of(const TodCurve& curve, double target_delta_t_k)
     selection.notes.emplace_back("the TOD curve is of the opposite polarity: taken to be the same for both");
   for (const auto& point : curve.points) {
     if (any && !same_sign(point)) continue;
-    if (!point.fit.threshold || point.fit.verdict == FitVerdict::flat_or_decreasing) {
+    if (!point.fit.threshold || point.fit.verdict == FitVerdict::flat_or_decreasing ||
+        point.fit.verdict == FitVerdict::underdetermined) {
       selection.notes.push_back(fmt::format("the point at {:g} K was left out: it has no threshold", point.delta_t_k));
       continue;
     }

@@ -1,10 +1,10 @@
 #include "tod/registration/plate_mapping.h"
 
-#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 #include <vector>
 
+#include "acquisition/core/distributions.h"
 #include "tod/plate/plate_outlines.h"
 #include "tod/registration/layout_matching.h"
 
@@ -60,7 +60,7 @@ bool demanded(double smaller_sum, int smaller_parameters, double larger_sum, int
   const int more = larger_parameters - smaller_parameters;
   const int freedom = equations - larger_parameters;
   const double f = (smaller_sum - larger_sum) / more / (std::max(larger_sum, exact) / freedom);
-  return f > boost::math::quantile(boost::math::complement(boost::math::fisher_f(more, freedom), 0.01));
+  return f > distribution::quantile(distribution::complement(distribution::FisherF(more, freedom), 0.01));
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 #include "tod/schedule/adaptive_schedule.h"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cassert>
 #include <cmath>
 
+#include "acquisition/core/distributions.h"
 #include "tod/psychometric/tod_curve.h"
 #include "tod/psychometric/twin_shape.h"
 
@@ -37,9 +37,9 @@ bool contradicted(const PsychometricFit& fit) {
   // How graded answers scatter is their finding.
   if (fit.dispersion) return false;
   if (!fit.deviance || fit.degrees_of_freedom < 1 || *fit.deviance <= 0) return false;
-  const boost::math::chi_squared law(fit.degrees_of_freedom);
+  const distribution::ChiSquared law(fit.degrees_of_freedom);
   // Deviance over the clustered variance: trials of one presentation are not independent.
-  return boost::math::cdf(boost::math::complement(law, *fit.deviance / fit.variance_inflation)) < contradiction;
+  return distribution::cdf(distribution::complement(law, *fit.deviance / fit.variance_inflation)) < contradiction;
 }
 
 }  // namespace
