@@ -249,19 +249,20 @@ Result<IdentificationEffort> planned_effort(const IdentificationTask& task) {
   const auto draws = static_cast<double>(draws_of(task));
   const double places =
       std::pow(2 * std::round(task.observer.search_range_samples / task.observer.search_step_samples) + 1, 2);
-  const double nodes = std::min(81.0, places);
   IdentificationEffort out;
   out.decisions = draws * views * static_cast<double>(task.ranges.size());
   for (const auto& range : task.ranges) {
     const double reach = reach_m * 1e3 / (range.range_m * spec.ifov_mrad());  // pitches
     const double side = 2 * n * std::ceil(1.1 * reach + task.observer.window_margin_pitch);
     const double samples = side * side;
-    out.largest_bytes = std::max(out.largest_bytes, samples * nodes * views * sizeof(float));
+    // Of the templates of one view at all places: 30 of a point, about half of the places of a large target.
+    const double rank = std::min({30 + 8 * reach * n, places / 2 + 1, samples});
+    out.largest_bytes = std::max(out.largest_bytes, samples * rank * views * sizeof(float));
     const double band = task.knowledge == TemplateKnowledge::ideal ? 1.2 / task.observer.blur_sigma_samples : 3.0 / n;
     const double frequencies = 2 * std::pow(band * (0.5 * side + reach * n + 6), 2);
     // Rates as measured, per second.
-    out.processor_s += edges * frequencies / spectrum_rate + views * nodes * nodes * samples / product_rate +
-                       (16 * views + 2 * draws) * nodes * views * samples / projection_rate +
+    out.processor_s += edges * frequencies / spectrum_rate + views * rank * places * samples / product_rate +
+                       (16 * views + 2 * draws) * rank * views * (samples + places) / projection_rate +
                        draws * views * views * places / score_rate;
   }
   return out;

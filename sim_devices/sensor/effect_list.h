@@ -11,6 +11,7 @@
   EFFECT(diffraction)            \
   EFFECT(spectral_band)          \
   EFFECT(aberration)             \
+  EFFECT(distortion)             \
   EFFECT(detector)               \
   EFFECT(motion)                 \
   EFFECT(exposure)               \

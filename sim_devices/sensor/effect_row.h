@@ -55,6 +55,8 @@ struct Transfer {
 struct Readout {
   cv::Point2d (*pitches_per_row)(const SensorSpec& spec, SceneMotion motion);
 };
+/// Moves the places of all that is seen, whatever moves (effect_distortion.h).
+struct Lens {};
 /// Says how often or at which wavelengths others act, through the parameters that they read.
 struct Parameter {};
 
@@ -81,8 +83,8 @@ struct Counts {};
 
 }  // namespace stage
 
-using EffectStage = std::variant<stage::Optics, stage::Footprint, stage::Transfer, stage::Readout, stage::Parameter,
-                                 stage::Noise, stage::Picture, stage::Counts>;
+using EffectStage = std::variant<stage::Optics, stage::Footprint, stage::Transfer, stage::Readout, stage::Lens,
+                                 stage::Parameter, stage::Noise, stage::Picture, stage::Counts>;
 
 /// How far a stage of image formation spreads the picture of a point, in pitches.
 struct Spread {

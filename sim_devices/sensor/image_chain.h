@@ -29,6 +29,10 @@ class ImageChain {
   /// The degraded image of a shape of contrast 1 near the origin, which is in the row that samples when the picture is
   /// said to be taken.
   [[nodiscard]] PolygonImage image(const Polygon& shape_pitch) const;
+  /// Whether the images of a shape turned by quarters are `image` of the shape turned so.
+  [[nodiscard]] bool turns_alike(const PolygonImage& image) const {
+    return readout_slope_ == cv::Point2d(0, 0) && image.turns_alike();
+  }
 
   /// Samples for an infinite plane, by Richardson extrapolation from periods P and 2P (the wrapped signal falls as
   /// P^-3), with a bound on the remaining error estimated from their difference. Of a shape that reaches far beyond the

@@ -6,9 +6,11 @@
 #include <map>
 #include <mutex>
 #include <numbers>
+#include <numeric>
 #include <tuple>
 #include <vector>
 
+#include "sim_devices/sensor/effect_distortion.h"
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/effect_readout.h"
 #include "sim_devices/sensor/effect_row.h"
@@ -55,7 +57,7 @@ struct SensorModel::State {
   std::vector<PictureStage> picture_stages;
   mutable std::mutex mutex;
   mutable std::deque<std::pair<PlateScene, std::shared_ptr<const cv::Mat1f>>> scenes;
-  mutable std::map<ShapeKey, std::shared_ptr<const PolygonImage>> shapes;
+  mutable std::map<ShapeKey, std::unique_ptr<const PolygonImage>> shapes;
   mutable std::map<std::pair<double, double>, std::unique_ptr<const ImageChain>> chains;    ///< by motion
   mutable std::map<std::pair<double, double>, std::unique_ptr<const SceneImager>> imagers;  ///< by motion
 
@@ -92,14 +94,17 @@ struct SensorModel::State {
     return *slot;
   }
 
-  [[nodiscard]] std::shared_ptr<const PolygonImage> shape(const ShapeKey& key) const {
-    auto& slot = shapes[key];
-    if (slot == nullptr) {
-      const auto& [size, apex, rotation, motion_x, motion_y] = key;
-      slot = std::make_shared<const PolygonImage>(
-          chain({motion_x, motion_y}).image(turned(triangle(size, static_cast<Apex>(apex)), rotation)));
-    }
-    return slot;
+  /// The four apexes share one spectrum where they can: what costs in a new scene is to read spectra.
+  [[nodiscard]] PolygonImage shape(double size_pitch, Apex apex, double rotation_deg, SceneMotion motion) const {
+    const ImageChain& own_chain = chain(motion);
+    const auto image_of = [&](Apex shown) -> const PolygonImage& {
+      auto& slot = shapes[{size_pitch, static_cast<int>(shown), rotation_deg, motion.x_mrad_s, motion.y_mrad_s}];
+      if (slot == nullptr)
+        slot = std::make_unique<const PolygonImage>(own_chain.image(turned(triangle(size_pitch, shown), rotation_deg)));
+      return *slot;
+    };
+    const PolygonImage& upright = image_of(Apex::up);
+    return own_chain.turns_alike(upright) ? upright.turned(static_cast<int>(apex)) : image_of(apex);
   }
 
   /// Picture `index` before quantisation.
@@ -107,8 +112,22 @@ struct SensorModel::State {
 
   /// Where the samples that see a place of the plate are.
   [[nodiscard]] cv::Point2d place_of(const PlateScene& scene, cv::Point2d plate_mm, cv::Size size) const {
-    const cv::Point2d place = scene_pixel(scene, plate_mm, spec.ifov_mrad() / spec.samples_per_pitch(), size);
+    const cv::Point2d place = as_lens_shows(projected(scene, plate_mm, size), spec, size);
     return as_read_out(place, readout_slope(spec, scene.motion), 0.5 * (size.height - 1));
+  }
+  /// The same through a lens without distortion, of an instant.
+  [[nodiscard]] cv::Point2d projected(const PlateScene& scene, cv::Point2d plate_mm, cv::Size size) const {
+    return scene_pixel(scene, plate_mm, spec.ifov_mrad() / spec.samples_per_pitch(), size);
+  }
+
+  /// A triangle as the lens bends it, about where its middle is seen.
+  [[nodiscard]] PolygonImage bent(const PlateScene& scene, const PlateTriangle& t, cv::Size size) const {
+    const cv::Point2d middle = as_lens_shows(projected(scene, t.position_mm, size), spec, size);
+    Polygon outline = triangle(t.size_mm, t.apex, t.position_mm);
+    for (auto& corner : outline) corner = projected(scene, corner, size);
+    outline = as_lens_shows(outline, spec, size);
+    for (auto& corner : outline) corner = (corner - middle) / spec.samples_per_pitch();
+    return chain(scene.motion).image(outline);
   }
 
   /// Rectangles may be large against the picture: not each by itself, but the whole frame at once.
@@ -118,7 +137,10 @@ struct SensorModel::State {
     std::vector<PaintedPolygon> painted;
     for (const PlateRectangle& rectangle : cut_outs) {
       Polygon outline = outline_mm(rectangle);
-      for (auto& corner : outline) corner = place_of(scene, corner, picture.size());
+      for (auto& corner : outline) corner = projected(scene, corner, picture.size());
+      if (distorts(spec)) outline = as_lens_shows(outline, spec, picture.size());
+      for (auto& corner : outline)
+        corner = as_read_out(corner, readout_slope(spec, scene.motion), 0.5 * (picture.rows - 1));
       painted.push_back({std::move(outline), 1});
     }
     auto& imager = imagers[{scene.motion.x_mrad_s, scene.motion.y_mrad_s}];
@@ -129,19 +151,28 @@ struct SensorModel::State {
   }
 
   [[nodiscard]] cv::Mat1f draw(const PlateScene& scene, cv::Size size) const {
-    cv::Mat1f picture(size, 0.0F);
     const double sample_pitch = 1.0 / spec.samples_per_pitch();
-    for (const auto& t : scene.plate.triangles) {
+    const std::vector<PlateTriangle>& triangles = scene.plate.triangles;
+    // Sampled size by size, so that the spectrum that they share is in the cache; added in the order of the plate.
+    std::vector<std::size_t> order(triangles.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return triangles[a].size_mm < triangles[b].size_mm; });
+    std::vector<std::pair<cv::Mat1d, cv::Point>> samples(triangles.size());
+    for (const std::size_t i : order) {
+      const PlateTriangle& t = triangles[i];
       const cv::Point2d centre = place_of(scene, t.position_mm, size);
       const double size_pitch = t.size_mm / scene.distance_m / spec.ifov_mrad();
-      const auto image = shape(
-          {size_pitch, static_cast<int>(t.apex), scene.rotation_deg, scene.motion.x_mrad_s, scene.motion.y_mrad_s});
-      const int n = image->lattice().period * spec.samples_per_pitch();
+      const PolygonImage image =
+          distorts(spec) ? bent(scene, t, size) : shape(size_pitch, t.apex, scene.rotation_deg, scene.motion);
+      const int n = image.lattice().period * spec.samples_per_pitch();
       const cv::Point origin(static_cast<int>(std::lround(centre.x)) - n / 2,
                              static_cast<int>(std::lround(centre.y)) - n / 2);
       const cv::Point2d first((origin.x - centre.x) * sample_pitch, (origin.y - centre.y) * sample_pitch);
-      add_clipped(picture, image->sample(first, sample_pitch, {n, n}), origin);
+      samples[i] = {image.sample(first, sample_pitch, {n, n}), origin};
     }
+    cv::Mat1f picture(size, 0.0F);
+    for (const auto& [values, origin] : samples) add_clipped(picture, values, origin);
     draw_rectangles(scene, picture);
     return picture;
   }

@@ -32,6 +32,8 @@ struct SensorSpec {
   double turbulence_path_m = 1000;        ///< along which it acts
   double optics_transmission = 0.8;       ///< normalised out of the signal: NETD is referred to the scene
   double aberration_sigma_pitch = 0;  ///< Gaussian blur of the lens beyond diffraction, per axis, in detector pitches
+  double distortion_percent = 0;      ///< radial, at the corner of the picture: third power; positive: pincushion
+  double distortion_r4_percent = 0;   ///< fifth power
   double netd_k = 0.07;               ///< temporal noise per sample
   double noise_correlation = 0;       ///< of a sample's temporal noise in successive exposures
   double fixed_pattern_k = 0;         ///< sd of the fixed offset per detector

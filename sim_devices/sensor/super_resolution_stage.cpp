@@ -20,9 +20,9 @@ class SuperResolutionStage final : public ChainStage {
     if (std::ssize(frames_) < options_.frames) return repeated(picture);
     auto shifts =
         options_.shifts == FrameShifts::scan ? Result<std::vector<cv::Point2d>>(scanned()) : frame_shifts(frames_);
-    if (!shifts) return fail(ErrorCode::integrity, "super-resolution: " + shifts.error().message);
+    if (!shifts) return fail(ErrorCode::not_identifiable, "super-resolution: " + shifts.error().message);
     auto finer = super_resolve(frames_, *shifts, options_.factor);
-    if (!finer) return fail(ErrorCode::integrity, "super-resolution: " + finer.error().message);
+    if (!finer) return fail(ErrorCode::not_identifiable, "super-resolution: " + finer.error().message);
     cv::Point2d mean(0, 0);
     for (const cv::Point2d& shift : *shifts) mean += shift / static_cast<double>(shifts->size());
     first_px_ = finer->first_px + mean;

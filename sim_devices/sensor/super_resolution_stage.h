@@ -24,8 +24,8 @@ struct SuperResolutionStageOptions {
 [[nodiscard]] cv::Point2d dither_px(int n, std::uint64_t index);
 
 /// super_resolve() of the last frames; before there are as many, each sample is a pixel repeated. A place of the answer
-/// is that in the mean of the frames that it was made of. Errors of process(): `integrity` with what super_resolve()
-/// and frame_shifts() say.
+/// is that in the mean of the frames that it was made of. Errors of process(): `not_identifiable` with what
+/// super_resolve() and frame_shifts() say; the next picture may do.
 [[nodiscard]] std::unique_ptr<ChainStage> super_resolution_stage(const SuperResolutionStageOptions& options);
 
 }  // namespace todbench
