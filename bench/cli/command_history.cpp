@@ -64,7 +64,14 @@ Json crossing_json(const Crossing& found) {
 Json chart_json(const HistorySeries& series, const HistoryArguments& a) {
   const ChartDesign design;
   Json json{{"unit", unit_json(series.unit)}, {"measure", series.measure}, {"condition", series.condition},
-            {"unit_text", series.unit_text},  {"scale", series.scale},     {"values", Json::array()}};
+            {"unit_text", series.unit_text},  {"scale", series.scale},     {"values", Json::array()},
+            {"earlier", Json::array()}};
+  for (const EarlierValue& earlier : series.earlier) {
+    json["earlier"].push_back({{"started_utc", earlier.started_utc},
+                               {"value", json_number(shown_value(series, earlier.value.value))},
+                               {"u", json_number(earlier.value.u)},
+                               {"ended_by", earlier.ended_by}});
+  }
   const auto chart = control_chart(series.values, design);
   for (std::size_t i = 0; i < series.values.size(); ++i) {
     Json value{{"started_utc", series.started_utc[i]},
@@ -172,7 +179,7 @@ int run_show(Console& console, const HistoryArguments& a) {
   const auto index = HistoryIndex::open(a.index);
   if (!index) return report_error(console, index.error());
   if (a.serial.empty()) return show_units(console, *index);
-  const auto all = history_series(*index, a.serial, a.measure);
+  const auto all = history_series(*index, a.serial, a.measure, WithoutChart::listed);
   if (!all) return report_error(console, all.error());
   const auto events = index->events(a.serial);
   if (!events) return report_error(console, events.error());
@@ -189,12 +196,15 @@ int run_show(Console& console, const HistoryArguments& a) {
   }
   std::vector<TableRow> rows;
   for (const HistorySeries& series : *all) {
-    for (std::size_t i = 0; i < series.values.size(); ++i) {
-      rows.push_back({series.measure + (series.condition.empty() ? "" : " " + series.condition), series.started_utc[i],
-                      fixed(shown_value(series, series.values[i].value), 4), fixed(series.values[i].u, 4)});
-    }
+    const auto add = [&](const std::string& started_utc, const ChartValue& value, const std::string& mark) {
+      rows.push_back({series.measure + (series.condition.empty() ? "" : " " + series.condition), started_utc,
+                      fixed(shown_value(series, value.value), 4), fixed(value.u, 4), mark});
+    };
+    for (const EarlierValue& earlier : series.earlier)
+      add(earlier.started_utc, earlier.value, "before " + earlier.ended_by);
+    for (std::size_t i = 0; i < series.values.size(); ++i) add(series.started_utc[i], series.values[i], "");
   }
-  console.table({"measure", "started", "value", "u"}, rows);
+  console.table({"measure", "started", "value", "u", "not in the chart"}, rows);
   return 0;
 }
 

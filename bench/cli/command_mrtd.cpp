@@ -1,11 +1,13 @@
 #include "bench/cli/command_mrtd.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <memory>
 
+#include "bench/cli/chain_options.h"
 #include "bench/judgement/verdict.h"
-#include "bench/plan/descriptions.h"
 #include "bench/report/html.h"
 #include "bench/report/svg.h"
 #include "bench/studies/mrtd_study.h"
@@ -15,25 +17,26 @@ namespace todbench {
 namespace {
 
 struct MrtdArguments {
-  std::string sensor, observer = "hvs-1", accuracy = "normal", criterion = "four-or-five", axis = "both", page, svg;
+  ChainOptions chain;
+  std::string criterion = "four-or-five", axis = "both", page, svg;
   std::vector<double> frequencies_per_mrad, of_nyquist{0.2, 0.4, 0.6, 0.8, 0.9, 1.0, 1.2};
-  int draws = 2000, microscan = 0;
+  int draws = 2000;
+  double range_m = 0;
   FormulaConditions formula{};
 };
 
 Result<MrtdStudyTask> mrtd_task(const MrtdArguments& a, const Program& program) {
   MrtdStudyTask task;
-  auto sensor = load_sensor(a.sensor);
-  if (!sensor) return tl::unexpected(sensor.error());
-  if (a.microscan > 0) sensor->microscan = a.microscan;
-  auto observer = load_observer(a.observer);
-  if (!observer) return tl::unexpected(observer.error());
-  const auto accuracy = Accuracy::named(a.accuracy);
-  if (!accuracy) return tl::unexpected(accuracy.error());
-  task.trial.sensor = *std::move(sensor);
+  auto chain = a.chain.load();
+  if (!chain) return tl::unexpected(chain.error());
+  if (a.range_m == 0 && chain->air.name != "clear")
+    return fail(ErrorCode::invalid_input, "--atmosphere acts over a path: --range-m is missing");
+  task.range_m = a.range_m;
+  task.air = std::move(chain->air);
+  task.trial.sensor = std::move(chain->sensor);
   task.trial.plan = full_plan(task.trial.sensor, {}, {});
-  task.trial.observer = *std::move(observer);
-  task.trial.accuracy = *accuracy;
+  task.trial.observer = std::move(chain->observer);
+  task.trial.accuracy = chain->accuracy;
   for (const BarCriterion known : {BarCriterion::four_or_five, BarCriterion::bars_resolved, BarCriterion::detection}) {
     if (a.criterion == to_string(known)) task.trial.criterion = known;
   }
@@ -89,6 +92,9 @@ Json mrtd_json(const MrtdStudyTask& task, const MrtdStudy& study) {
           {"criterion", std::string(to_string(task.trial.criterion))},
           {"draws", task.trial.draws},
           {"nyquist_per_mrad", json_number(study.nyquist_per_mrad)},
+          {"range_m", task.range_m > 0 ? json_number(task.range_m) : Json()},
+          {"transmittance", json_number(study.transmittance)},
+          {"atmosphere", {{"name", task.air.name}, {"source", task.air.source}}},
           {"formula",
            {{"snr_threshold", task.formula.snr_threshold}, {"eye_integration_s", task.formula.eye_integration_s}}},
           {"axes", axes}};
@@ -97,6 +103,9 @@ Json mrtd_json(const MrtdStudyTask& task, const MrtdStudy& study) {
 void print_mrtd(Console& console, const MrtdStudyTask& task, const MrtdStudy& study) {
   console.text("virtual MRTD of " + task.trial.sensor.name + ", observer " + task.trial.observer.name + ", " +
                std::string(to_string(task.trial.criterion)));
+  if (task.range_m > 0) {
+    console.text(fmt::format("contrasts of bars at {:g} m; transmittance {:.4f}", task.range_m, study.transmittance));
+  }
   for (const auto& curve : study.curves) {
     std::vector<TableRow> rows;
     for (const auto& p : curve.points) {
@@ -115,6 +124,7 @@ void print_mrtd(Console& console, const MrtdStudyTask& task, const MrtdStudy& st
 int run_mrtd(Console& console, const MrtdArguments& a, const Program& program) {
   const auto task = mrtd_task(a, program);
   if (!task) return report_error(console, task.error());
+  for (const auto& sentence : task->air.notes) console.note(sentence);
   console.phase("judging bars");
   const auto study = study_mrtd(*task);
   console.end_progress();
@@ -149,12 +159,10 @@ void add_mrtd_command(CLI::App& app, Program& program) {
   auto* command =
       app.add_subcommand("mrtd", "four bars before a simulated camera, judged by the observer of the triangles");
   auto a = std::make_shared<MrtdArguments>();
-  command->add_option("--sensor", a->sensor, "name or file")->required();
-  command->add_option("--microscan", a->microscan, "in place of the sensor's")->check(whole_number(1, 4));
-  command->add_option("--observer", a->observer, "name or file")->capture_default_str();
-  command->add_option("--accuracy", a->accuracy, "draft, normal or reference")
-      ->check(CLI::IsMember({"draft", "normal", "reference"}))
-      ->capture_default_str();
+  a->chain.add_sensor_to(*command);
+  a->chain.add_to(*command, "name or file");
+  command->add_option("--range-m", a->range_m, "from the camera to the bars; default: no air between them")
+      ->check(number_in(1e-3, 1e6));
   command
       ->add_option("--criterion", a->criterion,
                    "four-or-five (two intervals, free of bias), bars-resolved (yes or no), or detection (no MRTD)")

@@ -1,9 +1,13 @@
 // todbench noise
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <span>
+#include <utility>
 
 #include "acquisition/core/camera_id.h"
 #include "acquisition/core/correction_watch.h"
@@ -39,8 +43,8 @@ constexpr double white_enough = 0.1;
 struct Frames {
   std::vector<TimedPicture> pictures;
   bool kelvin = false;
-  double unit_per_count = 1;   ///< 0: not known
-  double saturated_share = 0;  ///< of all pixels, at either end of the counts
+  double unit_per_count = 1;  ///< 0: not known
+  cv::Mat1d saturated;        ///< frames in which a pixel was at either end of the counts
 };
 
 /// In kelvin where the recording says how, else in counts.
@@ -57,7 +61,8 @@ Result<cv::Mat1f> picture_of(const Frame& frame, bool in_kelvin) {
   return picture;
 }
 
-/// Tells new exposures from repeated ones, and the segments between corrections of the camera from each other.
+/// Tells new exposures from repeated ones, and the segments between corrections of the camera from each other. Whether
+/// a jump of the level is a correction is told by the frames behind it.
 class Segments {
  public:
   /// The segment of a frame; nothing for one that is no new exposure or was made during a correction.
@@ -66,26 +71,49 @@ class Segments {
         !last_.empty() && last_.size() == frame.counts.size() && cv::norm(last_, frame.counts, cv::NORM_INF) == 0;
     const auto seen = repeated ? watch_.see_frozen() : watch_.see(frame);
     last_ = frame.counts;
-    if (seen || frame.correction == CorrectionState::running) ++segment_;
+    jumped_ = jumped_ || seen == CorrectionSign::level_jump;
+    if ((seen && seen != CorrectionSign::level_jump) || frame.correction == CorrectionState::running) ++segment_;
     const bool usable = !repeated && frame.correction != CorrectionState::running && seen != CorrectionSign::shutter;
     return usable ? std::optional(segment_) : std::nullopt;
   }
+  /// Whether the level jumped since the last call.
+  [[nodiscard]] bool jumped() { return std::exchange(jumped_, false); }
 
  private:
   CorrectionWatch watch_{CorrectionWatchOptions{}};
   cv::Mat1w last_;
   int segment_ = 0;
+  bool jumped_ = false;
 };
+
+/// Makes segments of the jumps of the level behind which it stays another one.
+void split_at_jumps(std::vector<TimedPicture>& pictures, const std::vector<std::size_t>& jumps) {
+  constexpr std::size_t nearby = 8;  // frames of the same segment on either side
+  std::vector<double> levels;
+  for (const TimedPicture& picture : pictures) levels.push_back(cv::mean(picture.picture)[0]);
+  std::vector<int> more(pictures.size(), 0);
+  for (const std::size_t jump : jumps) {
+    std::size_t first = jump, end = jump;
+    const auto same = [&](std::size_t k) { return pictures[k].segment == pictures[jump].segment; };
+    while (first > 0 && jump - first < nearby && same(first - 1)) --first;
+    while (end < pictures.size() && end - jump < nearby && same(end)) ++end;
+    const std::span<const double> all(levels);
+    more[jump] = level_stays_changed(all.subspan(first, jump - first), all.subspan(jump, end - jump)) ? 1 : 0;
+  }
+  int added = 0;
+  for (std::size_t k = 0; k < pictures.size(); ++k) pictures[k].segment += added += more[k];
+}
 
 /// What a count is worth where the picture is, in kelvin; 0: not known.
 double kelvin_per_count(const Frame& frame, const RadiometricScale& scale) {
   return std::abs(scale.kelvin_per_count(cv::mean(frame.counts)[0]).value_or(0));
 }
 
-double saturated_share(const Frame& frame) {
+/// 1 where a pixel is at either end of the counts.
+cv::Mat1b saturated_pixels(const Frame& frame) {
   const double full = std::pow(2.0, frame.significant_bits) - 1;
-  const int ends = cv::countNonZero(frame.counts == 0) + cv::countNonZero(frame.counts >= full);
-  return ends / static_cast<double>(frame.counts.total());
+  const cv::Mat1b ends = (frame.counts == 0) | (frame.counts >= full);
+  return ends & 1;
 }
 
 /// All complete frames that are exposures of their own.
@@ -98,9 +126,13 @@ Result<Frames> frames_of(const std::string& id) {
   Frames frames;
   frames.kelvin = (*source)->info().scale.calibrated();
   Segments segments;
+  std::vector<std::size_t> jumps;
   for (;;) {
     auto frame = (*source)->next(std::chrono::seconds(1));
-    if (!frame && frame.error().code == ErrorCode::disconnected) return frames;
+    if (!frame && frame.error().code == ErrorCode::disconnected) {
+      split_at_jumps(frames.pictures, jumps);
+      return frames;
+    }
     if (!frame) return tl::unexpected(frame.error());
     if (frame->status != FrameStatus::complete) continue;
     const auto segment = segments.of(*frame);
@@ -109,8 +141,11 @@ Result<Frames> frames_of(const std::string& id) {
     if (!picture) return fail(id, picture.error());
     if (frames.pictures.empty() && frames.kelvin)
       frames.unit_per_count = kelvin_per_count(*frame, (*source)->info().scale);
-    const auto seen = static_cast<double>(frames.pictures.size());
-    frames.saturated_share += (saturated_share(*frame) - frames.saturated_share) / (seen + 1);
+    if (frames.saturated.empty()) frames.saturated = cv::Mat1d::zeros(frame->counts.size());
+    // Frames of different sizes are refused below.
+    if (frames.saturated.size() == frame->counts.size())
+      cv::add(frames.saturated, saturated_pixels(*frame), frames.saturated, cv::noArray(), CV_64F);
+    if (segments.jumped()) jumps.push_back(frames.pictures.size());
     frames.pictures.push_back({*std::move(picture), frame->sequence, *segment});
   }
 }
@@ -140,6 +175,10 @@ struct Found {
 
 bool moved(const RecordedNoise& noise) {
   return std::max(noise.correlation_x, noise.correlation_y) > moved_scene;
+}
+
+int pixels_left_out(const TemporalNoise& noise) {
+  return static_cast<int>(noise.usable.total()) - cv::countNonZero(noise.usable);
 }
 
 bool correlated(const TemporalNoise& noise) {
@@ -211,6 +250,7 @@ Json noise_json(const Found& found, const std::vector<NoiseAcuity>& points, cons
           {"blocks", noise.blocks},
           {"block_frames", arguments.block_frames},
           {"usable_share", noise.usable_share},
+          {"pixels_left_out", pixels_left_out(found.time)},
           {"temporal_noise", no_number(found) ? Json() : json_number(found.time.successive)},
           {"lag1_correlation", json_number(found.time.lag1_correlation)},
           {"structure_function", structure_json(found.time)},
@@ -293,12 +333,16 @@ int run_noise(Console& console, NoiseArguments arguments, const Program& program
     console.note("the recording holds " + std::to_string(count) + " frames: they are one block");
     arguments.block_frames = count;
   }
-  auto blocks = recorded_noise(in_blocks(frames->pictures, arguments.block_frames), arguments.block_frames);
-  if (!blocks) return report_error(console, with_context(arguments.recording, blocks.error()));
   auto time = temporal_noise(frames->pictures);
   if (!time) return report_error(console, with_context(arguments.recording, time.error()));
-  const Found found{*std::move(blocks), *std::move(time), frames->kelvin, frames->unit_per_count,
-                    frames->saturated_share};
+  auto blocks =
+      recorded_noise(in_blocks(frames->pictures, arguments.block_frames), arguments.block_frames, time->usable);
+  if (!blocks) return report_error(console, with_context(arguments.recording, blocks.error()));
+  if (const int left_out = pixels_left_out(*time); left_out > 0)
+    console.note(fmt::format("{} of {} pixels never change or see a moving scene: they are in no number", left_out,
+                             time->usable.total()));
+  const double saturated_share = cv::mean(frames->saturated, time->usable)[0] / count;
+  const Found found{*std::move(blocks), *std::move(time), frames->kelvin, frames->unit_per_count, saturated_share};
   std::vector<NoiseAcuity> points;
   if (clipped(found)) {
     console.note(fixed(100 * found.saturated_share, 1) +
@@ -315,8 +359,12 @@ int run_noise(Console& console, NoiseArguments arguments, const Program& program
     arguments.study.stop = program.stop->token();
     arguments.study.whole_to_successive = found.time.whole_to_successive;
     auto studied = real_noise_study(found.blocks, *sensor, observer, arguments.study);
-    if (!studied) return report_error(console, studied.error());
-    points = *std::move(studied);
+    if (!studied && !(pixels_left_out(found.time) > 0 && studied.error().code == ErrorCode::invalid_input))
+      return report_error(console, studied.error());
+    if (studied)
+      points = *std::move(studied);
+    else
+      console.note("no acuity: " + studied.error().message);
   }
   if (console.json()) {
     console.object(noise_json(found, points, arguments));
@@ -324,7 +372,7 @@ int run_noise(Console& console, NoiseArguments arguments, const Program& program
     print_components(console, found);
     if (!points.empty()) print_acuities(console, points);
   }
-  return no_number(found) || moved(found.blocks) ? exit_code(VerdictKind::inconclusive) : 0;
+  return points.empty() ? exit_code(VerdictKind::inconclusive) : 0;
 }
 
 }  // namespace

@@ -176,12 +176,13 @@ Result<void> write_pictures(const std::filesystem::path& folder, const ScenePict
 }
 
 int run_picture(Console& console, const PictureArguments& a, std::uint64_t seed) {
+  const auto existing = a.overwrite ? ExistingResults::overwritten : ExistingResults::refused;
+  if (auto can = check_result_folder(a.out, existing); !can) return report_error(console, can.error());
   auto task = picture_task(a, seed);
   if (!task) return report_error(console, task.error());
   for (const auto& sentence : task->air.notes) console.note(sentence);
   const auto pictures = scene_pictures(*task);
   if (!pictures) return report_error(console, {pictures.error().code, a.scene + ": " + pictures.error().message});
-  const auto existing = a.overwrite ? ExistingResults::overwritten : ExistingResults::refused;
   if (auto made = make_result_folder(a.out, existing); !made) return report_error(console, made.error());
   if (auto written = write_pictures(a.out, *task, *pictures); !written) return report_error(console, written.error());
   for (const auto& warning : pictures->effects.warnings) console.note(warning);

@@ -25,12 +25,11 @@ void print_plan(const Console& console, const ExperimentInputs& inputs, const Pl
     contrasts.push_back({fixed(c.delta_t_k, 3), fixed(c.s75_mrad, 3), fixed(c.uncertainty_percent, 1)});
   console.table({"dT [K]", "expected S75 [mrad]", "95 % +- [%]"}, contrasts);
   console.text("");
-  console.text("trials: " + std::to_string(prediction.figures.trials) +
+  const auto& measured_s = prediction.figures.predicted_measurement_s;
+  console.text((measured_s ? "trials of the simulation: " : "trials: ") + std::to_string(prediction.figures.trials) +
                "; uncertainty of S75 (95 %): " + fixed(prediction.figures.predicted_uncertainty_percent, 1) +
                " %; time to simulate on one core of this machine: " + fixed(prediction.figures.predicted_s, 1) + " s" +
-               (prediction.figures.predicted_measurement_s
-                    ? "; to measure with the camera: " + fixed(prediction.figures.predicted_measurement_s, 0) + " s"
-                    : ""));
+               (measured_s ? "; to measure with the camera: " + fixed(measured_s, 0) + " s" : ""));
 }
 
 Json fleet_json(const FleetForecast& fleet) {
@@ -97,7 +96,9 @@ int run_plan(Console& console, SimulationOverrides overrides, const Program& pro
   // Where no time can be predicted a warning says so already.
   const auto frontier = precision_frontier(plan, *inputs, program.stop->token());
   if (!frontier && frontier.error().code == ErrorCode::interrupted) return report_error(console, frontier.error());
-  const auto limits = limit_forecasts(plan, *prediction);
+  const auto of_camera = predict_plan(as_measured(plan), *inputs);
+  if (!of_camera) return report_error(console, of_camera.error());
+  const auto limits = limit_forecasts(plan, *of_camera);
   if (!limits) return report_error(console, limits.error());
   const auto measure_limits = measure_forecasts(plan.limits);
   if (!measure_limits) return report_error(console, measure_limits.error());

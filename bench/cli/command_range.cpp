@@ -186,6 +186,25 @@ Result<TurbulentAnswers> through_turbulence(const RangeOptions& options, const R
   return out;
 }
 
+/// What the page says beside the models: of the TOD curve and its adequacy, and of turbulence.
+std::vector<std::string> sentences_of(const RangePrediction& tod, const TurbulenceDecision* turbulence,
+                                      const RangeOptions& options) {
+  std::vector<std::string> said;
+  if (options.asks(RangeModel::tod)) {
+    said = tod.notes;
+    if (tod.adequacy) {
+      for (const auto& finding : tod.adequacy->findings)
+        said.push_back((finding.unfit ? "Not fit for a decision: the TOD curve " : "The TOD curve ") +
+                       finding.sentence);
+    }
+  }
+  if (turbulence != nullptr) {
+    said.push_back(fmt::format("Turbulence of Cn2 {:g} m^(-2/3) along the path of every range", options.cn2) +
+                   (options.asks(RangeModel::tod) ? "; TOD: " + turbulence->reason : ""));
+  }
+  return said;
+}
+
 Json turbulence_json(const TurbulentAnswers& answers, const SensorSpec& sensor, double cn2) {
   Json json{{"cn2_m_minus_2_3", cn2},
             {"decision", answers.decision.simulated ? "simulate" : "skip"},
@@ -245,7 +264,11 @@ int run_range(Console& console, const RangeArguments& arguments) {
   if (!models) return report_error(console, models.error());
   const auto grid = options.grid_json(*sources, question, *sensor);
   if (!grid) return report_error(console, grid.error());
-  if (auto written = options.write(*models, question, *grid); !written) return report_error(console, written.error());
+  auto said = sentences_of(tod.prediction, turbulent ? &turbulent->decision : nullptr, options);
+  const std::string accepted = *session ? accepted_sentence(arguments.tod, **session) : "";
+  if (!accepted.empty()) said.push_back(accepted);
+  if (auto written = options.write(*models, question, said, *grid); !written)
+    return report_error(console, written.error());
   if (console.json()) {
     Json json = range_json(tod, task);
     json["delta_t_k"] = options.asked_delta_t_k;
@@ -263,9 +286,7 @@ int run_range(Console& console, const RangeArguments& arguments) {
     if (arguments.more.asks(RangeModel::tod)) print_range(console, tod, task, *air);
     if (arguments.more.models.size() > 1 || !arguments.more.asks(RangeModel::tod)) print_models(console, *models);
     if (!grid->is_null()) print_grid(console, *grid);
-    if (*session) {
-      if (const auto sentence = accepted_sentence(arguments.tod, **session); !sentence.empty()) console.text(sentence);
-    }
+    if (!accepted.empty()) console.text(accepted);
   }
   const bool all = std::all_of(models->begin(), models->end(), [](const auto& model) { return model.r75_m; });
   const bool fit = !tod.prediction.adequacy || tod.prediction.adequacy->adequate();

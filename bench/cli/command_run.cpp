@@ -47,6 +47,12 @@ struct MeasureArguments {
   ServeArguments serve{};
 };
 
+struct DemoArguments {
+  MeasureArguments measure{};
+  std::string camera = emulated_cameras().front();
+  bool full = false;
+};
+
 struct SimulateArguments {
   RunArguments run;
   SimulationOverrides overrides;
@@ -293,11 +299,12 @@ int run_simulate(Console& console, SimulateArguments arguments, const Program& p
   return finish(console, *outcome);
 }
 
-int run_demo(Console& console, const MeasureArguments& asked, const std::string& camera, const Program& program) {
+int run_demo(Console& console, const DemoArguments& asked, const Program& program) {
 #ifdef TODBENCH_WITH_ARAVIS
-  const RunArguments& arguments = asked.run;
+  const RunArguments& arguments = asked.measure.run;
+  const std::string& camera = asked.camera;
   enter_emulation(camera);
-  const auto shipped = load_plan("demo");
+  const auto shipped = load_plan(asked.full ? "acceptance" : "demo");
   if (!shipped) return report_error(console, shipped.error());
   auto plan = with_options(*shipped, arguments, program);
   if (!plan) return report_error(console, plan.error());
@@ -308,7 +315,7 @@ int run_demo(Console& console, const MeasureArguments& asked, const std::string&
   if (!laboratory) return report_error(console, laboratory.error());
   *plan = with_laboratory(*plan, **laboratory);
   if (camera != "gige") plan->unit = "emulated " + camera + " camera";
-  auto outcome = measure_shown(console, *plan, folder_of(arguments, *plan), asked.serve,
+  auto outcome = measure_shown(console, *plan, folder_of(arguments, *plan), asked.measure.serve,
                                [&](const ExperimentOptions& options, const ExperimentListener& listener) {
                                  return measure_plan(*plan, options, listener, program.stop->token());
                                });
@@ -332,7 +339,6 @@ int run_demo(Console& console, const MeasureArguments& asked, const std::string&
   return finish(console, *outcome);
 #else
   (void)asked;
-  (void)camera;
   (void)program;
   return report_error(
       console,
@@ -465,17 +471,19 @@ void add_simulate_command(CLI::App& app, Program& program) {
 void add_demo_command(CLI::App& app, Program& program) {
   auto* command =
       app.add_subcommand("demo", "does the whole job on the emulated laboratory: measure, simulate, compare, report");
-  auto a = std::make_shared<MeasureArguments>();
-  auto camera = std::make_shared<std::string>(emulated_cameras().front());
-  add_folder_options(*command, a->run);
-  command->add_flag("--force", a->run.overwrite, "overwrite the session in an existing folder");
-  add_serve_options(*command, a->serve);
-  add_key_options(*command, OptionOf::measurements, a->run.keys);
-  command->add_option("--camera", *camera, "interface of the emulated camera")
+  auto a = std::make_shared<DemoArguments>();
+  RunArguments& run = a->measure.run;
+  add_folder_options(*command, run);
+  command->add_flag("--force", run.overwrite, "overwrite the session in an existing folder");
+  add_serve_options(*command, a->measure.serve);
+  add_key_options(*command, OptionOf::measurements, run.keys);
+  command->add_flag(
+      "--full", a->full,
+      "every physical measure, their limits and the budget, too: the plan 'acceptance'; half a minute more");
+  command->add_option("--camera", a->camera, "interface of the emulated camera")
       ->check(CLI::IsMember(emulated_cameras()))
       ->capture_default_str();
-  finish_command(*command, program,
-                 [a, camera, &program](Console& console) { return run_demo(console, *a, *camera, program); });
+  finish_command(*command, program, [a, &program](Console& console) { return run_demo(console, *a, program); });
 }
 
 }  // namespace todbench

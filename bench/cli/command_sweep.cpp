@@ -103,6 +103,9 @@ int run_expand(Console& console, const SweepArguments& a, const Program& program
   }
   console.text(fmt::format("{} tasks, {} combinations refused by a condition; results in {}", sweep.count(),
                            sweep.refused(), sweep.file().results.string()));
+  if (const SweepFile& file = sweep.file(); file.sample_total)
+    console.text(fmt::format("total indices: {} draws of {} parameters take {} x {} combinations", file.sample_count,
+                             file.sample.size(), file.sample_count, file.sample.size() + 2));
   if (task_s) {
     console.text(fmt::format("about {:.3g} s a task, {:.3g} h on one core; {} tasks a job make about 15 minutes",
                              *task_s, *task_s * static_cast<double>(sweep.count()) / 3600, chunk));
@@ -193,14 +196,22 @@ Result<int> run_in_processes(Console& console, const SweepArguments& a, const Sw
   return code;
 }
 
-Json counts_json(const SweepStatus& status) {
+Json status_json(const Sweep& sweep) {
+  const SweepStatus status = sweep_status(sweep);
+  Json failures = Json::array();
+  constexpr std::size_t most_failures = 100;
+  for (std::size_t i = 0; i < status.states.size() && failures.size() < most_failures; ++i) {
+    if (status.states[i] == TaskState::failed) failures.push_back({{"index", i}, {"reason", failure_of(sweep, i)}});
+  }
   return {{"tasks", status.states.size()},
           {"done", status.count(TaskState::done)},
           {"failed", status.count(TaskState::failed)},
           {"running", status.count(TaskState::running)},
           {"stale", status.count(TaskState::stale)},
           {"missing", status.count(TaskState::missing)},
-          {"foreign", status.count(TaskState::foreign)}};
+          {"foreign", status.count(TaskState::foreign)},
+          {"open", status.open_list()},
+          {"failures", failures}};
 }
 
 int run_sweep(Console& console, const SweepArguments& a, const Program& program) {
@@ -217,7 +228,7 @@ int run_sweep(Console& console, const SweepArguments& a, const Program& program)
   if (!*range && a.jobs.value_or(1) > 1) {
     const auto code = run_in_processes(console, a, runnable->sweep, stop);
     if (!code) return report_error(console, code.error());
-    const Json json = counts_json(sweep_status(runnable->sweep));
+    const Json json = status_json(runnable->sweep);
     if (console.json()) console.object(json);
     console.text(fmt::format("{} of {} tasks have a result", json["done"].get<std::size_t>(), runnable->sweep.count()));
     return *code;
@@ -239,16 +250,7 @@ int run_sweep(Console& console, const SweepArguments& a, const Program& program)
 int run_status(Console& console, const SweepArguments& a) {
   const auto runnable = load_sweep(a.file);
   if (!runnable) return report_error(console, runnable.error());
-  const SweepStatus status = sweep_status(runnable->sweep);
-  Json failures = Json::array();
-  constexpr std::size_t most_failures = 100;
-  for (std::size_t i = 0; i < status.states.size() && failures.size() < most_failures; ++i) {
-    if (status.states[i] == TaskState::failed)
-      failures.push_back({{"index", i}, {"reason", failure_of(runnable->sweep, i)}});
-  }
-  Json json = counts_json(status);
-  json["open"] = status.open_list();
-  json["failures"] = failures;
+  const Json json = status_json(runnable->sweep);
   if (console.json()) {
     console.object(json);
     return 0;
@@ -257,8 +259,8 @@ int run_status(Console& console, const SweepArguments& a) {
   for (const char* key : {"tasks", "done", "failed", "running", "stale", "missing", "foreign"})
     rows.push_back({key, std::to_string(json[key].get<std::size_t>())});
   console.table({"state", "tasks"}, rows);
-  if (const auto open = status.open_list(); !open.empty()) console.text("open: " + open);
-  for (const auto& failure : failures)
+  if (const auto open = json["open"].get<std::string>(); !open.empty()) console.text("open: " + open);
+  for (const auto& failure : json["failures"])
     console.text(fmt::format("task {}: {}", failure["index"].get<std::size_t>(), failure["reason"].get<std::string>()));
   return 0;
 }

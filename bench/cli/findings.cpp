@@ -1,5 +1,7 @@
 #include "bench/cli/findings.h"
 
+#include <fmt/format.h>
+
 #include <string>
 #include <vector>
 
@@ -18,8 +20,8 @@ void print_frontier(const Console& console, const std::vector<PrecisionChoice>& 
   for (const PrecisionChoice& choice : choices) {
     std::string remark = choice.planned ? "planned" : "";
     if (choice.recommended) remark += remark.empty() ? "recommended" : ", recommended";
-    TableRow row{std::string(to_string(choice.answers)), std::to_string(choice.frames), fixed(choice.seconds, 0),
-                 fixed(choice.half_width_percent, 2)};
+    TableRow row{std::string(to_string(choice.answers)), fmt::format("{}", fmt::join(choice.frames, ", ")),
+                 fixed(choice.seconds, 0), fixed(choice.half_width_percent, 2)};
     for (const ContrastPrediction& contrast : choice.contrasts) row.push_back(fixed(contrast.uncertainty_percent, 2));
     row.push_back(std::move(remark));
     rows.push_back(std::move(row));

@@ -299,16 +299,17 @@ std::vector<GridFigure> figures_of(const Json& grids) {
 }  // namespace
 
 Result<void> RangeOptions::write(const std::vector<ModelRange>& answers, const RangeQuestion& question,
-                                 const Json& grids) const {
+                                 const std::vector<std::string>& said, const Json& grids) const {
   if (!svg.empty()) {
     const auto figure = range_svg(answers);
     if (!figure) return tl::unexpected(figure.error());
     if (auto written = write_file_atomically(svg, *figure); !written) return written;
   }
   if (page.empty()) return {};
-  const RangePage words{.target = fmt::format("{:g} m, {:.4g} K", question.size_m, question.delta_t_k),
-                        .air = question.air.source,
-                        .notes = question.air.notes};
+  RangePage words{.target = fmt::format("{:g} m, {:.4g} K", question.size_m, question.delta_t_k),
+                  .air = question.air.source,
+                  .notes = question.air.notes};
+  words.notes.insert(words.notes.end(), said.begin(), said.end());
   Document document = range_page(answers, words);
   if (!grids.is_null()) document.sections.push_back(grid_section(figures_of(grids)));
   return write_file_atomically(page, render_html(document));

@@ -40,9 +40,9 @@ struct RangeOptions {
   [[nodiscard]] RangeQuestion question(const RangeTask& task, std::optional<double> v50, const Atmosphere& air) const;
   [[nodiscard]] Result<RangeSources> sources(std::vector<TodThreshold> thresholds,
                                              const std::optional<SensorSpec>& sensor) const;
-  /// The figure and the page that were asked for.
+  /// The figure and the page that were asked for; `said`: sentences about the answers, for the page.
   [[nodiscard]] Result<void> write(const std::vector<ModelRange>& models, const RangeQuestion& question,
-                                   const Json& grids) const;
+                                   const std::vector<std::string>& said, const Json& grids) const;
 
   /// The grid that was asked for, as JSON; null where none was.
   [[nodiscard]] Result<Json> grid_json(const RangeSources& sources, const RangeQuestion& question,

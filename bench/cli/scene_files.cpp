@@ -22,14 +22,19 @@ Result<std::string> encoded_picture(const cv::Mat& picture, const std::string& e
   return std::string(bytes.begin(), bytes.end());
 }
 
-Result<void> make_result_folder(const std::filesystem::path& folder, ExistingResults existing) {
+Result<void> check_result_folder(const std::filesystem::path& folder, ExistingResults existing) {
   std::error_code error;
-  if (std::filesystem::exists(folder, error) && !std::filesystem::is_directory(folder, error))
+  if (!std::filesystem::exists(folder, error)) return {};
+  if (!std::filesystem::is_directory(folder, error))
     return fail(ErrorCode::invalid_input, folder.string() + ": is not a folder");
-  if (auto made = make_folder(folder); !made) return made;
   if (existing == ExistingResults::refused && !std::filesystem::is_empty(folder, error))
     return fail(ErrorCode::invalid_input, folder.string() + ": is not empty (--force overwrites what is in it)");
   return {};
+}
+
+Result<void> make_result_folder(const std::filesystem::path& folder, ExistingResults existing) {
+  if (auto can = check_result_folder(folder, existing); !can) return can;
+  return make_folder(folder);
 }
 
 }  // namespace todbench

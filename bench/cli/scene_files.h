@@ -18,6 +18,8 @@ namespace todbench {
 
 /// A folder for results: new, empty, or one that may be overwritten. `invalid_input` in one sentence.
 enum class ExistingResults { refused, overwritten };
+[[nodiscard]] Result<void> check_result_folder(const std::filesystem::path& folder, ExistingResults existing);
+/// The same, and makes it.
 [[nodiscard]] Result<void> make_result_folder(const std::filesystem::path& folder, ExistingResults existing);
 
 }  // namespace todbench

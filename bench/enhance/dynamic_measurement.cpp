@@ -1,12 +1,12 @@
 #include "bench/enhance/dynamic_measurement.h"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <utility>
 
+#include "acquisition/core/distributions.h"
 #include "bench/plan/plan_options.h"
 #include "bench/run/module_chain.h"
 #include "bench/run/simulated_responses.h"
@@ -100,7 +100,7 @@ std::optional<MeasuredTimeConstant> time_constant_of(const std::vector<MovingPas
   const double lag_s = (dd * vy - vd * dy) / determinant, offset_px = (vv * dy - vd * vy) / determinant;
   const double left_over = std::max(0.0, yy - lag_s * vy - offset_px * dy);
   const double error_s = std::sqrt(left_over / (n - 2) * dd / determinant);
-  const double t = boost::math::quantile(boost::math::students_t(n - 2), 0.975);
+  const double t = distribution::quantile(distribution::StudentsT(n - 2), 0.975);
   MeasuredTimeConstant out{.time_constant_ms = 1e3 * lag_s - exposure_ms / 2,
                            .ci95_ms = {},
                            .exposure_ms = exposure_ms,

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -11,6 +10,7 @@
 #include <stop_token>
 #include <utility>
 
+#include "acquisition/core/distributions.h"
 #include "bench/plan/plan_options.h"
 #include "bench/run/experiment_inputs.h"
 #include "bench/run/module_chain.h"
@@ -125,6 +125,7 @@ void run_simulated_one(const LoadedPlan& loaded, const ExperimentInputs& inputs,
   set_up->options.frames_after_change = settle_frames;
   set_up->options.answers = AnswerKind::binary;
   set_up->options.frames_per_presentation = 1;
+  set_up->options.frames_at_contrast.clear();
   set_up->options.integrity.reject_frozen = false;
   run_one(*std::move(set_up), loaded.plan(), inputs, inputs.sensor.modules, package, options, result, stop);
 }
@@ -230,7 +231,7 @@ PairedRatio ratio_at(std::span<const Trial> with, std::span<const Trial> without
   const double n = static_cast<double>(values.size()), mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
   double squares = 0;
   for (const double value : values) squares += (value - mean) * (value - mean);
-  const double half = boost::math::quantile(boost::math::students_t(n - 1), 0.975) * std::sqrt((n - 1) / n * squares);
+  const double half = distribution::quantile(distribution::StudentsT(n - 1), 0.975) * std::sqrt((n - 1) / n * squares);
   ratio.ci95 = {std::exp(*whole - half), std::exp(*whole + half)};
   return ratio;
 }

@@ -81,6 +81,7 @@ Result<EnhancementPackage> read_package(const std::filesystem::path& file) {
   EnhancementPackage package;
   package.name = reader->text("name", file.stem().string());
   package.description = reader->text("description", "");
+  package.text = *text;
   package.sha256 = sha256_of(*text);
   std::vector<ModulePlan> modules;
   auto tables = reader->sections("stage");

@@ -42,7 +42,7 @@ struct StagePlan {
 struct EnhancementPackage {
   std::string name, description;
   std::vector<StagePlan> stages;
-  std::string sha256;                   ///< of the file
+  std::string text, sha256;             ///< of the file
   std::vector<std::string> provenance;  ///< of its modules: command, version, hash of the files that it names
 };
 

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
 
+#include "acquisition/core/distributions.h"
 #include "acquisition/core/forwarding_source.h"
 #include "bench/plan/plan_options.h"
 #include "bench/run/devices.h"
@@ -112,6 +112,7 @@ class BarRun {
     registration_ = *registration;
     if (auto seen = step_.contrast(plate_, registration_, state_, presented_, stop_); !seen)
       return tl::unexpected(seen.error());
+    if (measuring_.contrast_unit == ContrastUnit::kelvin) noise_k_ = picture->temporal_noise_k;
     sizes_ = windows_of(picture->kelvin, plate_, registration_);
     std::map<double, std::vector<double>> ln_ratios;
     for (int cycle = 0; cycle < options_.cycles; ++cycle) {
@@ -167,6 +168,7 @@ class BarRun {
         auto picture = average();
         if (!picture) return tl::unexpected(picture.error());
         for (const auto& [mm, size] : sizes_) (with_bar ? in : out)[mm] += response_of(size, *picture);
+        if (with_bar) in_ = *std::move(picture);
       }
     }
     if (auto moved = move(false); !moved) return moved;
@@ -179,6 +181,7 @@ class BarRun {
                     fmt::format("triangles of {:g} mm are not seen in {} frames", mm, 2 * options_.frames));
       ln_ratios[mm].push_back(std::log(in[mm] / out[mm]));
     }
+    out_ = *std::move(picture);
     return {};
   }
 
@@ -189,9 +192,14 @@ class BarRun {
     result.cycles = options_.cycles;
     result.tolerance_percent = options_.tolerance_percent;
     result.notes = notes_;
+    result.set_up = {state_.plate, state_.mounting, registration_};
+    result.out = out_, result.in = in_;
+    result.temporal_noise_k = noise_k_;
+    result.frames_used = taker_.used(), result.frames_lost = taker_.lost();
+    result.frames_rejected = taker_.rejected();
     const double n = options_.cycles;
-    const double t = boost::math::quantile(boost::math::students_t(n - 1),
-                                           1 - 0.025 / static_cast<double>(std::max<std::size_t>(1, sizes_.size())));
+    const double t = distribution::quantile(distribution::StudentsT(n - 1),
+                                            1 - 0.025 / static_cast<double>(std::max<std::size_t>(1, sizes_.size())));
     const double tolerance = std::log1p(options_.tolerance_percent / 100);
     bool all_within = true, one_beyond = false;
     for (const auto& [mm, size] : sizes_) {
@@ -231,6 +239,8 @@ class BarRun {
   PresentedTarget presented_;
   std::map<double, SizeWindows, std::greater<>> sizes_;
   std::vector<std::string> notes_;
+  cv::Mat1d out_, in_;
+  double noise_k_ = 0;
 };
 
 class BarSource final : public ForwardingSource {
@@ -346,6 +356,9 @@ Result<SceneDependence> measure_scene_dependence(FrameSource& camera, Target& ta
     return fail(ErrorCode::invalid_input, "three cycles, one frame and a tolerance above 0 at least");
   if (auto checked = check_before_measuring(measuring, observer, camera.info()); !checked)
     return tl::unexpected(checked.error());
+  if (options.on_begin) {
+    if (auto begun = options.on_begin(camera.info(), target); !begun) return tl::unexpected(begun.error());
+  }
   const std::stop_callback wake(stop, [&camera] { camera.stop(); });
   if (auto started = camera.start(); !started) return tl::unexpected(started.error());
   auto found = BarRun(camera, target, move_bar, state, measuring, options, host, stop)();

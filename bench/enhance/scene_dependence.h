@@ -1,7 +1,9 @@
 // Whether a camera's response to the triangles depends on what else is in its field: a hot bar, out and in.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -41,6 +43,11 @@ struct SceneDependence {
   std::vector<SizeDependence> sizes;  ///< largest first
   SceneDependenceVerdict verdict = SceneDependenceVerdict::inconclusive;
   std::vector<std::string> notes;
+  SetUpRecord set_up;           ///< where the plate was found
+  cv::Mat1d out, in;            ///< the last averages without and with the bar
+  double temporal_noise_k = 0;  ///< of a pixel; 0: not measured, or no temperatures
+  std::uint64_t frames_used = 0, frames_lost = 0;
+  std::map<std::string, std::uint64_t> frames_rejected;  ///< by reason
 };
 
 struct SceneDependenceOptions {
@@ -48,6 +55,8 @@ struct SceneDependenceOptions {
   int frames = 16;        ///< averaged each time
   int settle_frames = 0;  ///< left out after the bar has moved, beside those of the plan
   double tolerance_percent = 2;
+  /// Before the first frame, when everything is there that has to be; may be empty, an error ends the run.
+  std::function<Result<void>(const SourceInfo& camera, const Target& target)> on_begin{};
 };
 
 /// Brings the bar into the field or takes it out.

@@ -2,10 +2,10 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
+#include "acquisition/core/distributions.h"
 #include "acquisition/core/normal.h"
 
 namespace todbench {
@@ -14,11 +14,11 @@ namespace {
 constexpr double days_per_year = 365.25;
 
 double below(double z) {
-  return cdf(boost::math::normal(), z);
+  return cdf(distribution::Normal(), z);
 }
 
 double density(double z) {
-  return pdf(boost::math::normal(), z);
+  return pdf(distribution::Normal(), z);
 }
 
 /// Abscissas and weights over [low, high].

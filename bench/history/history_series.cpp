@@ -8,43 +8,60 @@
 namespace todbench {
 namespace {
 
-std::optional<double> last_break(const std::vector<HistoryEvent>& events) {
-  std::optional<double> last;
+struct Break {
+  double days = 0;
+  std::string kind;
+};
+
+/// By time.
+std::vector<Break> breaks_of(const std::vector<HistoryEvent>& events) {
+  std::vector<Break> breaks;
   for (const HistoryEvent& event : events) {
-    if (const auto days = days_of_utc(event.utc)) last = std::max(last.value_or(*days), *days);
+    if (const auto days = days_of_utc(event.utc)) breaks.push_back({*days, event.kind});
   }
-  return last;
+  std::ranges::stable_sort(breaks, {}, &Break::days);
+  return breaks;
+}
+
+void end_values(HistorySeries& series, const std::string& by) {
+  for (std::size_t i = 0; i < series.values.size(); ++i)
+    series.earlier.push_back({series.started_utc[i], series.values[i], by});
+  series.values.clear(), series.started_utc.clear();
 }
 
 }  // namespace
 
 Result<std::vector<HistorySeries>> history_series(const HistoryIndex& index, const std::string& serial,
-                                                  const std::string& measure) {
+                                                  const std::string& measure, WithoutChart without) {
   const auto sessions = index.sessions(serial.empty() ? std::nullopt : std::optional(serial));
   if (!sessions) return tl::unexpected(sessions.error());
   std::vector<HistorySeries> all;
-  std::map<std::string, std::optional<double>> breaks;
+  std::map<std::string, std::vector<Break>> breaks;
   std::string firmware;
-  // Sessions come by unit: the series of the unit in hand are the last ones.
+  // Sessions come by unit and time: the series of the unit in hand are the last ones.
   std::optional<HistoryUnit> in_hand;
-  std::size_t first = 0;
+  std::size_t first = 0, passed = 0;  // breaks of the unit
   for (const HistorySession& session : *sessions) {
     const HistoryUnit& unit = session.unit;
     if (in_hand != unit) {
       in_hand = unit;
-      first = all.size();
+      first = all.size(), passed = 0;
       firmware.clear();
     }
     const auto begin = [&] { return all.begin() + static_cast<std::ptrdiff_t>(first); };
+    const auto end_all = [&](const std::string& by) {
+      std::for_each(begin(), all.end(), [&](HistorySeries& series) { end_values(series, by); });
+    };
     if (!breaks.contains(unit.serial)) {
       const auto events = index.events(unit.serial);
       if (!events) return tl::unexpected(events.error());
-      breaks[unit.serial] = last_break(*events);
+      breaks[unit.serial] = breaks_of(*events);
     }
     const double days = days_of_utc(session.started_utc).value_or(0);
-    if (breaks[unit.serial] && days < *breaks[unit.serial]) continue;
-    // Another firmware begins a new series.
-    if (!firmware.empty() && firmware != session.firmware) all.erase(begin(), all.end());
+    for (const std::vector<Break>& of_unit = breaks[unit.serial];
+         passed < of_unit.size() && of_unit[passed].days <= days; ++passed)
+      end_all(of_unit[passed].kind);
+    if (!firmware.empty() && firmware != session.firmware) end_all("firmware");
     firmware = session.firmware;
     for (const HistoryValue& value : session.values) {
       if (!measure.empty() && value.measure != measure) continue;
@@ -57,6 +74,13 @@ Result<std::vector<HistorySeries>> history_series(const HistoryIndex& index, con
       found->started_utc.push_back(session.started_utc);
     }
   }
+  // An event behind the last session ends what the session said.
+  for (HistorySeries& series : all) {
+    for (const Break& one : breaks[series.unit.serial])
+      if (!series.values.empty() && series.values.back().days < one.days) end_values(series, one.kind);
+  }
+  if (without == WithoutChart::left_out)
+    std::erase_if(all, [](const HistorySeries& series) { return series.values.empty(); });
   return all;
 }
 

@@ -57,6 +57,9 @@ std::string lens_of(const Json& camera) {
   return "";
 }
 
+/// A session without a curve, as `todbench scene-dependence` leaves it.
+constexpr const char* curveless = "scene-dependence.json";
+
 /// Standard uncertainties of ln acuity from the rows that are not common to a series, by contrast.
 Result<std::map<double, double>> stated_uncertainties(const std::filesystem::path& folder) {
   std::map<double, double> stated;
@@ -72,6 +75,7 @@ Result<std::map<double, double>> stated_uncertainties(const std::filesystem::pat
 }
 
 Result<void> add_acuities(HistorySession& session, const std::filesystem::path& folder, const std::string& side) {
+  if (is_there(folder / curveless)) return {};
   const auto text = vouched_text(folder, "curve.csv");
   if (!text) return tl::unexpected(text.error());
   const auto table = parse_csv(*text, (folder / "curve.csv").string());
@@ -83,12 +87,16 @@ Result<void> add_acuities(HistorySession& session, const std::filesystem::path& 
                                     table->header.begin());
   };
   const std::size_t of_side = column("side"), contrast = column("set_delta_t_k"), acuity = column("acuity_per_mrad"),
-                    low = column("acuity_ci95_low_per_mrad"), high = column("acuity_ci95_high_per_mrad");
-  for (const std::size_t index : {of_side, contrast, acuity, low, high}) {
+                    low = column("acuity_ci95_low_per_mrad"), high = column("acuity_ci95_high_per_mrad"),
+                    verdict = column("verdict");
+  for (const std::size_t index : {of_side, contrast, acuity, low, high, verdict}) {
     if (index >= table->header.size()) return table->wrong(1, "a column of curve.csv is missing");
   }
   for (const CsvRow& row : table->rows) {
     if (row.fields[of_side] != side) continue;
+    // A point of a ridge, or of a slope at its bound, is no value.
+    const std::string& found = row.fields[verdict];
+    if (found == "underdetermined" || found == "flat_or_decreasing") continue;
     const auto contrast_k = parse_number(row.fields[contrast]), value = parse_number(row.fields[acuity]),
                from = parse_number(row.fields[low]), to = parse_number(row.fields[high]);
     // No uncertainty, no row.
@@ -120,14 +128,25 @@ Result<void> add_measures(HistorySession& session, const std::filesystem::path& 
   return {};
 }
 
-Result<void> set_unit(HistorySession& session, const std::filesystem::path& folder, const Json& provenance) {
+/// Whose curve it is: the name of the camera when it ended. Of a session without a curve the name of the camera.
+Result<std::string> sensor_of(const std::filesystem::path& folder) {
+  if (is_there(folder / curveless)) {
+    const auto json = vouched_json(folder, curveless);
+    if (!json) return tl::unexpected(json.error());
+    return text_at(*json, "camera");
+  }
   const auto fits = vouched_text(folder, "fits.json");
-  if (!fits) return tl::unexpected(fits.error());
-  // The name of the curve is that of the camera when it ended; the file may be long.
-  constexpr std::string_view key = "\"sensor\": \"";
+  if (!fits) return fits;
+  constexpr std::string_view key = "\"sensor\": \"";  // the file may be long
   const std::size_t at = fits->find(key);
   const std::size_t from = at == std::string::npos ? fits->size() : at + key.size();
-  const std::string sensor = fits->substr(from, fits->find('"', from) - from);
+  return fits->substr(from, fits->find('"', from) - from);
+}
+
+Result<void> set_unit(HistorySession& session, const std::filesystem::path& folder, const Json& provenance) {
+  const auto named = sensor_of(folder);
+  if (!named) return tl::unexpected(named.error());
+  const std::string& sensor = *named;
   if (!provenance.contains("camera") || !provenance["camera"].is_object()) {
     session.unit = {"simulation", sensor, "", ""};
     return {};

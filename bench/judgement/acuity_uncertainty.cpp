@@ -1,11 +1,11 @@
 #include "bench/judgement/acuity_uncertainty.h"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
+#include "acquisition/core/distributions.h"
 #include "bench/plan/bench_air.h"
+#include "bench/plan/joined_uncertainty.h"
 
 namespace todbench {
 namespace {
@@ -142,8 +142,8 @@ std::optional<double> freedom_of(const PsychometricFit& fit) {
 }
 
 double coverage_factor(const std::optional<double>& degrees_of_freedom) {
-  if (degrees_of_freedom) return quantile(complement(boost::math::students_t(*degrees_of_freedom), upper_tail));
-  return quantile(complement(boost::math::normal(), upper_tail));
+  if (degrees_of_freedom) return quantile(complement(distribution::StudentsT(*degrees_of_freedom), upper_tail));
+  return quantile(complement(distribution::Normal(), upper_tail));
 }
 
 /// A half-width of ln S75 as the row of the finite trials.
@@ -162,11 +162,12 @@ bool cancels_in(const BudgetRow& row, BudgetCommon common) {
   return std::find(row.common.begin(), row.common.end(), common) != row.common.end();
 }
 
-double root_sum_of_squares(const std::vector<AppliedRow>& rows, const std::optional<BudgetCommon>& cancelled) {
-  double sum = 0;
+/// Of the stated rows, without those that are shared with `cancelled`.
+JoinedUncertainty stated_of(const std::vector<AppliedRow>& rows, const std::optional<BudgetCommon>& cancelled) {
+  JoinedUncertainty sum;
   for (const AppliedRow& applied : rows) {
     if (applied.row.name == finite_trials_row || (cancelled && cancels_in(applied.row, *cancelled))) continue;
-    sum = std::hypot(sum, applied.contribution);
+    sum.add(applied.contribution, applied.row.degrees_of_freedom);
   }
   return sum;
 }
@@ -193,8 +194,8 @@ Result<double> expanded_half(double half, std::vector<BudgetRow> rows, const Psy
 }
 
 /// A limit without a threshold moves by all of what is stated.
-double moved_out(double limit_mrad, double u_stated, double direction) {
-  return limit_mrad * std::exp(direction * coverage_factor({}) * u_stated);
+double moved_out(double limit_mrad, const JoinedUncertainty& stated, double direction) {
+  return limit_mrad * std::exp(direction * stated.half_width(upper_tail));
 }
 
 std::vector<AppliedRow> applied(const std::vector<BudgetRow>& rows, const std::vector<BudgetShare>& shares,
@@ -211,22 +212,21 @@ std::vector<AppliedRow> applied(const std::vector<BudgetRow>& rows, const std::v
   return out;
 }
 
-/// Joins a side of a ratio's interval and what is stated, at the coverage that `z` stands for.
-std::optional<double> joined(const std::optional<double>& ratio, const std::optional<double>& side, double u,
-                             double z) {
+/// Joins a side of a ratio's interval and the half-width of what is stated.
+std::optional<double> joined(const std::optional<double>& ratio, const std::optional<double>& side, double stated) {
   if (!ratio || !side || !(*ratio > 0) || !(*side > 0)) return std::nullopt;
   const double half = std::log(*side / *ratio);
-  return *ratio * std::exp(std::copysign(std::hypot(half, z * u), half));
+  return *ratio * std::exp(std::copysign(std::hypot(half, stated), half));
 }
 
-std::optional<ExpandedRatio> expanded_ratio(const Comparison& comparison, double set_delta_t_k, double u) {
+std::optional<ExpandedRatio> expanded_ratio(const Comparison& comparison, double set_delta_t_k,
+                                            const JoinedUncertainty& stated) {
   for (const ComparisonPoint& point : comparison.points) {
     if (!same_contrast(point.set_delta_t_k, set_delta_t_k)) continue;
-    const boost::math::normal normal;
-    const double z95 = quantile(complement(normal, upper_tail)), z90 = quantile(complement(normal, 0.05));
+    const double of95 = stated.half_width(upper_tail), of90 = stated.half_width(0.05);
     return ExpandedRatio{
-        {joined(point.ratio, point.ratio_ci95.low, u, z95), joined(point.ratio, point.ratio_ci95.high, u, z95)},
-        {joined(point.ratio, point.ratio_ci90.low, u, z90), joined(point.ratio, point.ratio_ci90.high, u, z90)}};
+        {joined(point.ratio, point.ratio_ci95.low, of95), joined(point.ratio, point.ratio_ci95.high, of95)},
+        {joined(point.ratio, point.ratio_ci90.low, of90), joined(point.ratio, point.ratio_ci90.high, of90)}};
   }
   return std::nullopt;
 }
@@ -247,10 +247,11 @@ Result<void> expand(PointUncertainty& out, const TodPoint& point, const std::vec
   }
   const double excess = *found ? (*found)->expanded / (*found)->expanded_gum : 1;
   if (both) out.combined = *std::move(found);
-  out.u_stated = root_sum_of_squares(out.rows, std::nullopt);
-  out.u_not_twin = root_sum_of_squares(out.rows, BudgetCommon::twin);
-  out.u_not_series = root_sum_of_squares(out.rows, BudgetCommon::series);
-  out.u_not_contrasts = root_sum_of_squares(out.rows, BudgetCommon::contrasts);
+  const JoinedUncertainty all_stated = stated_of(out.rows, std::nullopt);
+  out.u_stated = all_stated.u();
+  out.u_not_twin = stated_of(out.rows, BudgetCommon::twin).u();
+  out.u_not_series = stated_of(out.rows, BudgetCommon::series).u();
+  out.u_not_contrasts = stated_of(out.rows, BudgetCommon::contrasts).u();
   for (const double direction : {-1.0, 1.0}) {
     const std::optional<double>& side = direction < 0 ? low : high;
     std::optional<double>& expanded = direction < 0 ? out.expanded_mrad.low : out.expanded_mrad.high;
@@ -263,7 +264,7 @@ Result<void> expand(PointUncertainty& out, const TodPoint& point, const std::vec
       // Never inside the statistical one by rounding, nor where the threshold lies outside it.
       expanded = direction < 0 ? std::min(*expanded, *side) : std::max(*expanded, *side);
     } else {
-      expanded = moved_out(*side, out.u_stated, direction);
+      expanded = moved_out(*side, all_stated, direction);
     }
   }
   return {};
@@ -280,7 +281,9 @@ const PointUncertainty* point_at(const CurveUncertainty& uncertainty, double set
 
 Interval deciding_interval(const TodPoint& point) {
   const auto usable = [](const PsychometricFit& fit) {
-    return fit.verdict == FitVerdict::flat_or_decreasing || fit.verdict == FitVerdict::no_data ? Interval{} : fit.ci95;
+    const bool nowhere = fit.verdict == FitVerdict::flat_or_decreasing || fit.verdict == FitVerdict::underdetermined ||
+                         fit.verdict == FitVerdict::no_data;
+    return nowhere ? Interval{} : fit.ci95;
   };
   const Interval interval = usable(point.fit);
   return point.lapse_warning && point.free_lapse_fit ? hull_of(interval, usable(*point.free_lapse_fit)) : interval;
@@ -338,7 +341,9 @@ Result<std::optional<CurveUncertainty>> curve_uncertainty(const Plan& plan, cons
                                                 deviation_k, air);
     if (auto expanded = expand(found, point, rows, plan.uncertainty.rows.size(), plan.seed); !expanded)
       return tl::unexpected(with_context("[uncertainty]", expanded.error()));
-    if (comparison) found.ratio = expanded_ratio(as_decided(*comparison), point.set_delta_t_k, found.u_not_twin);
+    if (comparison)
+      found.ratio =
+          expanded_ratio(as_decided(*comparison), point.set_delta_t_k, stated_of(found.rows, BudgetCommon::twin));
     out.points.push_back(std::move(found));
   }
   if (!read_back) out.not_stated.emplace_back(read_back_row);

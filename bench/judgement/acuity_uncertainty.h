@@ -60,7 +60,7 @@ struct CurveUncertainty {
 [[nodiscard]] const PointUncertainty* point_at(const CurveUncertainty& uncertainty, double set_delta_t_k);
 
 /// The interval of S75 in mrad that decides: of a point with a lapse warning both fits have to agree. A slope at its
-/// lower bound makes any threshold number meaningless: no interval then.
+/// lower bound makes any threshold number meaningless, and a ridge has no point: no interval then.
 [[nodiscard]] Interval deciding_interval(const TodPoint& point);
 
 /// Slope of ln acuity over ln |effective contrast| at each point, its size: of S75^2 = A + B / C + D / C^2 through the

@@ -1,13 +1,13 @@
 #include "bench/judgement/conformity.h"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <vector>
+
+#include "acquisition/core/distributions.h"
 
 namespace todbench {
 namespace {
@@ -40,8 +40,8 @@ Shares shares_of(const MeasuredValue& measured, const ToleranceLimits& limits) {
   const auto standard = [&](double limit) { return (limit - measured.value) / measured.u; };
   const double low = limits.at_least ? standard(*limits.at_least) : -infinite;
   const double high = limits.at_most ? standard(*limits.at_most) : infinite;
-  if (measured.degrees_of_freedom) return shares_of(boost::math::students_t(*measured.degrees_of_freedom), low, high);
-  return shares_of(boost::math::normal(), low, high);
+  if (measured.degrees_of_freedom) return shares_of(distribution::StudentsT(*measured.degrees_of_freedom), low, high);
+  return shares_of(distribution::Normal(), low, high);
 }
 
 /// By how much the value lies inside the nearer limit; negative outside.
@@ -133,8 +133,8 @@ Result<Conformity> conformity(const MeasuredValue& measured, const ToleranceLimi
 double guard_band_for_risk(double risk, const MeasuredValue& measured) {
   if (risk == 0.5) return 0;
   if (measured.degrees_of_freedom)
-    return measured.u * quantile(complement(boost::math::students_t(*measured.degrees_of_freedom), risk));
-  return measured.u * quantile(complement(boost::math::normal(), risk));
+    return measured.u * quantile(complement(distribution::StudentsT(*measured.degrees_of_freedom), risk));
+  return measured.u * quantile(complement(distribution::Normal(), risk));
 }
 
 Result<GlobalRisks> global_risks(const Fleet& fleet, double u, const ToleranceLimits& tolerance,

@@ -329,6 +329,11 @@ std::string equivalence_in_words(const Demand& demand) {
   return "acuity equivalent to the simulated twin within " + rounded(demand.limit) + " %";
 }
 
+std::string scene_dependence_in_words(const Demand& demand) {
+  return "change of the response at " + rounded(demand.delta_t_k) + " K by a hot bar in the field at most " +
+         rounded(demand.limit) + " %";
+}
+
 const auto& table() {
   static const std::array rows{
       DemandKindRow{DemandKind::acuity, "acuity", "1/mrad", LimitSide::at_least, judge_acuity, acuity_in_words},
@@ -359,6 +364,9 @@ const auto& table() {
       measure_row(DemandKind::drift_rate),
       measure_row(DemandKind::drift_pattern_rate),
       measure_row(DemandKind::response_time),
+      // Made by its own session (bench/enhance/scene_dependence_session.h), of no plan's limits.
+      DemandKindRow{DemandKind::scene_dependence, "scene_dependence", "%", LimitSide::at_most,
+                    [](const Evidence&) { return std::vector<Demand>(); }, scene_dependence_in_words},
       zone_row(DemandKind::zone_bad_pixels),
       zone_row(DemandKind::zone_substituted_pixels),
       zone_row(DemandKind::zone_clusters),

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
+#include "acquisition/core/distributions.h"
 #include "acquisition/core/normal.h"
 #include "bench/judgement/demand_kinds.h"
 #include "bench/judgement/measure_demands.h"
@@ -24,7 +23,8 @@ double posterior_share_inside(const FleetPrior& prior, const MeasuredValue& meas
                               const ToleranceLimits& tolerance) {
   const double of_fleet = predictive_variance(prior, prior.sd), of_unit = measured.u * measured.u;
   const double weight = of_fleet / (of_fleet + of_unit);
-  const boost::math::normal posterior(weight * measured.value + (1 - weight) * prior.mean, std::sqrt(weight * of_unit));
+  const distribution::Normal posterior(weight * measured.value + (1 - weight) * prior.mean,
+                                       std::sqrt(weight * of_unit));
   double outside = 0;
   if (tolerance.at_least) outside += cdf(posterior, *tolerance.at_least);
   if (tolerance.at_most) outside += cdf(complement(posterior, *tolerance.at_most));
@@ -89,7 +89,7 @@ Result<FleetPrior> fleet_prior(std::span<const UnitValue> units) {
 
 SpreadInterval spread_interval(const FleetPrior& prior) {
   const double freedom = prior.units - 1, of_values = prior.sd * prior.sd + prior.u * prior.u;
-  const boost::math::chi_squared chi(freedom);
+  const distribution::ChiSquared chi(freedom);
   constexpr double tail = 0.025;
   const auto of = [&](double quantile_of_chi) {
     return std::sqrt(std::max(0.0, of_values * freedom / quantile_of_chi - prior.u * prior.u));

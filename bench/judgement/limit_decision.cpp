@@ -1,22 +1,22 @@
 #include "bench/judgement/limit_decision.h"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+
+#include "acquisition/core/distributions.h"
 
 namespace todbench {
 namespace {
 
 double upper_quantile(double tail, const std::optional<double>& degrees_of_freedom) {
   if (tail == 0.5) return 0;
-  if (degrees_of_freedom) return quantile(complement(boost::math::students_t(*degrees_of_freedom), tail));
-  return quantile(complement(boost::math::normal(), tail));
+  if (degrees_of_freedom) return quantile(complement(distribution::StudentsT(*degrees_of_freedom), tail));
+  return quantile(complement(distribution::Normal(), tail));
 }
 
 double below(double z, const std::optional<double>& degrees_of_freedom) {
-  if (degrees_of_freedom) return cdf(boost::math::students_t(*degrees_of_freedom), z);
-  return cdf(boost::math::normal(), z);
+  if (degrees_of_freedom) return cdf(distribution::StudentsT(*degrees_of_freedom), z);
+  return cdf(distribution::Normal(), z);
 }
 
 /// The end of an interval with its distance from the value times `factor`; exactly the end where that is 1.

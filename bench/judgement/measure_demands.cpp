@@ -92,6 +92,8 @@ Interval expanded(double value, const Interval& statistical, double relative_u) 
   const double stated = normal_z95 * relative_u * std::abs(value);
   Interval out;
   if (statistical.low) out.low = value - std::hypot(value - *statistical.low, stated);
+  // A size that cannot be negative, such as a noise, is not by its scale either.
+  if (out.low && *statistical.low >= 0) out.low = std::max(0.0, *out.low);
   if (statistical.high) out.high = value + std::hypot(*statistical.high - value, stated);
   return out;
 }
@@ -226,6 +228,7 @@ DemandKindRow measure_row(DemandKind kind) {
     case DemandKind::acuity:
     case DemandKind::identified:
     case DemandKind::equivalence:
+    case DemandKind::scene_dependence:
     case DemandKind::zone_bad_pixels:
     case DemandKind::zone_substituted_pixels:
     case DemandKind::zone_clusters:

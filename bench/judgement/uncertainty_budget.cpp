@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numbers>
 #include <set>
 
+#include "acquisition/core/distributions.h"
 #include "acquisition/core/rng.h"
 #include "bench/text/text.h"
 
@@ -127,9 +126,9 @@ Result<CombinedUncertainty> combined(const UncertaintyBudget& budget, std::uint6
   constexpr double upper = 0.025;
   if (fourth > 0) {
     out.nu_eff = variance * variance / fourth;
-    out.k = quantile(complement(boost::math::students_t(*out.nu_eff), upper));
+    out.k = quantile(complement(distribution::StudentsT(*out.nu_eff), upper));
   } else {
-    out.k = quantile(complement(boost::math::normal(), upper));
+    out.k = quantile(complement(distribution::Normal(), upper));
   }
   out.expanded_gum = out.k * out.u;
   if (draws > 0) out.expanded_monte_carlo = monte_carlo_half_width(budget, out.shares, seed, draws);

@@ -107,7 +107,7 @@ std::optional<double> Demand::producer_risk() const {
 
 bool threshold_identified(const PsychometricFit& fit) {
   return fit.threshold && fit.ci95.low && fit.ci95.high && fit.verdict != FitVerdict::flat_or_decreasing &&
-         fit.verdict != FitVerdict::no_data;
+         fit.verdict != FitVerdict::underdetermined && fit.verdict != FitVerdict::no_data;
 }
 
 bool limits_asked(const Verdict& verdict) {

@@ -117,7 +117,7 @@ struct Evidence {
 [[nodiscard]] bool limits_asked(const Verdict& verdict);
 
 /// A fit says where the threshold is: it has a point and both sides of its interval, and its slope is not at the lower
-/// bound.
+/// bound, nor the point one of a ridge (fewer sizes than parameters).
 [[nodiscard]] bool threshold_identified(const PsychometricFit& fit);
 
 /// Conditional decisions are inconclusive.

@@ -6,6 +6,7 @@
 
 #include "bench/plan/key_places.h"
 #include "bench/plan/plan_checks.h"
+#include "bench/plan/plan_options.h"
 
 namespace todbench {
 
@@ -24,6 +25,20 @@ std::vector<PlanKey> change_keys() {
           key("mounting_change_s", "what another mounting of a plate takes", &TargetPlan::mounting_change_s),
           key("contrast_change_s", "what another contrast takes", &TargetPlan::contrast_change_s),
           key("shift_change_s", "what a sub-pixel shift takes", &TargetPlan::shift_change_s)};
+}
+
+/// Frames of each contrast go with their contrast; those of a new one are chosen.
+KeyPlace contrasts_place() {
+  KeyPlace place = in(&Plan::target, &TargetPlan::delta_t_k);
+  place.set = [set = place.set](Plan& plan, std::size_t row, const KeyValue& value) {
+    const Plan before = plan;
+    set(plan, row, value);
+    std::vector<int>& frames = plan.schedule.frames_per_presentation;
+    if (frames.size() < 2 || plan.target.delta_t_k == before.target.delta_t_k) return;
+    frames.clear();
+    for (const double delta_t_k : plan.target.delta_t_k) frames.push_back(frames_at(before, delta_t_k));
+  };
+  return place;
 }
 
 }  // namespace
@@ -206,7 +221,7 @@ PlanSection target_section() {
            .type = NumbersKey{NumberRange::between(-500, 500), "contrast"},
            .unit = "K",
            .sentence = "contrasts, never 0; the sign is the polarity",
-           .place = of(&TargetPlan::delta_t_k),
+           .place = contrasts_place(),
            .form = {"Contrasts ΔT", "planContrasts"},
            .option = {"--delta-t-k"},
            .check = check_contrasts},
@@ -342,6 +357,17 @@ PlanSection module_section() {
                 .sentence = "handed over in the header, as texts",
                 .place = in_row(rows, &ModulePlan::parameters)}},
       .rows = rows_of(rows)};
+}
+
+PlanSection report_section() {
+  return {.name = "report",
+          .sentence = "What the report looks like.",
+          .keys = {{.name = "letterhead",
+                    .type = ResourceKey{ResourceKind::letterhead},
+                    .sentence = "logo and texts of the laboratory: a TOML file, which the session keeps",
+                    .place = in(&Plan::report, &ReportPlan::letterhead),
+                    .option = {"--letterhead", OptionOf::measurements},
+                    .written_at_default = false}}};
 }
 
 }  // namespace todbench

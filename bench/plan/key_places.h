@@ -93,6 +93,9 @@ KeyValue to_key_value(const T& member) {
 inline KeyValue to_key_value(const std::optional<double>& member) {
   return member ? KeyValue(*member) : KeyValue();
 }
+inline KeyValue to_key_value(const std::vector<int>& member) {
+  return std::vector<double>(member.begin(), member.end());
+}
 inline KeyValue to_key_value(const SceneMotion& member) {
   return std::vector<double>{member.x_mrad_s, member.y_mrad_s};
 }
@@ -114,6 +117,12 @@ void from_key_value(T& member, const KeyValue& value) {
 inline void from_key_value(std::optional<double>& member, const KeyValue& value) {
   const auto* number = std::get_if<double>(&value);
   member = number != nullptr ? std::optional(*number) : std::nullopt;
+}
+inline void from_key_value(std::vector<int>& member, const KeyValue& value) {
+  member.clear();
+  // What is no number of frames is refused by its range: it must not overflow before.
+  for (const double number : std::get<std::vector<double>>(value))
+    member.push_back(number >= -1e9 && number <= 1e9 ? static_cast<int>(number) : -1);
 }
 /// Of another length than two: what the reader has refused.
 inline void from_key_value(SceneMotion& member, const KeyValue& value) {

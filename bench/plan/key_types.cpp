@@ -80,6 +80,16 @@ std::string whole_expected(const WholeKey& type) {
   return "a whole number from " + std::to_string(type.low) + " to " + std::to_string(type.high);
 }
 
+std::string wholes_expected(const WholesKey& type) {
+  return whole_expected(type.each) + ", or a list of them";
+}
+
+/// Whole numbers are kept as doubles in a list.
+bool is_whole(const WholeKey& type, double value) {
+  return value == std::floor(value) && value >= static_cast<double>(type.low) &&
+         value <= static_cast<double>(type.high);
+}
+
 std::string number_or_word_expected(const NumberOrWordKey& type) {
   return type.range.describe() + " or \"" + std::string(type.word) + "\"";
 }
@@ -122,6 +132,17 @@ Result<KeyValue> whole_from(const WholeKey& type, std::string_view text) {
   const auto whole = static_cast<std::int64_t>(*value);
   if (whole < type.low || whole > type.high) return refused(whole_expected(type), text);
   return KeyValue(whole);
+}
+
+Result<KeyValue> wholes_from(const WholesKey& type, std::string_view text) {
+  std::vector<double> numbers;
+  for (const std::string& part : parts_of(text)) {
+    const std::optional<double> value = parse_number(part);
+    if (!value || !is_whole(type.each, *value)) return refused(whole_expected(type.each), part);
+    numbers.push_back(*value);
+  }
+  if (numbers.empty()) return refused(wholes_expected(type), text);
+  return KeyValue(std::move(numbers));
 }
 
 Result<KeyValue> numbers_from(const NumbersKey& type, std::string_view text) {
@@ -170,12 +191,16 @@ std::string expected_of(const KeyType& type) {
           [](const NumberKey& t) { return t.range.describe(); },
           [](const OptionalNumberKey& t) { return t.range.describe(); },
           [](const NumberOrWordKey& t) { return number_or_word_expected(t); },
-          [](const WholeKey& t) { return whole_expected(t); }, [](const ChoiceKey& t) { return one_of(t.words); },
+          [](const WholeKey& t) { return whole_expected(t); }, [](const WholesKey& t) { return wholes_expected(t); },
+          [](const ChoiceKey& t) { return one_of(t.words); },
           [](const NumbersKey& t) {
             return (t.count ? std::string(t.noun) : "a list") + ", each " + t.range.describe();
           },
           [](const ChoicesKey& t) { return "a list, each " + one_of(t.words); },
-          [](const ResourceKey& t) { return "name or file of a " + std::string(to_string(t.kind)); },
+          [](const ResourceKey& t) {
+            return (resource_names(t.kind).empty() ? "file of a " : "name or file of a ") +
+                   std::string(to_string(t.kind));
+          },
           [](const ResourcesKey& t) { return "a list, each name or file of a " + std::string(to_string(t.kind)); },
           [](const FreeTableKey&) -> std::string { return "a table of names and values"; }},
       type);
@@ -198,6 +223,16 @@ std::vector<ValueMistake> mistakes_of(const KeyType& type, const KeyValue& value
             const auto whole = std::get<std::int64_t>(value);
             if (whole >= t.low && whole <= t.high) return Mistakes();
             return Mistakes{{std::nullopt, found(whole_expected(t), std::to_string(whole))}};
+          },
+          [&](const WholesKey& t) {
+            const auto& list = std::get<std::vector<double>>(value);
+            Mistakes mistakes;
+            if (list.empty()) mistakes.push_back({std::nullopt, "expected " + wholes_expected(t)});
+            for (std::size_t i = 0; i < list.size(); ++i) {
+              if (!is_whole(t.each, list[i]))
+                mistakes.push_back({i, found(whole_expected(t.each), number_found(list[i]))});
+            }
+            return mistakes;
           },
           [&](const ChoiceKey& t) {
             const auto& word = std::get<std::string>(value);
@@ -228,6 +263,9 @@ KeyValue read_value(const KeyType& type, TomlReader& reader, std::string_view ke
           },
           [&](const WholeKey& t) {
             return KeyValue(reader.whole(key, t.low, t.high, alternative<std::int64_t>(fallback)));
+          },
+          [&](const WholesKey& t) {
+            return KeyValue(reader.wholes(key, t.each.low, t.each.high, alternative<std::vector<double>>(fallback)));
           },
           [&](const ChoiceKey& t) { return KeyValue(reader.choice(key, t.words, alternative<std::string>(fallback))); },
           [&](const NumbersKey& t) {
@@ -270,7 +308,10 @@ std::optional<std::string> toml_value(const KeyType& type, const KeyValue& value
                  [](std::int64_t whole) { return Text(std::to_string(whole)); },
                  [](double number) { return Text(number_text(number)); },
                  [](const std::string& text) { return Text(toml_string(text)); },
-                 [](const std::vector<double>& list) { return Text("[" + joined(list, number_text) + "]"); },
+                 [&](const std::vector<double>& list) {
+                   const bool one = list.size() == 1 && std::holds_alternative<WholesKey>(type);
+                   return Text(one ? number_text(list[0]) : "[" + joined(list, number_text) + "]");
+                 },
                  [](const std::vector<std::string>& list) { return Text("[" + joined(list, toml_string) + "]"); },
                  [](const std::map<std::string, std::string>&) { return Text(); }},
       value);
@@ -312,6 +353,7 @@ Result<KeyValue> value_from_text(const KeyType& type, std::string_view text) {
                    return text == t.word ? Value(KeyValue()) : number_from(t.range, number_or_word_expected(t), text);
                  },
                  [&](const WholeKey& t) { return whole_from(t, text); },
+                 [&](const WholesKey& t) { return wholes_from(t, text); },
                  [&](const ChoiceKey& t) {
                    return is_among(t.words, std::string(text))
                               ? Value(std::string(text))

@@ -38,6 +38,10 @@ struct WholeKey {
   std::int64_t low = 0;
   std::int64_t high = 0;
 };
+/// One, or a list of one or more.
+struct WholesKey {
+  WholeKey each{};
+};
 struct ChoiceKey {
   std::vector<std::string> words;
 };
@@ -67,8 +71,8 @@ struct ResourcesKey {
 /// A table of names that are free, values as text.
 struct FreeTableKey {};
 
-using KeyType = std::variant<TextKey, FlagKey, NumberKey, OptionalNumberKey, NumberOrWordKey, WholeKey, ChoiceKey,
-                             NumbersKey, ChoicesKey, ResourceKey, ResourcesKey, FreeTableKey>;
+using KeyType = std::variant<TextKey, FlagKey, NumberKey, OptionalNumberKey, NumberOrWordKey, WholeKey, WholesKey,
+                             ChoiceKey, NumbersKey, ChoicesKey, ResourceKey, ResourcesKey, FreeTableKey>;
 
 /// "a number above 0", "one of 'a', 'b'": what a key takes, for messages, tooltips and documents.
 [[nodiscard]] std::string expected_of(const KeyType& type);

@@ -138,7 +138,8 @@ PlanSection zone_limits_section() {
                     &ZoneLimit::substituted_pixels),
                most("clusters", "of two bad or substituted pixels that touch, or more", &ZoneLimit::clusters),
                most("largest_cluster", "pixels", &ZoneLimit::largest_cluster)},
-      .rows = rows_of(rows)};
+      .rows = rows_of(rows),
+      .form = {"Limits on pixels by zone", "planZoneLimits"}};
   section.keys.back().check = check_zone_limits;
   return section;
 }
@@ -185,7 +186,8 @@ PlanSection fleet_section() {
                     .type = TextKey{},
                     .sentence = "where they are, in words",
                     .place = in_row(rows, &FleetRow::source)}},
-          .rows = rows_of(rows)};
+          .rows = rows_of(rows),
+          .form = {"Earlier units of the fleet", "planFleets"}};
 }
 
 PlanSection uncertainty_section() {

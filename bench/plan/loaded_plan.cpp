@@ -61,7 +61,15 @@ bool is_asked_for(const ResourceKey& key, const Plan& plan) {
   if (key.kind == ResourceKind::plate) return key.use == PlateUse::mtf ? plan.measures.mtf : plan.measures.ctf;
   if (key.kind == ResourceKind::black_body || key.kind == ResourceKind::stage)
     return plan.target.kind == TargetKind::scpi;
+  if (key.kind == ResourceKind::letterhead) return !plan.report.letterhead.empty();
   return true;
+}
+
+std::vector<ValueMistake> read_letterhead(const Plan& plan, const ResourceFinder& find, PlanParts& parts) {
+  parts.letterhead.reset();
+  if (!is_asked_for({ResourceKind::letterhead}, plan)) return {};
+  return keep(read_part(ResourceKind::letterhead, plan.report.letterhead, find, parts, parse_letterhead),
+              parts.letterhead.emplace());
 }
 
 /// Why a plate cannot be used for a measure; empty: it can.
@@ -149,6 +157,8 @@ std::vector<ValueMistake> read_parts(const KeyType& type, const Plan& plan, cons
       return read_instrument(kind, plan.target.black_body_table, plan, find, parts);
     case ResourceKind::stage:
       return read_instrument(kind, plan.target.stage_table, plan, find, parts);
+    case ResourceKind::letterhead:
+      return read_letterhead(plan, find, parts);
     case ResourceKind::plan:
     case ResourceKind::atmosphere:
     case ResourceKind::scene:

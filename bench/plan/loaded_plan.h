@@ -11,6 +11,7 @@
 
 #include "acquisition/core/result.h"
 #include "bench/plan/key_types.h"
+#include "bench/plan/letterhead.h"
 #include "bench/plan/plan.h"
 #include "bench/plan/resources.h"
 #include "hvs/observer/template_observer.h"
@@ -28,6 +29,7 @@ struct PlanParts {
   std::optional<TargetPlate> mtf_plate{};  ///< where [measures] asks for an MTF
   std::optional<TargetPlate> ctf_plate{};  ///< where it asks for a CTF
   InstrumentTable black_body{}, stage{};   ///< of a plan with a target of kind scpi; else whatever
+  std::optional<Letterhead> letterhead{};  ///< where [report] names one
   /// The texts they were read from, by kind and reference.
   std::map<std::pair<ResourceKind, std::string>, Resource> sources{};
 };

@@ -3,7 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/core/normal.h"
+#include "bench/plan/joined_uncertainty.h"
+
 namespace todbench {
+namespace {
+
+/// The standard uncertainty with very many degrees of freedom that has the same interval of 95 %.
+double widened(const JoinedUncertainty& joined) {
+  return joined.half_width(0.025) / normal_z95;
+}
+
+}  // namespace
 
 std::string_view to_string(ScheduleKind kind) {
   return kind == ScheduleKind::constant ? "constant" : "adaptive";
@@ -125,36 +136,38 @@ bool takes_at_most(LimitedMeasure measure) {
 }
 
 double relative_u_of_scale(const Plan& plan) {
-  double largest_k = 0, sum = 0;
+  double largest_k = 0;
+  JoinedUncertainty sum;
   for (const double step_k : plan.measures.transfer_steps_k) largest_k = std::max(largest_k, std::abs(step_k));
   for (const BudgetRow& row : plan.uncertainty.rows) {
     const BudgetInput input = input_of(row);
     if (kind_of(input) != InputKind::contrast || input == BudgetInput::camera_scale || row.sensitivity) continue;
     const BudgetUnit unit = budget_unit(InputKind::contrast, row.unit).value_or(BudgetUnit{});
-    sum = std::hypot(sum, standard_of(row) * unit.factor / (unit.relative || !(largest_k > 0) ? 1 : largest_k));
+    sum.add(standard_of(row) * unit.factor / (unit.relative || !(largest_k > 0) ? 1 : largest_k),
+            row.degrees_of_freedom);
   }
-  return sum;
+  return widened(sum);
 }
 
 double relative_u_of_camera_scale(const Plan& plan) {
-  double sum = 0;
+  JoinedUncertainty sum;
   for (const BudgetRow& row : plan.uncertainty.rows) {
     const BudgetUnit unit = budget_unit(InputKind::contrast, row.unit).value_or(BudgetUnit{});
     if (input_of(row) != BudgetInput::camera_scale || row.sensitivity || !unit.relative) continue;
-    sum = std::hypot(sum, standard_of(row) * unit.factor);
+    sum.add(standard_of(row) * unit.factor, row.degrees_of_freedom);
   }
-  return sum;
+  return widened(sum);
 }
 
 double relative_u_of_distance(const Plan& plan) {
-  double sum = 0;
+  JoinedUncertainty sum;
   for (const BudgetRow& row : plan.uncertainty.rows) {
     const BudgetInput input = input_of(row);
     if ((input != BudgetInput::distance && input != BudgetInput::entrance_pupil) || row.sensitivity) continue;
     const BudgetUnit unit = budget_unit(InputKind::geometry, row.unit).value_or(BudgetUnit{});
-    sum = std::hypot(sum, standard_of(row) * unit.factor / (unit.relative ? 1 : plan.target.distance_m));
+    sum.add(standard_of(row) * unit.factor / (unit.relative ? 1 : plan.target.distance_m), row.degrees_of_freedom);
   }
-  return sum;
+  return widened(sum);
 }
 
 double known_u_of_acuity(const Plan& plan, BudgetCommon common) {

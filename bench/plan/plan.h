@@ -106,8 +106,9 @@ struct SchedulePlan {
   double half_width_percent = 10;  ///< adaptive: wanted half-width of the 95 % interval of S75
   int max_presentations = 1000;    ///< adaptive: hard cap over all contrasts
   AnswersChoice answers = AnswersChoice::automatic;
-  /// Successive good ones, over which graded answers are averaged; 0: as many as chosen_answers() says.
-  int frames_per_presentation = 0;
+  /// Successive good ones, over which graded answers are averaged: of every contrast, or one number for each of
+  /// delta_t_k in its order; 0: chosen by with_frames() (bench/run/prediction.h).
+  std::vector<int> frames_per_presentation{0};
   bool operator==(const SchedulePlan&) const = default;
 };
 
@@ -161,6 +162,7 @@ enum class DemandKind {
   drift_rate,
   drift_pattern_rate,
   response_time,
+  scene_dependence,  ///< of the response on a hot bar in the field, `todbench scene-dependence`
   // Pixels of a zone, [[limits.zone]].
   zone_bad_pixels,
   zone_substituted_pixels,
@@ -354,6 +356,12 @@ struct MotionPlan {
   bool operator==(const MotionPlan&) const = default;
 };
 
+/// [report]
+struct ReportPlan {
+  std::string letterhead;  ///< file (bench/plan/letterhead.h); empty: none
+  bool operator==(const ReportPlan&) const = default;
+};
+
 /// [[instrument]]: what the calibration of the result hangs on. For the report; a date that has passed refuses the
 /// measurement.
 struct InstrumentPlan {
@@ -380,6 +388,7 @@ struct Plan {
   MeasurementPlan measurement;
   MeasuresPlan measures;
   MotionPlan motion;
+  ReportPlan report;
   UncertaintyPlan uncertainty;
   std::vector<InstrumentPlan> instruments;
   /// [[module]]: those of place picture in the order of their rows behind camera and twin; at most one of place
@@ -405,7 +414,7 @@ struct Plan {
 [[nodiscard]] Result<void> validate(const Plan& plan);
 
 /// Relative standard uncertainty that the stated rows give the temperature scale of a camera: those of the contrast,
-/// without the camera's own; kelvin count by the largest step of the signal transfer.
+/// without the camera's own; kelvin count by the largest step of the signal transfer. 1.96 of it hold 95 %.
 [[nodiscard]] double relative_u_of_scale(const Plan& plan);
 /// The same for a temperature difference in the camera's scale: its camera-scale row.
 [[nodiscard]] double relative_u_of_camera_scale(const Plan& plan);

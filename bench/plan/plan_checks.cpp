@@ -95,7 +95,14 @@ ValueMistakes check_force(const Plan& plan, std::size_t /*row*/) {
 }
 
 ValueMistakes check_frames_per_presentation(const Plan& plan, std::size_t /*row*/) {
-  if (plan.schedule.frames_per_presentation <= 1 || plan.schedule.answers != AnswersChoice::binary) return {};
+  const std::vector<int>& frames = plan.schedule.frames_per_presentation;
+  if (frames.size() > 1 && frames.size() != plan.target.delta_t_k.size()) {
+    return {{std::nullopt, "expected one number, or one for each of the " +
+                               std::to_string(plan.target.delta_t_k.size()) + " contrasts of delta_t_k, found " +
+                               std::to_string(frames.size())}};
+  }
+  if (plan.schedule.answers != AnswersChoice::binary || std::ranges::all_of(frames, [](int n) { return n <= 1; }))
+    return {};
   return {{std::nullopt, "more than one frame needs answers = \"graded\": right or wrong is the answer to one frame"}};
 }
 

@@ -38,7 +38,8 @@ std::string plan_keys_page() {
       "`plan_keys_page FILE` writes this page, and a\ntest fails when it is not what the table says. "
       "A key that is left out has its default. An unknown or misspelt key is refused with file and\nline. "
       "Files named in a plan are relative to it. Options of the command line stand in place of a key: "
-      "`--record-frames` of `measure` and `demo`,\nthe others of `simulate` and `plan`; `--skip` and `--force` "
+      "`--record-frames` and `--letterhead` of `measure` and `demo`,\nthe others of `simulate` and `plan`; `--skip` "
+      "and `--force` "
       "add to the plan's lists, `--seed` stands for `seed` everywhere.\n";
   for (const PlanSection& section : plan_sections()) {
     const std::string name(section.name);

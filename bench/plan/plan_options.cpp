@@ -95,9 +95,19 @@ std::size_t presentations_of_contrast(const Plan& plan) {
 
 }  // namespace
 
-AnswersTaken chosen_answers(const Plan& plan, const SensorSpec& sensor) {
+int frames_at(const Plan& plan, double delta_t_k) {
+  const std::vector<int>& frames = plan.schedule.frames_per_presentation;
+  if (frames.size() == 1) return frames[0];
+  const std::vector<double>& contrasts = plan.target.delta_t_k;
+  for (std::size_t i = 0; i < std::min(frames.size(), contrasts.size()); ++i)
+    if (same_contrast(contrasts[i], delta_t_k)) return frames[i];
+  return 0;
+}
+
+AnswersTaken chosen_answers(const Plan& plan, const SensorSpec& sensor, std::optional<double> delta_t_k) {
   const auto graded = [&](AnswersReason reason) {
-    const int frames = plan.schedule.frames_per_presentation;
+    const double first = plan.target.delta_t_k.empty() ? 0 : plan.target.delta_t_k[0];
+    const int frames = frames_at(plan, delta_t_k.value_or(first));
     return AnswersTaken{AnswerKind::graded, frames > 0 ? frames : frames_of_graded_answers, reason};
   };
   const auto binary = [](AnswersReason reason) { return AnswersTaken{AnswerKind::binary, 1, reason}; };

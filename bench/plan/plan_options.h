@@ -46,10 +46,14 @@ struct ChosenEstimator {
 inline constexpr int frames_of_graded_answers = 4;
 /// Of a contrast, below which nobody knows how graded answers scatter.
 inline constexpr int least_graded_presentations = 8;
+/// Those that the plan says of a contrast; 0: it leaves them open, or does not have the contrast.
+[[nodiscard]] int frames_at(const Plan& plan, double delta_t_k);
 /// The one place where the answers of a plan are chosen: those that it names; where it names none, graded ones where
 /// the model observer judges, the function of the twin is fitted, and their intervals are proven: with a constant
 /// schedule of eight presentations or more at each contrast, contrasts in kelvin and no lapse.
-[[nodiscard]] AnswersTaken chosen_answers(const Plan& plan, const SensorSpec& sensor);
+/// Frames: at the contrast, without one at the first of the plan; where that leaves them open, four of graded answers.
+[[nodiscard]] AnswersTaken chosen_answers(const Plan& plan, const SensorSpec& sensor,
+                                          std::optional<double> delta_t_k = std::nullopt);
 /// The margin of the limits, or 10 % where none is demanded.
 [[nodiscard]] ComparisonOptions comparison_options(const Plan& plan);
 /// The named accuracy with the tolerance of the plan; half of the tolerance is for the standard error of the direct

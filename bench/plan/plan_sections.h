@@ -16,6 +16,7 @@ inline constexpr NumberRange share = NumberRange::between(0, 1);
 [[nodiscard]] PlanSection motion_section();
 [[nodiscard]] PlanSection instrument_section();
 [[nodiscard]] PlanSection module_section();
+[[nodiscard]] PlanSection report_section();
 
 // run_keys.cpp
 [[nodiscard]] PlanSection observer_section();

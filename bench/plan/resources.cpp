@@ -26,6 +26,8 @@ std::string_view to_string(ResourceKind kind) {
       return "blackbody";
     case ResourceKind::stage:
       return "stage";
+    case ResourceKind::letterhead:
+      return "letterhead";
   }
   return "";
 }
@@ -60,6 +62,9 @@ Result<Resource> find_resource(ResourceKind kind, std::string_view reference) {
     return Resource{std::string(reference) + " (built in)", std::string(resource.text)};
   }
   const std::vector<std::string> names = resource_names(kind);
+  if (names.empty())
+    return fail(ErrorCode::invalid_input, "'" + one_line(reference) + "': the file of a " +
+                                              std::string(to_string(kind)) + " needs a slash or the ending .toml");
   return fail(ErrorCode::invalid_input, "unknown " + std::string(to_string(kind)) + " '" + one_line(reference) + "'" +
                                             nearest_name_hint(reference, names) + " (known: " + quoted_list(names) +
                                             "; a file needs a slash or the ending .toml)");

@@ -12,7 +12,19 @@
 
 namespace todbench {
 
-enum class ResourceKind { plate, sensor, observer, plan, atmosphere, scene, target, target_set, black_body, stage };
+enum class ResourceKind {
+  plate,
+  sensor,
+  observer,
+  plan,
+  atmosphere,
+  scene,
+  target,
+  target_set,
+  black_body,
+  stage,
+  letterhead
+};
 [[nodiscard]] std::string_view to_string(ResourceKind kind);
 
 /// A file as it was compiled in, by its name without folder and ending.

@@ -111,9 +111,9 @@ PlanSection schedule_section() {
                                 "latter where the function of the twin is fitted",
                     .place = of(&SchedulePlan::answers)},
                    {.name = "frames_per_presentation",
-                    .type = WholeKey{0, 1000},
-                    .sentence = "successive good frames over which graded answers are averaged; 0: 4 of graded "
-                                "answers, else 1",
+                    .type = WholesKey{{0, 1000}},
+                    .sentence = "successive good frames over which graded answers are averaged, of every contrast or "
+                                "one number for each of delta_t_k; 0: chosen, see measurement-method.md",
                     .place = of(&SchedulePlan::frames_per_presentation),
                     .check = check_frames_per_presentation}}};
 }

@@ -169,6 +169,29 @@ std::int64_t TomlReader::whole(std::string_view key, std::int64_t low, std::int6
   return fallback.value_or(low);
 }
 
+std::vector<double> TomlReader::wholes(std::string_view key, std::int64_t low, std::int64_t high,
+                                       const std::optional<std::vector<double>>& fallback) {
+  const std::string expected = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+  const toml::node* node = document_->ask(*table_, key, !fallback, expected);
+  if (!node) return fallback.value_or(std::vector<double>());
+  std::vector<double> values;
+  const auto keep = [&](const toml::node& element) {
+    const auto* value = element.as_integer();
+    if (value && value->get() >= low && value->get() <= high)
+      values.push_back(static_cast<double>(value->get()));
+    else
+      document_->wrong(*table_, key, line_of(element), expected_found(expected, element));
+  };
+  const auto* list = node->as_array();
+  if (!list) keep(*node);
+  if (list && list->empty())
+    document_->wrong(*table_, key, line_of(*node), expected_found(expected + ", or a list of them", *node));
+  if (list) {
+    for (const toml::node& element : *list) keep(element);
+  }
+  return values;
+}
+
 bool TomlReader::flag(std::string_view key, std::optional<bool> fallback) {
   const std::string expected = "true or false";
   const toml::node* node = document_->ask(*table_, key, !fallback, expected);

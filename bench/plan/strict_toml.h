@@ -31,6 +31,9 @@ class TomlReader {
   [[nodiscard]] double number(std::string_view key, const NumberRange& range, std::optional<double> fallback);
   [[nodiscard]] std::int64_t whole(std::string_view key, std::int64_t low, std::int64_t high,
                                    std::optional<std::int64_t> fallback);
+  /// A whole number, or a list of one or more.
+  [[nodiscard]] std::vector<double> wholes(std::string_view key, std::int64_t low, std::int64_t high,
+                                           const std::optional<std::vector<double>>& fallback);
   /// true or false.
   [[nodiscard]] bool flag(std::string_view key, std::optional<bool> fallback);
   /// One of the words in `allowed`.

@@ -19,7 +19,8 @@
 namespace todbench {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 51> names{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 53> names{{
+    {"scene_ratio", "Response to triangles, hot bar in the field over without"},
     {"transfer_slope", "Temperature scale: contrast seen over contrast shown"},
     {"transfer_offset", "Temperature scale: offset"},
     {"transfer_nonlinearity", "Temperature scale: nonlinearity"},
@@ -31,6 +32,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 51> names{{
     {"keystone_x", "Keystone: scale at the plate's right border over that at its left, less 1"},
     {"keystone_y", "Keystone: scale at the plate's lower border over that at its upper, less 1"},
     {"distortion", "Radial distortion at the corner of the picture"},
+    {"distortion_model", "Radial distortion at the corner, of the sensor model"},
     {"geometry_residual", "Places of the triangles: what the fitted lens leaves"},
     {"temporal_noise", "Temporal noise of a pixel"},
     {"netd", "NETD (temporal noise over the temperature scale)"},
@@ -55,10 +57,10 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 51> names{{
     {"noise_tvh", "3-D noise tvh: pixels in time"},
     {"picture_residual", "Picture of the plate against the sensor model: residual"},
     {"picture_residual_over_noise", "Picture of the plate: residual over the temporal noise of the mean"},
-    {"mtf_x", "MTF along x"},
+    {"mtf_x", "MTF along x at the frequency of the plan"},
     {"mtf50_x", "Frequency of MTF 0.5 along x"},
     {"mtf_x_model", "MTF along x, closed form of the sensor model"},
-    {"mtf_y", "MTF along y"},
+    {"mtf_y", "MTF along y at the frequency of the plan"},
     {"mtf50_y", "Frequency of MTF 0.5 along y"},
     {"mtf_y_model", "MTF along y, closed form of the sensor model"},
     {"ctf_x", "CTF of four bars along x, best sampling phase"},
@@ -76,9 +78,10 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 51> names{{
 std::string name_of(const MeasureLine& line) {
   if (const std::string name = pixel_measure_name(line.measure); !name.empty())
     return name + (line.unit == "1" ? "" : " (" + line.unit + ")");
-  const auto found =
-      std::find_if(names.begin(), names.end(), [&](const auto& row) { return row.first == line.measure; });
-  return (found == names.end() ? line.measure : std::string(found->second)) +
+  // "mtf_x (NAME)"
+  const std::string measure = line.measure.substr(0, line.measure.find(" ("));
+  const auto found = std::find_if(names.begin(), names.end(), [&](const auto& row) { return row.first == measure; });
+  return (found == names.end() ? line.measure : std::string(found->second) + line.measure.substr(measure.size())) +
          (line.unit == "1" ? "" : " (" + line.unit + ")");
 }
 
@@ -234,7 +237,8 @@ std::optional<Section> measures_section(const ReportData& data) {
   Section section{"Physical measures", {}};
   Table table{.caption = "", .header = {"Measure", data.camera ? "camera" : "simulated sensor"}, .rows = {}};
   if (twin) table.header.emplace_back("simulated twin");
-  std::vector<std::string> conditions;
+  table.header.emplace_back("Conditions");
+  std::vector<std::string> conditions;  // each with its number, which the rows name
   std::vector<MeasureLine> lines = (main ? main : twin)->lines;
   // What only the twin has, such as its closed form.
   if (main && twin) {
@@ -247,11 +251,14 @@ std::optional<Section> measures_section(const ReportData& data) {
     const bool closed_form = of_main == nullptr && line.measure.ends_with("_model");
     std::vector<RichText> row{plain(name_of(line)), closed_form ? plain("–") : value_of(of_main)};
     if (twin) row.push_back(value_of(line_of(twin, line.measure)));
+    const auto known = std::find(conditions.begin(), conditions.end(), line.conditions);
+    row.push_back(plain(std::to_string(known - conditions.begin() + 1)));
+    if (known == conditions.end()) conditions.push_back(line.conditions);
     table.rows.push_back(std::move(row));
-    if (std::find(conditions.begin(), conditions.end(), line.conditions) == conditions.end())
-      conditions.push_back(line.conditions);
   }
+  for (std::size_t i = 0; i < conditions.size(); ++i) conditions[i].insert(0, std::to_string(i + 1) + ": ");
   if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
+  if (!conditions.empty()) section.blocks.emplace_back(list_of(conditions));
   if (auto figures = transfer_figures(*data.measures, data.camera.has_value()))
     section.blocks.emplace_back(*std::move(figures));
   if (auto figures = mtf_figures(*data.measures, data.camera.has_value()))
@@ -266,7 +273,6 @@ std::optional<Section> measures_section(const ReportData& data) {
   if (main && main->picture) section.blocks.emplace_back(plate_figures(*main->picture, twin, data.camera.has_value()));
   if (auto figures = pixel_figures(*data.measures, data.camera.has_value()))
     section.blocks.emplace_back(*std::move(figures));
-  if (!conditions.empty()) section.blocks.emplace_back(list_of(conditions));
   std::vector<std::string> reasons;
   if (main) reasons = main->reasons;
   if (twin) {

@@ -31,6 +31,8 @@ std::pair<std::string, std::string> words_of(const PixelMap& map) {
   if (map.name == "temporal_noise") return {"Temporal noise of each pixel", greys};
   if (map.name == "fixed_pattern") return {"Fixed pattern, without shading", greys};
   if (map.name == "triangles") return {"The smallest triangles " + map.note, greys};
+  if (map.name == "bar_out") return {"Hot bar out of the field", ""};
+  if (map.name == "bar_in") return {"Hot bar in the field", ", by the grey scale of the picture without it"};
   if (map.name != "defects") return {map.name, greys};
   std::string colours = ", each drawn larger than it is; ";
   for (const DefectColour& colour : defect_colours()) colours += std::string(colour.words) + ", ";

@@ -58,6 +58,7 @@ Plot range_plot(std::span<const ModelRange> models) {
   plot.description = "Probability of a correct answer over range, one line for each model; the ranges for 75 % marked.";
   double farthest = 0;
   for (const auto& model : models) {
+    if (model.curve.empty() && !model.r75_m) continue;
     const ModelStyle& style = style_of(model);
     PlotSeries line{.label = "", .tone = style.tone, .marker = PlotMarker::none, .line = style.line, .points = {}};
     for (const auto& point : model.curve) {

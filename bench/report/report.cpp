@@ -70,11 +70,12 @@ Document report_document(const ReportData& data) {
   };
   add(identification_section(data));
   add(limits_section(data));
-  add(curve_section(data));
+  const bool curve = data.measured || data.simulated || !data.measures;
+  if (curve) add(curve_section(data));
   add(uncertainty_section(data));
   add(psychometric_section(data));
   add(human_section(data));
-  add(comparison_section(data));
+  if (curve) add(comparison_section(data));
   add(measures_section(data));
   add(set_up_section(data));
   add(effects_section(data));

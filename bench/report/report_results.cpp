@@ -264,14 +264,14 @@ RichText statistical_cell(const Demand& demand) {
 Table answers_table(const std::string& caption, const TodCurve& curve) {
   Table rows;
   rows.caption = caption;
-  rows.header = {"Set ΔT (K)", "Size (mrad)", "Correct / trials", "Proportion [Wilson 95 %]"};
+  rows.header = {"Set ΔT (K)", "Size (mrad)", "Correct / trials", "Proportion [95 %]"};
   for (const TodPoint& point : curve.points) {
-    for (const AnswersAtSize& answers : answers_by_size(point.levels)) {
-      rows.rows.push_back({plain(stated(point.set_delta_t_k)),
-                           plain(answers.size_mrad > 0 ? significant(answers.size_mrad, 4) : "0 (catch trials)"),
-                           unbroken(shown(answers.correct, 0) + " / " + shown(answers.total, 0)),
-                           interval_or_missing(answers.correct / answers.total,
-                                               wilson_interval(answers.correct, answers.total), "no trials")});
+    for (const AnswersAtSize& answers : answers_by_size(point)) {
+      rows.rows.push_back(
+          {plain(stated(point.set_delta_t_k)),
+           plain(answers.size_mrad > 0 ? significant(answers.size_mrad, 4) : "0 (catch trials)"),
+           unbroken(shown(answers.correct, 0) + " / " + shown(answers.total, 0)),
+           interval_or_missing(answers.correct / answers.total, proportion_interval(answers), "no trials")});
     }
   }
   return rows;
@@ -328,6 +328,9 @@ VerdictBox verdict_box(const ReportData& data) {
   if (data.cut_off)
     box.paragraphs.push_back(strong("Cut off:") +
                              plain(" the run wrote no manifest, so nothing vouches for its files."));
+  const auto by_a_bar = [](const Demand& demand) { return demand.kind == DemandKind::scene_dependence; };
+  if (data.verdict && std::any_of(data.verdict->demands.begin(), data.verdict->demands.end(), by_a_bar))
+    box.paragraphs.push_back(strong("About a hot bar in the field alone:") + plain(" " + data.verdict->reason + "."));
   if (verdict != ReportVerdict::not_judged && verdict != ReportVerdict::changed)
     box.paragraphs.push_back(strong("Decision rule:") + plain(" ") +
                              text_or_missing(data.verdict ? data.verdict->rule_in_words : "", "not stated"));
@@ -436,11 +439,13 @@ std::optional<Section> psychometric_section(const ReportData& data) {
   for (std::size_t i = 0; i < plots.size(); ++i)
     figures.figures.push_back({drawn(plots[i]), "Set contrast ΔT = " + stated(contrasts[i]) + " K"});
   if (figures.figures.empty()) return {};
-  return Section{"Psychometric functions",
-                 {std::move(figures),
-                  note(plain("Points: proportion correct with Wilson 95 % intervals, every trial taken as independent. "
-                             "Lines: fitted functions. Shaded: 95 % interval of S₇₅, widened for groups of trials. "
-                             "Dashed: threshold (75 %) and chance (25 %)."))}};
+  return Section{
+      "Psychometric functions",
+      {std::move(figures),
+       note(plain("Points: proportion correct with 95 % intervals: of right and wrong answers Wilson's, every trial "
+                  "taken as independent; of graded answers from their scatter over presentations. "
+                  "Lines: fitted functions. Shaded: 95 % interval of S₇₅, widened for groups of trials. "
+                  "Dashed: threshold (75 %) and chance (25 %)."))}};
 }
 
 /// The ratios by common phases; nothing where there are none.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "acquisition/core/distributions.h"
 #include "acquisition/core/normal.h"
 #include "bench/report/number_format.h"
 #include "tod/psychometric/acuity.h"
@@ -79,10 +80,9 @@ PlotSeries proportions(const NamedPoint& point, const PsychometricLayer& layer) 
   series.label = point.name;
   series.tone = layer.tone;
   series.marker = layer.marker;
-  for (const AnswersAtSize& answers : answers_by_size(point.point->levels))
+  for (const AnswersAtSize& answers : answers_by_size(*point.point))
     if (answers.size_mrad > 0)
-      series.points.push_back(
-          {answers.size_mrad, answers.correct / answers.total, {}, wilson_interval(answers.correct, answers.total)});
+      series.points.push_back({answers.size_mrad, answers.correct / answers.total, {}, proportion_interval(answers)});
   return series;
 }
 
@@ -125,15 +125,22 @@ void add_layer(Plot& plot, const NamedPoint& point, PsychometricForm form, const
 
 }  // namespace
 
-std::vector<AnswersAtSize> answers_by_size(std::span<const Level> levels) {
-  std::vector<Level> sorted(levels.begin(), levels.end());
+std::vector<AnswersAtSize> answers_by_size(const TodPoint& point) {
+  std::vector<Level> sorted = point.levels;
   std::stable_sort(sorted.begin(), sorted.end(), [](const Level& a, const Level& b) { return a.size < b.size; });
   std::vector<AnswersAtSize> answers;
   for (const Level& level : sorted) {
     if (!(level.total > 0)) continue;
-    if (answers.empty() || level.size > answers.back().size_mrad * (1 + 1e-6)) answers.push_back({level.size, 0, 0});
-    answers.back().correct += level.correct;
-    answers.back().total += level.total;
+    if (answers.empty() || level.size > answers.back().size_mrad * (1 + 1e-6))
+      answers.push_back({.size_mrad = level.size});
+    AnswersAtSize& sums = answers.back();
+    sums.correct += level.correct;
+    sums.total += level.total;
+    sums.groups += 1;
+    sums.squares += level.correct * level.correct;
+    sums.products += level.correct * level.total;
+    sums.total_squares += level.total * level.total;
+    sums.graded = point.fit.dispersion.has_value();
   }
   return answers;
 }
@@ -146,6 +153,16 @@ Interval wilson_interval(double correct, double total) {
   const double half = z / (1 + z * z / total) * std::sqrt(p * (1 - p) / total + z * z / (4 * total * total));
   // The bounds at the ends are exactly 0 and 1; computed, they miss them by rounding.
   return {correct > 0 ? std::max(0.0, middle - half) : 0.0, correct < total ? std::min(1.0, middle + half) : 1.0};
+}
+
+Interval proportion_interval(const AnswersAtSize& answers) {
+  if (!answers.graded) return wilson_interval(answers.correct, answers.total);
+  const double k = answers.groups, m = answers.correct / answers.total;
+  if (!(k > 1)) return {};
+  const double sum = answers.squares - 2 * m * answers.products + m * m * answers.total_squares;
+  const double s = std::sqrt(std::max(0.0, sum) * k / (k - 1)) / answers.total;
+  const double half = quantile(distribution::StudentsT(k - 1), 0.975) * s;
+  return {std::max(0.0, m - half), std::min(1.0, m + half)};
 }
 
 Plot tod_figure(const NamedCurve& first, const NamedCurve& second, std::span<const DrawnLimit> limits) {
@@ -213,7 +230,7 @@ Plot psychometric_figure(const std::string& id, const NamedPoint& first, const N
   for (const double size : expected_sizes_mrad) sizes.include(size);
   for (const NamedPoint* point : {&first, &second}) {
     if (point->point == nullptr) continue;
-    for (const AnswersAtSize& answers : answers_by_size(point->point->levels))
+    for (const AnswersAtSize& answers : answers_by_size(*point->point))
       if (answers.size_mrad > 0) sizes.include(answers.size_mrad);
     if (point->point->fit.verdict == FitVerdict::extrapolated) sizes.include(point->point->fit.threshold);
   }

@@ -24,7 +24,7 @@ std::vector<TargetState> listed_states(const Plan& plan, const std::vector<Targe
 /// One presentation after another, as measure() goes through them.
 class Walk {
  public:
-  explicit Walk(const Plan& plan) : plan_(plan), answers_(chosen_answers(plan, {})) {}
+  explicit Walk(const Plan& plan) : plan_(plan) {}
 
   void present(const TargetState* before, const TargetState& state) {
     const bool plate = before == nullptr || before->plate != state.plate;
@@ -39,7 +39,7 @@ class Walk {
     const TargetPlan& target = plan_.target;
     time_.changes_s += std::max({plate ? target.plate_change_s : 0, mounting ? target.mounting_change_s : 0,
                                  contrast ? target.contrast_change_s : 0, shift ? target.shift_change_s : 0});
-    take_frames(plate || mounting, contrast);
+    take_frames(plate || mounting, contrast, state.delta_t_k);
   }
 
   /// What [measures] asks for behind the trials, as measure_camera() goes through it.
@@ -93,9 +93,10 @@ class Walk {
   }
 
  private:
-  void take_frames(bool new_set_up, bool new_contrast) {
+  void take_frames(bool new_set_up, bool new_contrast, double delta_t_k) {
     const MeasurementPlan& measurement = plan_.measurement;
-    int frames = measurement.frames_after_change + answers_.frames;
+    // Of a sensor with modules of its own nothing is predicted.
+    int frames = measurement.frames_after_change + chosen_answers(plan_, {}, delta_t_k).frames;
     if (new_set_up) frames += measurement.registration_frames;
     if (new_set_up || new_contrast) frames += measurement.contrast_frames;
     // Where a hand has moved the plate it is looked for.
@@ -104,7 +105,6 @@ class Walk {
   }
 
   const Plan& plan_;
-  AnswersTaken answers_;  // of a sensor with modules of its own nothing is predicted
   BenchTime time_;
 };
 

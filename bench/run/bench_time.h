@@ -25,9 +25,10 @@ struct BenchTime {
   [[nodiscard]] double total_s() const { return changes_s + frames_s + corrections_s; }
 };
 
-/// Of the camera of a plan, with its frames `frame_rate_hz` apart. `presentations`: how many are expected of an
-/// adaptive schedule, which goes through the same set-ups visit by visit; nothing: as many as the plan lists, of an
-/// adaptive one its cap. A target of kind scene is as fast as the processor: counts, and no time.
+/// Of the camera of a plan, whose frames per presentation are chosen (with_frames()), with its frames `frame_rate_hz`
+/// apart. `presentations`: how many are expected of an adaptive schedule, which goes through the same set-ups visit by
+/// visit; nothing: as many as the plan lists, of an adaptive one its cap. A target of kind scene is as fast as the
+/// processor: counts, and no time.
 [[nodiscard]] BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates, double frame_rate_hz,
                                    std::optional<double> presentations);
 

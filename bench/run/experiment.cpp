@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <future>
 
 #include "acquisition/recording/frame_stream.h"
 #include "bench/run/bench_host.h"
@@ -134,7 +135,7 @@ void give_shape(TodCurve& curve, MeasurementResult& result, const Plan& plan, co
   const bool by_twin = chosen.estimator == FitEstimator::twin_shape;
   for (TodPoint& point : curve.points) {
     point.estimator_reason = by_twin && result.ended_by ? EstimatorReason::ended_early : chosen.reason;
-    point.answers = chosen_answers(plan, inputs.sensor);
+    point.answers = chosen_answers(plan, inputs.sensor, point.set_delta_t_k);
   }
   if (!by_twin || result.ended_by) {
     fit_right_and_wrong(curve, result.trials, fit_options(plan));
@@ -231,8 +232,8 @@ TwinResults run_twin(const Plan& plan, const ExperimentInputs& inputs, const Tod
   phase(folder, listener, "simulating its twin " + inputs.sensor.name);
   std::map<double, double> shown;
   for (const auto& point : measured.points) shown[point.set_delta_t_k] = point.delta_t_k;
-  auto twin = run_simulated(plan, inputs, folder, SessionCurve::twin, std::move(shown), &measured, host, listener,
-                            std::move(stop));
+  auto twin =
+      run_simulated(plan, inputs, folder, SessionCurve::twin, shown, &measured, host, listener, std::move(stop));
   TwinResults results;
   if (!twin) {
     results.ended_by = with_context("the simulated twin", twin.error());
@@ -250,16 +251,21 @@ TwinResults run_twin(const Plan& plan, const ExperimentInputs& inputs, const Tod
   return results;
 }
 
-/// The same by the phases that camera and twin both saw, where the plan has it so.
-void pair_with_twin(ExperimentOutcome& outcome, const MeasurementResult& measured, const Plan& plan,
-                    const ExperimentInputs& inputs, const SessionFrame& frame, std::stop_token stop) {
-  if (!outcome.comparison || outcome.ended_by || !pairs_asked(plan, inputs.sensor)) return;
+/// The same by the phases that camera and twin both saw.
+void pair_with_twin(ExperimentOutcome& outcome, std::future<Pairs> made, const ExperimentInputs& inputs,
+                    const SessionFrame& frame) {
+  if (!outcome.comparison || outcome.ended_by) return;
   phase(frame.folder, frame.listener, "showing " + inputs.sensor.name + " what the camera saw");
-  PairedOutcome paired =
-      add_paired_ratios(*outcome.comparison, {outcome.curve, measured.trials, measured.set_ups}, inputs,
-                        paired_options(inputs, measured.set_ups, plan.seed, std::move(stop)));
-  for (const auto& sentence : paired.notes) note(frame.folder, frame.listener, sentence);
-  outcome.ended_by = std::move(paired.ended_by);
+  Pairs pairs = made.get();
+  Comparison& comparison = *outcome.comparison;
+  for (std::size_t i = 0; i < comparison.points.size(); ++i) {
+    const auto same = std::ranges::find_if(pairs.ratios.points, [&](const ComparisonPoint& point) {
+      return point.paired && same_contrast(point.set_delta_t_k, comparison.points[i].set_delta_t_k);
+    });
+    if (same != pairs.ratios.points.end()) add_paired(comparison, i, *same->paired);
+  }
+  for (const auto& sentence : pairs.said.notes) note(frame.folder, frame.listener, sentence);
+  outcome.ended_by = std::move(pairs.said.ended_by);
 }
 
 /// A tolerance beyond the hard caps is refused before anything is simulated or moved.
@@ -321,17 +327,19 @@ Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOption
 
 Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const ExperimentOptions& options,
                                         const ExperimentListener& listener, std::stop_token stop) {
-  const Plan& plan = loaded.plan();
   EffectPlanner planner;
   auto inputs = experiment_inputs(loaded, planner);
   if (!inputs) return tl::unexpected(inputs.error());
+  const auto chosen = loaded.with(with_frames(loaded.plan(), *inputs));
+  if (!chosen) return tl::unexpected(chosen.error());
+  const Plan& plan = chosen->plan();
   Provenance provenance = begin_provenance(plan, Side::simulated);
   provenance.effects = inputs->effects;
   provenance.modules = module_records(plan, inputs->sensor, Side::simulated);
   provenance.target = "simulated scene";
   if (auto fits = check_simulated_geometry(plan, *inputs); !fits) return tl::unexpected(fits.error());
   if (auto possible = check_tolerance(plan, *inputs); !possible) return tl::unexpected(possible.error());
-  auto folder = begin_session(loaded, options, provenance);
+  auto folder = begin_session(*chosen, options, provenance);
   if (!folder) return tl::unexpected(folder.error());
   const SessionFrame frame{*folder, listener};
   if (listener.on_session) listener.on_session(folder->path());
@@ -394,7 +402,9 @@ Result<ExperimentOutcome> measure_plan(const LoadedPlan& loaded, const Experimen
 Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const ExperimentInputs& inputs, OpenedBench bench,
                                            const ExperimentOptions& options, const ExperimentListener& listener,
                                            std::stop_token stop) {
-  const Plan& plan = loaded.plan();
+  const auto chosen = loaded.with(with_frames(loaded.plan(), inputs));
+  if (!chosen) return tl::unexpected(chosen.error());
+  const Plan& plan = chosen->plan();
   if (listener.on_open) listener.on_open(bench.camera->info());
   if (listener.on_frame) bench.camera = observed_source(std::move(bench.camera), listener.on_frame);
   const SourceInfo info = bench.camera->info();
@@ -407,7 +417,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   provenance.modules = module_records(plan, inputs.sensor, Side::simulated);
   provenance.camera = camera_record(info);
   provenance.target = bench.target->capabilities().description;
-  auto folder = begin_session(loaded, options, provenance);
+  auto folder = begin_session(*chosen, options, provenance);
   if (!folder) return tl::unexpected(folder.error());
   const SessionFrame frame{*folder, listener};
   if (listener.on_session) listener.on_session(folder->path());
@@ -469,12 +479,13 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   outcome.measures = std::move(measured->measures);
   outcome.presentations = std::move(result->presentations);
   if (!outcome.ended_by) {
+    auto pairs = pairs_meanwhile({outcome.curve, result->trials, result->set_ups}, plan, inputs, stop);
     TwinResults twin = run_twin(plan, inputs, outcome.curve, *folder, options.host, listener, stop);
     provenance.twin_run = std::move(twin.run);
     outcome.twin = std::move(twin.curve);
     outcome.comparison = std::move(twin.comparison);
     outcome.ended_by = std::move(twin.ended_by);
-    pair_with_twin(outcome, *result, plan, inputs, frame, stop);
+    if (pairs) pair_with_twin(outcome, *std::move(pairs), inputs, frame);
   }
   if (!outcome.ended_by) {
     if (outcome.measures) compare_picture(*outcome.measures, loaded, inputs);

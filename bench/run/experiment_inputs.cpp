@@ -103,6 +103,8 @@ void take_answers(MeasurementOptions& options, const Plan& plan, const Experimen
   const AnswersTaken answers = chosen_answers(plan, inputs.sensor);
   options.answers = answers.kind;
   options.frames_per_presentation = answers.frames;
+  for (const double delta_t_k : plan.target.delta_t_k)
+    options.frames_at_contrast[delta_t_k] = chosen_answers(plan, inputs.sensor, delta_t_k).frames;
 }
 
 MeasurementOptions simulated_options(const Plan& plan, const ExperimentInputs& inputs) {

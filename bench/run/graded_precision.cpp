@@ -1,11 +1,10 @@
 #include "bench/run/graded_precision.h"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/owens_t.hpp>
 #include <cmath>
+
+#include "acquisition/core/distributions.h"
 
 namespace todbench {
 namespace {
@@ -21,7 +20,7 @@ double graded_freedom(const GradedDesignFigures& design) {
 
 double graded_variance_ratio(const GradedDesignFigures& design) {
   constexpr double p = 0.75, seen = 2.0 / 3;  // p = 1/4 + 3/4 seen
-  const double z = boost::math::quantile(boost::math::normal(), seen);
+  const double z = distribution::quantile(distribution::Normal(), seen);
   const double share = std::clamp(design.sensor_share, 0.0, 1.0);
   // Phi2(z, z; rho) = Phi(z) - 2 T(z, sqrt((1 - rho) / (1 + rho))) (Owen 1956).
   const double both = seen - 2 * boost::math::owens_t(z, std::sqrt((1 - share) / (1 + share)));
@@ -33,10 +32,21 @@ double graded_variance_ratio(const GradedDesignFigures& design) {
   return of_sensor / frames + (1 - of_sensor) / (frames * draws) + left;
 }
 
+int cheapest_frames(GradedDesignFigures design, double single_s, double frame_s) {
+  std::array<double, frame_choices.size()> prices{};
+  for (std::size_t i = 0; i < frame_choices.size(); ++i) {
+    design.frames = frame_choices[i];
+    prices[i] = graded_variance_ratio(design) * (single_s + (frame_choices[i] - 1) * frame_s);
+  }
+  const double most = 1.1 * *std::ranges::min_element(prices);
+  const auto first = std::ranges::find_if(prices, [&](double price) { return price <= most; });
+  return frame_choices[static_cast<std::size_t>(first - prices.begin())];
+}
+
 double graded_interval_factor(const GradedDesignFigures& design) {
   const double freedom = graded_freedom(design);
-  const double t = boost::math::quantile(boost::math::students_t(freedom), 0.975);
-  return t * std::sqrt(boost::math::quantile(boost::math::chi_squared(freedom), 0.95) / freedom);
+  const double t = distribution::quantile(distribution::StudentsT(freedom), 0.975);
+  return t * std::sqrt(distribution::quantile(distribution::ChiSquared(freedom), 0.95) / freedom);
 }
 
 }  // namespace todbench

@@ -1,6 +1,8 @@
 // How much less graded answers scatter than right and wrong ones, before anything is measured.
 #pragma once
 
+#include <array>
+
 namespace todbench {
 
 /// What a design of graded answers is.
@@ -24,6 +26,14 @@ struct GradedDesignFigures {
 /// the number of phases where the mountings cancel the phases (five set-ups or more; 138 runs of 12 phases and 11 of 3
 /// of `graded_coverage_study`), at most, and with fewer set-ups, 0.15, that of single phases.
 [[nodiscard]] double graded_variance_ratio(const GradedDesignFigures& design);
+
+/// Frames per presentation that are chosen from and compared.
+inline constexpr std::array frame_choices{1, 2, 4, 8};
+
+/// The fewest of `frame_choices` whose variance times the time of a presentation is within 10 % of the least, with
+/// `single_s` for a presentation of one frame and `frame_s` for each more. The product is flat about its least value;
+/// what is left of the time buys more elsewhere.
+[[nodiscard]] int cheapest_frames(GradedDesignFigures design, double single_s, double frame_s);
 
 /// Half a 95 % interval of ln S75 over the standard error behind it (Student's t), times what 19 of 20 runs stay below:
 /// a variance from so few set-ups scatters as chi square over its degrees of freedom.

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
+#include "acquisition/core/distributions.h"
 #include "acquisition/core/normal.h"
 #include "bench/judgement/acuity_uncertainty.h"
 #include "bench/text/text.h"
@@ -44,7 +44,7 @@ const FleetRow* row_of_acuity(const LimitsPlan& limits, double delta_t_k) {
 
 Result<LimitOutlook> outlook(const LimitsPlan& limits, const FleetRow* row, double u, double ln_acuity,
                              double ln_limit) {
-  const boost::math::normal normal;
+  const distribution::Normal normal;
   LimitOutlook out{.u_ln_acuity = u, .guard_band_ln = guard_of(limits) * u};
   const double accepted_from = ln_limit + out.guard_band_ln;
   out.p_rejected = cdf(normal, (accepted_from - ln_acuity) / u);

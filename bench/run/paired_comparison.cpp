@@ -82,4 +82,18 @@ PairedOutcome add_paired_ratios(Comparison& comparison, const PairedCamera& came
   return outcome;
 }
 
+std::optional<std::future<Pairs>> pairs_meanwhile(const PairedCamera& camera, const Plan& plan,
+                                                  const ExperimentInputs& inputs, std::stop_token stop) {
+  if (!pairs_asked(plan, inputs.sensor)) return std::nullopt;
+  return std::async(std::launch::async, [camera, &plan, &inputs, stop = std::move(stop)] {
+    Pairs pairs;
+    const double margin = comparison_options(plan).margin_percent;
+    for (const TodPoint& point : camera.curve.points)
+      pairs.ratios.points.push_back({.set_delta_t_k = point.set_delta_t_k, .margin_percent = margin});
+    pairs.said =
+        add_paired_ratios(pairs.ratios, camera, inputs, paired_options(inputs, camera.set_ups, plan.seed, stop));
+    return pairs;
+  });
+}
+
 }  // namespace todbench

@@ -1,6 +1,7 @@
 // The comparison of a camera with its twin by the phases that both saw.
 #pragma once
 
+#include <future>
 #include <optional>
 #include <span>
 #include <stop_token>
@@ -40,5 +41,15 @@ struct PairedOutcome {
 /// the paired verdict is inconclusive as well.
 [[nodiscard]] PairedOutcome add_paired_ratios(Comparison& comparison, const PairedCamera& camera,
                                               const ExperimentInputs& inputs, const PairedTwinOptions& options);
+
+/// Paired ratios of every contrast of a curve.
+struct Pairs {
+  Comparison ratios;  ///< of its points only the contrast, the margin and the paired ratio are set
+  PairedOutcome said;
+};
+/// In a thread of its own, while the twin makes its own trials; nothing where the plan asks for none. All but `stop` is
+/// lent until it is ready.
+[[nodiscard]] std::optional<std::future<Pairs>> pairs_meanwhile(const PairedCamera& camera, const Plan& plan,
+                                                                const ExperimentInputs& inputs, std::stop_token stop);
 
 }  // namespace todbench

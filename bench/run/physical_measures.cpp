@@ -1,5 +1,6 @@
 #include "bench/run/physical_measures.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -8,6 +9,7 @@
 #include "bench/run/plate_picture.h"
 #include "bench/run/simulated_responses.h"
 #include "sim_devices/sensor/effect_row.h"
+#include "sim_devices/sensor/module_sensor.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "sim_devices/sensor/transfer_functions.h"
 #include "tod/range/bars_sampled.h"
@@ -158,9 +160,11 @@ void compare_picture(CameraMeasures& measures, const LoadedPlan& loaded, const E
 Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loaded, const ExperimentInputs& inputs,
                                                          const SessionFrame& frame, std::stop_token stop) {
   Plan plan = loaded.plan();
-  plan.measures.drift = false;  // nothing is corrected in it
   if (!plan.measures.any()) return std::nullopt;
   const auto model = whole_sensor(loaded, inputs);
+  // It does not drift: the default time says so as well as an hour, of a program that makes the pictures the shortest.
+  plan.measures.drift_s =
+      sensor_module(model->spec()) == nullptr ? std::min(plan.measures.drift_s, MeasuresPlan{}.drift_s) : 2;
   MeasurementOptions options = simulated_options(plan, inputs);
   auto response = simulated_responses(*model, plan, inputs.plates, options, stop);
   if (!response) return tl::unexpected(response.error());
@@ -174,6 +178,8 @@ Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loade
   if (measures && *measures && (*measures)->geometry) {
     (*measures)->geometry->distance_relative_u.reset();  // the scene is where it is
     (*measures)->geometry->model_ifov_mrad = model->spec().ifov_mrad() / model->spec().samples_per_pitch();
+    (*measures)->geometry->model_distortion_percent =
+        model->spec().distortion_percent + model->spec().distortion_r4_percent;
   }
   if (measures && *measures && (*measures)->mtf) add_closed_form(*(*measures)->mtf, *model, inputs);
   if (measures && *measures && (*measures)->ctf) add_closed_form(*(*measures)->ctf, *model, inputs);

@@ -2,15 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "bench/plan/plan_options.h"
 #include "bench/run/bench_time.h"
+#include "bench/run/graded_precision.h"
 #include "bench/run/time_prediction.h"
 
 namespace todbench {
 namespace {
 
-Plan with_answers(Plan plan, AnswerKind answers, int frames) {
+Plan with_answers(Plan plan, AnswerKind answers, const std::vector<int>& frames) {
   plan.schedule.answers = answers == AnswerKind::graded ? AnswersChoice::graded : AnswersChoice::binary;
   plan.schedule.frames_per_presentation = frames;
   if (answers == AnswerKind::graded) {
@@ -47,39 +49,46 @@ void recommend(std::vector<PrecisionChoice>& choices) {
 
 }  // namespace
 
+Plan as_measured(Plan plan) {
+  if (!plan.camera.id.empty()) plan.simulation.phases = plan.target.phases;
+  return plan;
+}
+
 Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const ExperimentInputs& inputs,
                                                         std::stop_token stop) {
-  std::vector<int> frames{1, 2, 4, 8};
+  std::vector<std::vector<int>> frames;
+  for (const int count : frame_choices) frames.push_back({count});
   const AnswersTaken planned = chosen_answers(plan, inputs.sensor);
-  const int own = planned.frames;
+  const std::vector<int> own = with_frames(plan, inputs).schedule.frames_per_presentation;
   if (planned.kind == AnswerKind::graded && std::ranges::find(frames, own) == frames.end()) {
     frames.push_back(own);
     std::ranges::sort(frames);
   }
-  const auto binary_s = computing_s(with_answers(plan, AnswerKind::binary, 1), inputs, stop);
+  const auto binary_s = computing_s(with_answers(plan, AnswerKind::binary, {1}), inputs, stop);
   if (!binary_s) return tl::unexpected(binary_s.error());
-  const auto one_s = computing_s(with_answers(plan, AnswerKind::graded, 1), inputs, stop);
+  const auto one_s = computing_s(with_answers(plan, AnswerKind::graded, {1}), inputs, stop);
   if (!one_s) return tl::unexpected(one_s.error());
-  const auto two_s = computing_s(with_answers(plan, AnswerKind::graded, 2), inputs, stop);
+  const auto two_s = computing_s(with_answers(plan, AnswerKind::graded, {2}), inputs, stop);
   if (!two_s) return tl::unexpected(two_s.error());
   const double frame_s = std::max(0.0, *two_s - *one_s);
 
   std::vector<PrecisionChoice> choices;
-  const auto add = [&](AnswerKind answers, int count, double computing) -> Result<void> {
+  const auto add = [&](AnswerKind answers, const std::vector<int>& count, double computing) -> Result<void> {
     const Plan other = with_answers(plan, answers, count);
-    auto prediction = predict_plan(other, inputs);
+    auto prediction = predict_plan(as_measured(other), inputs);
     if (!prediction) return tl::unexpected(prediction.error());
     PrecisionChoice choice{.answers = answers, .frames = count};
     choice.seconds = computing + bench_s(other, inputs, prediction->contrasts);
     choice.half_width_percent = prediction->figures.predicted_uncertainty_percent;
     choice.contrasts = std::move(prediction->contrasts);
-    choice.planned = planned.kind == answers && own == count;
+    choice.planned = planned.kind == answers && (answers == AnswerKind::binary || own == count);
     choices.push_back(std::move(choice));
     return {};
   };
-  if (auto added = add(AnswerKind::binary, 1, *binary_s); !added) return tl::unexpected(added.error());
-  for (const int count : frames) {
-    if (auto added = add(AnswerKind::graded, count, *one_s + (count - 1) * frame_s); !added)
+  if (auto added = add(AnswerKind::binary, {1}, *binary_s); !added) return tl::unexpected(added.error());
+  for (const std::vector<int>& count : frames) {
+    const double mean = std::accumulate(count.begin(), count.end(), 0.0) / static_cast<double>(count.size());
+    if (auto added = add(AnswerKind::graded, count, *one_s + (mean - 1) * frame_s); !added)
       return tl::unexpected(added.error());
   }
   recommend(choices);
@@ -91,7 +100,7 @@ Json frontier_json(const std::vector<PrecisionChoice>& choices) {
   for (const PrecisionChoice& choice : choices) {
     Json row;
     row["answers"] = to_string(choice.answers);
-    row["frames_per_presentation"] = choice.frames;
+    row["frames_per_presentation"] = choice.frames.size() == 1 ? Json(choice.frames[0]) : Json(choice.frames);
     row["half_width_percent"] = json_number(choice.half_width_percent);
     row["predicted_s"] = json_number(choice.seconds);
     row["planned"] = choice.planned;

@@ -12,7 +12,7 @@ namespace todbench {
 /// The plan with other answers, all else as it is.
 struct PrecisionChoice {
   AnswerKind answers = AnswerKind::binary;
-  int frames = 1;  ///< per presentation
+  std::vector<int> frames{1};  ///< per presentation: of every contrast, or one number for each
   std::vector<ContrastPrediction> contrasts{};
   std::optional<double> half_width_percent{};  ///< half the 95 % interval of S75, the largest over the contrasts
   double seconds = 0;        ///< of the measurement with the camera, or of the simulation where the plan has none
@@ -20,9 +20,13 @@ struct PrecisionChoice {
   bool recommended = false;  ///< of the graded ones that which buys most: least squared half-width times seconds
 };
 
-/// Binary answers, and graded ones with 1, 2, 4 and 8 frames; the plan's own number of frames, where it is another.
-/// Half-widths are those of predict_plan(), times those of predict_times() (1 and 2 frames are timed, the others
-/// follow). Errors as there.
+/// The plan with as many phases of the simulation as the camera is shown, where there is one: predict_plan() of it is
+/// about the camera's curve.
+[[nodiscard]] Plan as_measured(Plan plan);
+
+/// Of the camera's curve where there is one: binary answers, and graded ones with 1, 2, 4 and 8 frames; the plan's own
+/// numbers (with_frames()), where they are others. Half-widths are those of predict_plan(), times those of
+/// predict_times() (1 and 2 frames are timed, the others follow). Errors as there.
 [[nodiscard]] Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const ExperimentInputs& inputs,
                                                                       std::stop_token stop);
 

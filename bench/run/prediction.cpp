@@ -53,14 +53,21 @@ double se_of_shape(const Accuracy& accuracy, double q_eff, std::optional<double>
   return (0.046 + 0.285 * q_eff) / std::sqrt(draws_of_twin_shape(se_ln_threshold, accuracy));
 }
 
-/// Half the interval of ln S75 of graded answers, from the standard error of as many right and wrong ones.
-double graded_half_width(const Plan& plan, const ExperimentInputs& inputs, double q_eff, double binary_se) {
+GradedDesignFigures graded_design(const Plan& plan, const ExperimentInputs& inputs, double q_eff, int frames) {
   const auto set_ups = static_cast<int>(inputs.plates.size() * plan.target.mountings.size());
-  const GradedDesignFigures design{.sensor_share = sensor_share(inputs.observer, q_eff),
-                                   .frames = chosen_answers(plan, inputs.sensor).frames,
-                                   .draws = MeasurementOptions::graded_draws,
-                                   .set_ups = set_ups,
-                                   .presentations = set_ups * plan.simulation.phases};
+  return {.sensor_share = sensor_share(inputs.observer, q_eff),
+          .frames = frames,
+          .draws = MeasurementOptions::graded_draws,
+          .set_ups = set_ups,
+          .presentations = set_ups * plan.simulation.phases};
+}
+
+/// Half the interval of ln S75 of graded answers, from the standard error of as many right and wrong ones.
+double graded_half_width(const Plan& plan, const ExperimentInputs& inputs, const ContrastOutlook& outlook,
+                         double binary_se) {
+  const int frames = chosen_answers(plan, inputs.sensor, outlook.delta_t_k).frames;
+  const double q_eff = outlook.q_eff;
+  const GradedDesignFigures design = graded_design(plan, inputs, q_eff, frames);
   const double se = std::hypot(binary_se * std::sqrt(graded_variance_ratio(design)),
                                se_of_shape(inputs.accuracy, q_eff, std::nullopt));
   return graded_interval_factor(design) * se;
@@ -76,7 +83,7 @@ std::optional<double> uncertainty_percent(const Plan& plan, const ExperimentInpu
   const bool by_twin = chosen_estimator(plan, inputs.sensor).estimator == FitEstimator::twin_shape;
   const double of_shape = by_twin ? se_of_shape(inputs.accuracy, outlook.q_eff, fit->se_ln_threshold) : 0;
   const double half = chosen_answers(plan, inputs.sensor).kind == AnswerKind::graded
-                          ? graded_half_width(plan, inputs, outlook.q_eff, fit->se_ln_threshold)
+                          ? graded_half_width(plan, inputs, outlook, fit->se_ln_threshold)
                           : likely_excess * 1.96 * std::hypot(fit->se_ln_threshold, of_shape);
   return 100 * std::expm1(half);
 }
@@ -125,6 +132,30 @@ Result<void> reachable(const Plan& plan, const ExperimentInputs& inputs) {
 
 }  // namespace
 
+Plan with_frames(Plan plan, const ExperimentInputs& inputs) {
+  std::vector<int>& frames = plan.schedule.frames_per_presentation;
+  if (!frames.empty() && std::ranges::find(frames, 0) == frames.end()) return plan;
+  if (chosen_answers(plan, inputs.sensor).kind == AnswerKind::binary) {
+    frames = {1};
+    return plan;
+  }
+  Plan single = plan;
+  single.schedule.frames_per_presentation = {1};
+  const double rate_hz = inputs.sensor.frame_rate_hz;
+  const BenchTime time = bench_time(single, inputs.plates, rate_hz, std::nullopt);
+  const double single_s = time.total_s() / std::max(1.0, static_cast<double>(time.presentations));
+  std::vector<int> chosen;
+  for (const double delta_t_k : plan.target.delta_t_k) {
+    chosen.push_back(chosen_answers(plan, inputs.sensor, delta_t_k).frames);
+    const auto outlook = std::ranges::find(inputs.outlooks, delta_t_k, &ContrastOutlook::delta_t_k);
+    if (frames_at(plan, delta_t_k) == 0 && single_s > 0 && rate_hz > 0 && outlook != inputs.outlooks.end())
+      chosen.back() = cheapest_frames(graded_design(plan, inputs, outlook->q_eff, 1), single_s, 1 / rate_hz);
+  }
+  const bool same = std::ranges::all_of(chosen, [&](int n) { return n == chosen[0]; });
+  frames = same && !chosen.empty() ? std::vector<int>{chosen[0]} : chosen;
+  return plan;
+}
+
 std::optional<double> expected_presentations(const Plan& plan, const std::vector<TargetPlate>& plates,
                                              const std::vector<ContrastPrediction>& contrasts) {
   if (plan.schedule.kind != ScheduleKind::adaptive || contrasts.empty() || plates.empty()) return std::nullopt;
@@ -134,7 +165,8 @@ std::optional<double> expected_presentations(const Plan& plan, const std::vector
   return triangles > 0 ? std::optional(trials * static_cast<double>(plates.size()) / triangles) : std::nullopt;
 }
 
-Result<PlanPrediction> predict_plan(const Plan& plan, const ExperimentInputs& inputs) {
+Result<PlanPrediction> predict_plan(const Plan& asked, const ExperimentInputs& inputs) {
+  const Plan plan = with_frames(asked, inputs);
   if (auto none = refuse_modules(plan, inputs.sensor); !none) return tl::unexpected(none.error());
   if (auto met = reachable(plan, inputs); !met) return tl::unexpected(met.error());
 
@@ -169,8 +201,9 @@ Result<PlanPrediction> predict_plan(const Plan& plan, const ExperimentInputs& in
   return out;
 }
 
-Result<void> predict_times(const Plan& plan, const ExperimentInputs& inputs, PlanPrediction& prediction,
+Result<void> predict_times(const Plan& asked, const ExperimentInputs& inputs, PlanPrediction& prediction,
                            std::stop_token stop) {
+  const Plan plan = with_frames(asked, inputs);
   const auto time = predict_time(plan, inputs, std::move(stop));
   if (!time) return tl::unexpected(time.error());
   prediction.figures.predicted_s = time->simulation_s;

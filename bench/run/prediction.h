@@ -28,6 +28,12 @@ struct PlanPrediction {
   std::vector<std::string> warnings;  ///< a sentence each
 };
 
+/// The plan with every number of frames per presentation: where it leaves one open and graded answers are taken, the
+/// fewest of 1, 2, 4 and 8 whose variance (graded_precision.h) times the time of a presentation (bench_time()) is
+/// within 10 % of the least of them; four where no time or no threshold is predicted, and one of right and wrong
+/// answers.
+[[nodiscard]] Plan with_frames(Plan plan, const ExperimentInputs& inputs);
+
 /// Nothing is simulated and nothing read; two milliseconds. `inputs` are those of the plan (experiment_inputs()).
 /// `invalid_input` where the tolerance cannot be met within the hard caps (the message says what can and for what
 /// time). Contrasts without threshold have no uncertainty, and then the plan has none; a warning names them.

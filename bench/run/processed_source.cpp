@@ -43,6 +43,11 @@ class ProcessedSource final : public ForwardingSource {
       frame.counts.convertTo(picture, CV_32F);
       for (const auto& stage : stages_) {
         auto answer = stage->process(picture);
+        // Frames from before a change of the target and after it may make no picture; they are not judged.
+        if (!answer && as_ == ProcessedAs::judged && answer.error().code == ErrorCode::not_identifiable) {
+          out.none = Error{ErrorCode::integrity, answer.error().message};
+          return out;
+        }
         if (!answer) return tl::unexpected(answer.error());
         picture = *answer;
         out.first_px += stage->first_px() / out.samples_per_pixel;

@@ -20,7 +20,7 @@ Result<ReportData> report_data_of(const Session& session, const std::filesystem:
   if (*human) data->human = std::move((*human)->curve);
   auto letterhead = kept_letterhead(folder);
   if (!letterhead) return tl::unexpected(letterhead.error());
-  data->letterhead = *std::move(letterhead);
+  if (*letterhead) data->letterhead = *std::move(letterhead);
   return data;
 }
 

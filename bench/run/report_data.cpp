@@ -91,7 +91,9 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
   if (data.ifov_mrad == 0) data.ifov_mrad = session.parts.sensor.ifov_mrad();
   data.plan = provenance.effects;
   data.cost = session.cost;
+  data.letterhead = session.parts.letterhead;
   data.measures = session.measures;
+  if (!session.curve && session.measures) data.title = "Measurement report";
   data.uncertainty = session.uncertainty;
   data.verdict = verdict_of(session);
   if (provenance.run) {

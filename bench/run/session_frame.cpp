@@ -54,8 +54,8 @@ Provenance ended(Provenance provenance, const SessionClock& clock, const std::op
   return provenance;
 }
 
-/// State, verdict, report and manifest. The result is the first thing that was refused; what follows it is written
-/// nevertheless as far as there is room.
+}  // namespace
+
 Result<void> close_session(const SessionFrame& frame, const Provenance& provenance, const Verdict& verdict,
                            const std::optional<Error>& ended_by) {
   SessionFolder& folder = frame.folder;
@@ -77,8 +77,6 @@ Result<void> close_session(const SessionFrame& frame, const Provenance& provenan
   if (refused.first()) return tl::unexpected(*refused.first());
   return {};
 }
-
-}  // namespace
 
 void phase(SessionFolder& folder, const ExperimentListener& listener, const std::string& text) {
   (void)folder.log(text);

@@ -26,6 +26,11 @@ void note(SessionFolder& folder, const ExperimentListener& listener, const std::
 [[nodiscard]] tl::unexpected<Error> abandon(const SessionFrame& frame, const Plan& plan, const Provenance& provenance,
                                             Error error);
 
+/// State, verdict, report and manifest. The result is the first thing that was refused; what follows it is written
+/// nevertheless as far as there is room.
+[[nodiscard]] Result<void> close_session(const SessionFrame& frame, const Provenance& provenance,
+                                         const Verdict& verdict, const std::optional<Error>& ended_by);
+
 /// The last step of every run that has a curve: judges it, writes the results, the state, the report and the manifest.
 /// A disk that refuses ends the session early; what does not fit is left out, the results still reach the caller.
 [[nodiscard]] ExperimentOutcome concluded(ExperimentOutcome outcome, const Plan& plan, const SessionFrame& frame,

@@ -29,7 +29,7 @@ struct PlateSpeed {
   double frame = 0;       ///< a frame of an unchanged scene, taken and added up
   double registration = 0, contrast = 0;
   double prepare = 0;  ///< the observer for all its sizes
-  double answers = 0;  ///< all triangles of a presentation
+  double answers = 0;  ///< all triangles of a frame
 };
 
 template <typename Work>
@@ -70,8 +70,14 @@ Result<void> time_answers(const TargetPlate& plate, const Registration& registra
     if (options.answers == AnswerKind::graded) speed.prepare += seconds_of(answer);
     speed.answers += seconds_of(answer);
   }
-  speed.answers *= options.frames_per_presentation;
   return {};
+}
+
+/// Of a presentation, over the contrasts.
+double mean_frames(const MeasurementOptions& options) {
+  double sum = 0;
+  for (const auto& [contrast, frames] : options.frames_at_contrast) sum += frames;
+  return sum / std::max(1.0, static_cast<double>(options.frames_at_contrast.size()));
 }
 
 Result<PlateSpeed> speed_on(const TargetPlate& plate, const std::shared_ptr<const SensorModel>& model,
@@ -120,12 +126,12 @@ double response_s(const PlateSpeed& speed) {
 }
 
 /// What is computed while one plate is looked at, pictures excepted.
-double looking_s(const PlateSpeed& speed, const Counts& counts) {
+double looking_s(const PlateSpeed& speed, const Counts& counts, double frames_per_presentation) {
   return speed.prepare + counts.set_ups * speed.registration + counts.set_ups * counts.contrasts * speed.contrast +
-         counts.presentations * speed.answers;
+         counts.presentations * frames_per_presentation * speed.answers;
 }
 
-double frames_of(const Plan& plan, const Counts& counts, int frames_per_presentation) {
+double frames_of(const Plan& plan, const Counts& counts, double frames_per_presentation) {
   return counts.set_ups * (plan.measurement.registration_frames + counts.contrasts * plan.measurement.contrast_frames) +
          counts.presentations * frames_per_presentation;
 }
@@ -164,6 +170,7 @@ Result<TimePrediction> predict_time(const Plan& plan, const ExperimentInputs& in
   const auto model = std::make_shared<const SensorModel>(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
   TemplateObserver observer(inputs.observer, triangle_alternatives());
   const MeasurementOptions options = simulated_options(plan, inputs);
+  const double frames = mean_frames(options);
   const Counts simulated = counts_of(plan, inputs, plan.simulation.phases);
   const Counts measured = counts_of(plan, inputs, plan.target.phases);
   TimePrediction out;
@@ -171,15 +178,13 @@ Result<TimePrediction> predict_time(const Plan& plan, const ExperimentInputs& in
     if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
     const auto speed = speed_on(plate, model, observer, options, inputs, stop);
     if (!speed) return fail("timing plate " + plate.name, speed.error());
-    const double drawing = simulated.presentations * speed->draw +
-                           frames_of(plan, simulated, options.frames_per_presentation) * speed->frame;
-    out.simulation_s += response_s(*speed) + looking_s(*speed, simulated) + drawing;
-    out.measuring_s += response_s(*speed) + looking_s(*speed, measured) +
-                       frames_of(plan, measured, options.frames_per_presentation) * speed->frame;
+    const double drawing = simulated.presentations * speed->draw + frames_of(plan, simulated, frames) * speed->frame;
+    out.simulation_s += response_s(*speed) + looking_s(*speed, simulated, frames) + drawing;
+    out.measuring_s +=
+        response_s(*speed) + looking_s(*speed, measured, frames) + frames_of(plan, measured, frames) * speed->frame;
     // The twin sees what the camera saw, so many times.
     if (pairs_asked(plan, inputs.sensor) && !plan.camera.id.empty())
-      out.measuring_s +=
-          measured.presentations * PairedTwinOptions::default_draws * speed->answers / options.frames_per_presentation;
+      out.measuring_s += measured.presentations * PairedTwinOptions::default_draws * speed->answers;
     if (plan.target.kind == TargetKind::scene) out.measuring_s += measured.presentations * speed->draw;
   }
   out.simulation_s += simulated.contrasts * fit_s;

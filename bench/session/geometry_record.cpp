@@ -39,11 +39,11 @@ void add_geometry_lines(MeasureLines& out, const GeometryMeasure& measure) {
     if (measure.distance_relative_u) line.expanded = joined(ifov, *measure.distance_relative_u);
     out.lines.push_back(std::move(line));
   }
-  const auto exact = [&](const char* name, double value, const char* what) {
-    out.lines.push_back({name, "mrad", value, {value, value}, what});
+  const auto exact = [&](const char* name, const char* unit, double value, const char* what) {
+    out.lines.push_back({name, unit, value, {value, value}, what});
   };
-  exact("ifov_stated", measure.stated_ifov_mrad, "IFOV as the plan states it");
-  if (measure.model_ifov_mrad) exact("ifov_model", *measure.model_ifov_mrad, "IFOV of the sensor model");
+  exact("ifov_stated", "mrad", measure.stated_ifov_mrad, "IFOV as the plan states it");
+  if (measure.model_ifov_mrad) exact("ifov_model", "mrad", *measure.model_ifov_mrad, "IFOV of the sensor model");
   const auto line = [&](const char* name, const char* unit, const GeometryValue& value) {
     out.lines.push_back({name, unit, value.value, {value.low, value.high}, conditions});
   };
@@ -51,6 +51,8 @@ void add_geometry_lines(MeasureLines& out, const GeometryMeasure& measure) {
   line("keystone_x", "%", found.keystone_x_percent);
   line("keystone_y", "%", found.keystone_y_percent);
   line("distortion", "%", found.distortion_percent);
+  if (measure.model_distortion_percent)
+    exact("distortion_model", "%", *measure.model_distortion_percent, "of the sensor model, both terms");
   out.lines.push_back({"geometry_residual", "px", found.residual_px, {}, conditions});
   out.geometry = GeometryMap{measure.picture.width * 1.0, measure.picture.height * 1.0, found.places};
 }

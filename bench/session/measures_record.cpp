@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
+#include "acquisition/core/distributions.h"
 #include "bench/session/ctf_record.h"
 #include "bench/session/drift_record.h"
 #include "bench/session/geometry_record.h"
@@ -60,7 +60,7 @@ void add_noise(MeasureLines& out, const CameraMeasures& measures) {
                     "temporal noise is too small, the fixed pattern too large",
                     noise.frames, *noise.lag1_correlation));
   if (const auto netd = measures.netd_k()) {
-    const double half = 1.96 * *netd * measures.netd_relative_u().value_or(0);
+    const double half = *netd * measures.netd_relative_half_width().value_or(0);
     out.lines.push_back({"netd", "K", netd, {*netd - half, *netd + half}, "temporal noise over the signal transfer"});
   }
   if (measures.netd_model_k)
@@ -109,14 +109,10 @@ void add_pixels(MeasureLines& out, const PixelMeasure& pixels) {
 
 void add_transfer(MeasureLines& out, const TransferMeasure& transfer) {
   const SignalTransfer& line = transfer.line;
-  const double t = quantile(boost::math::students_t(line.degrees_of_freedom), 0.975);
+  const double half = transfer.slope_half_width();
   const std::string conditions =
       fmt::format("{} steps of {} frames, seen over said by the target", transfer.steps.size(), transfer.frames_each);
-  out.lines.push_back({"transfer_slope",
-                       "K/K",
-                       line.slope,
-                       {line.slope - t * line.slope_u, line.slope + t * line.slope_u},
-                       conditions});
+  out.lines.push_back({"transfer_slope", "K/K", line.slope, {line.slope - half, line.slope + half}, conditions});
   out.lines.push_back({"transfer_offset", "K", line.offset, {}, conditions});
   out.lines.push_back({"transfer_nonlinearity", "%", line.nonlinearity_percent, {}, conditions});
   out.transfer = TransferCurve{transfer.steps, line.slope, line.offset};
@@ -319,12 +315,16 @@ MtfCurves mtf_from(const JsonReader& mtf) {
   return curves;
 }
 
+Json lines_json(const MeasureLines& found) {
+  Json lines = Json::array();
+  for (const MeasureLine& line : found.lines) lines.push_back(line_json(line));
+  return lines;
+}
+
 Json side_json(const std::optional<CameraMeasures>& measures) {
   if (!measures) return nullptr;
   const MeasureLines found = measure_lines(*measures);
-  Json lines = Json::array();
-  for (const MeasureLine& line : found.lines) lines.push_back(line_json(line));
-  return {{"quantities", lines},
+  return {{"quantities", lines_json(found)},
           {"noise", measures->noise ? noise_json(*measures->noise) : Json()},
           {"transfer", measures->transfer ? transfer_json(*measures->transfer) : Json()},
           {"geometry", measures->geometry ? geometry_json(*measures->geometry) : Json()},
@@ -414,6 +414,11 @@ std::vector<MeasuredQuantity> quantities_of(const MeasureLines& lines) {
 
 Json measures_json(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin) {
   return {{"main", side_json(main)}, {"twin", side_json(twin)}};
+}
+
+Json measures_json(const MeasureLines& main) {
+  return {{"main", {{"quantities", lines_json(main)}, {"maps", pixel_maps_json(main.maps)}, {"reasons", main.reasons}}},
+          {"twin", nullptr}};
 }
 
 Result<SessionMeasures> measures_from(const Json& record) {

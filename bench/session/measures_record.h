@@ -92,6 +92,8 @@ struct SessionMeasures {
 /// {...}, "pixels": {...}, "mtf": {...}, "ctf": {...}, "maps": [...], "picture": {...}, "reasons": [...]}, "twin": the
 /// same or null}
 [[nodiscard]] Json measures_json(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin);
+/// Of numbers, maps and reasons alone.
+[[nodiscard]] Json measures_json(const MeasureLines& main);
 /// `invalid_input`, naming the key, for a record that is not complete or of other types.
 [[nodiscard]] Result<SessionMeasures> measures_from(const Json& record);
 

@@ -1,11 +1,13 @@
 #include "bench/session/session_folder.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <set>
 #include <system_error>
 
 #include "bench/judgement/verdict_record.h"
+#include "bench/plan/plan_options.h"
 #include "bench/plan/strict_toml.h"
 #include "bench/session/cost_record.h"
 #include "bench/session/ending_reserve.h"
@@ -242,6 +244,10 @@ Result<void> SessionFolder::write_plan(const LoadedPlan& loaded) {
     if (!copied) return tl::unexpected(copied.error());
     *reference = *std::move(copied);
   }
+  if (loaded.parts().letterhead) {
+    if (auto kept = keep_letterhead(folder_, *loaded.parts().letterhead); !kept) return tl::unexpected(kept.error());
+    stored.report.letterhead = letterhead_file;
+  }
   return write_file_atomically(folder_ / "session.toml", to_toml(stored));
 }
 
@@ -282,7 +288,10 @@ Result<void> SessionFolder::write_grey_levels(const std::vector<GreyFrame>& fram
 
 Result<void> SessionFolder::write_measures(const std::optional<CameraMeasures>& main,
                                            const std::optional<CameraMeasures>& twin) {
-  Json record = measures_json(main, twin);
+  return write_measures(measures_json(main, twin));
+}
+
+Result<void> SessionFolder::write_measures(Json record) {
   const std::vector<MeasurePicture> pictures = take_pictures(record);
   if (!pictures.empty()) {
     std::error_code problem;
@@ -346,7 +355,11 @@ Result<void> keep_as_it_was(Plan& plan, const std::filesystem::path& file) {
   if (!reader->section("fit").has("estimator")) plan.fit.estimator = EstimatorChoice::weibull;
   TomlReader schedule = reader->section("schedule");
   if (!schedule.has("answers")) plan.schedule.answers = AnswersChoice::binary;
-  if (!schedule.has("frames_per_presentation")) plan.schedule.frames_per_presentation = 1;
+  std::vector<int>& frames = plan.schedule.frames_per_presentation;
+  if (!schedule.has("frames_per_presentation"))
+    frames = {1};
+  else if (plan.schedule.answers != AnswersChoice::binary)
+    std::ranges::replace(frames, 0, frames_of_graded_answers);  // what a session has where they were not chosen
   return {};
 }
 

@@ -51,8 +51,8 @@ class SessionFolder {
 
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
   [[nodiscard]] const SessionClock& clock() const { return clock_; }
-  /// session.toml; the plates, sensor and observer used are copied to inputs/, and references to files point there.
-  /// References to built-in descriptions stay names.
+  /// session.toml; the plates, sensor, observer and letterhead used are copied to inputs/, and references to files
+  /// point there. References to built-in descriptions stay names.
   [[nodiscard]] Result<void> write_plan(const LoadedPlan& loaded);
   /// provenance.json. Written with state running at the start and again whenever more is known.
   [[nodiscard]] Result<void> write_provenance(const Provenance& provenance);
@@ -70,6 +70,8 @@ class SessionFolder {
   /// measures.json, and its pictures in pictures/.
   [[nodiscard]] Result<void> write_measures(const std::optional<CameraMeasures>& main,
                                             const std::optional<CameraMeasures>& twin);
+  /// The same of a record as measures_json() makes it.
+  [[nodiscard]] Result<void> write_measures(Json record);
   /// verdict.json.
   [[nodiscard]] Result<void> write_verdict(const Verdict& verdict);
   /// report.html.

@@ -263,7 +263,7 @@ Result<Reproduction> reproduce_eo_vista(const EoVistaOptions& options) {
       {"distance of samples from the fine grid, rms per axis [pitch], by contrast",
        joined(
            parts, [](const CameraTrialRecord& r) { return r.placement_rms_px; }, 3)},
-      {"size of the craft (square root of area) [m]", number_text(ranges->size_m)}};
+      {"size of the craft (square root of area) [m]", fmt::format("{:.3g}", ranges->size_m)}};
   return reproduction;
 }
 

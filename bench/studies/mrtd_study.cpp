@@ -69,21 +69,40 @@ Table axis_table(const MrtdAxisCurve& curve) {
   for (const auto& p : curve.points) {
     const auto& f = p.found;
     table.rows.push_back({plain(significant(f.frequency_per_mrad, 3)), plain(significant(f.frequency_over_nyquist, 3)),
-                          interval_or_missing(p.mrtd_k, p.threshold_ci95_k, p.reason), number(f.threshold_k, "none"),
-                          number(f.best_phase_k, "none"), number(f.worst_phase_k, "not at every phase"),
-                          number(p.formula_k, "beyond Nyquist"), plain(significant(f.ideal_k, 3)),
+                          interval_or_missing(p.mrtd_k, p.mrtd_k ? p.threshold_ci95_k : Interval{}, p.reason),
+                          number(f.threshold_k, "none"), number(f.best_phase_k, "none"),
+                          number(f.worst_phase_k, "not at every phase"), number(p.formula_k, "beyond Nyquist"),
+                          plain(significant(f.ideal_k, 3)),
                           plain(significant(f.modulation_best, 2) + ", " + significant(f.modulation_worst, 2)),
                           plain(fmt::format("{:.0f} %", 100 * f.share_of_four))});
   }
   return table;
 }
 
+/// With the contrasts that bars must have for the camera to see those of `point`.
+VirtualMrtdPoint before_the_air(VirtualMrtdPoint point, double transmittance) {
+  for (auto* contrast_k : {&point.threshold_k, &point.best_phase_k, &point.worst_phase_k}) {
+    if (*contrast_k) **contrast_k /= transmittance;
+  }
+  point.highest_k /= transmittance;
+  point.ideal_k /= transmittance;
+  return point;
+}
+
 }  // namespace
 
 Result<MrtdStudy> study_mrtd(const MrtdStudyTask& task) {
+  const auto tau = task.air.air.at(task.range_m);
+  if (!tau) {
+    return fail(ErrorCode::invalid_input, fmt::format("the air's table ends at {:g} m: nothing is known of {:g} m",
+                                                      task.air.air.end_m(), task.range_m));
+  }
+  if (!(*tau > 0))
+    return fail(ErrorCode::invalid_input, fmt::format("nothing is left of a contrast over {:g} m", task.range_m));
   const auto formula = mrtd_curves(task.trial.sensor, task.formula);
   if (!formula) return tl::unexpected(formula.error());
   MrtdStudy study;
+  study.transmittance = *tau;
   study.nyquist_per_mrad = 0.5 * task.trial.sensor.samples_per_pitch() / task.trial.sensor.ifov_mrad();
   for (const BarAxis axis : task.axes) {
     VirtualMrtdTask trial = task.trial;
@@ -92,8 +111,10 @@ Result<MrtdStudy> study_mrtd(const MrtdStudyTask& task) {
     if (!found) return tl::unexpected(found.error());
     auto& curve = study.curves.emplace_back(MrtdAxisCurve{axis, {}});
     for (const auto& point : *found) {
-      curve.points.push_back(
-          study_point(point, trial.criterion, axis == BarAxis::horizontal ? formula->horizontal : formula->vertical));
+      curve.points.push_back(study_point(before_the_air(point, *tau), trial.criterion,
+                                         axis == BarAxis::horizontal ? formula->horizontal : formula->vertical));
+      auto& formula_k = curve.points.back().formula_k;
+      if (formula_k) *formula_k /= *tau;
     }
   }
   return study;
@@ -156,6 +177,11 @@ Document mrtd_page(const MrtdStudyTask& task, const MrtdStudy& study) {
   document.page_label = "Virtual MRTD, " + trial.sensor.name;
   Section section{"Four bars before the observer of the triangles", {}};
   section.blocks.emplace_back(Paragraph{plain("Criterion: " + criterion_text(trial.criterion) + ".")});
+  if (task.range_m > 0) {
+    section.blocks.emplace_back(Paragraph{plain(
+        fmt::format("Bars at {:g} m, contrasts are their own; transmittance {}, {}.", task.range_m,
+                    significant(study.transmittance, 4), task.air.source.empty() ? task.air.name : task.air.source))});
+  }
   section.blocks.emplace_back(
       Figure{drawn(mrtd_plot(task, study)),
              "Contrast for 75 % at random phase with its 95 % interval. Grey marks: thresholds that are no MRTD."});

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/plan/atmospheres.h"
 #include "bench/report/document.h"
 #include "bench/report/plot.h"
 #include "sim_devices/prediction/formula_curves.h"
@@ -16,6 +17,8 @@ struct MrtdStudyTask {
   VirtualMrtdTask trial;      ///< the axis is one of `axes`
   std::vector<BarAxis> axes;  ///< at least one
   FormulaConditions formula{};
+  Atmosphere air{};
+  double range_m = 0;  ///< from the camera to the bars; 0: no air between them
 };
 
 /// One frequency of one axis.
@@ -34,10 +37,14 @@ struct MrtdAxisCurve {
 };
 
 struct MrtdStudy {
+  double transmittance = 1;  ///< of the air between camera and bars
   double nyquist_per_mrad = 0;
   std::vector<MrtdAxisCurve> curves;
 };
 
+/// Contrasts are those of the bars, of which the air leaves the camera the share of the transmittance: what the camera
+/// needs over it. `invalid_input`: a range beyond the air's table, or at which nothing is left.
+///
 /// A threshold is no MRTD beyond Nyquist, where no phase shows four bars, and by the criterion `detection`: a machine
 /// goes on telling alias patterns apart where no person sees four bars. Errors as virtual_mrtd().
 [[nodiscard]] Result<MrtdStudy> study_mrtd(const MrtdStudyTask& task);

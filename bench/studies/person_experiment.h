@@ -70,7 +70,7 @@ class PersonExperiment {
   [[nodiscard]] const Json& description() const { return description_; }
 
  private:
-  PersonExperiment() = default;
+  PersonExperiment() noexcept(false) = default;  // that of Json may throw
   void shuffle(std::uint64_t seed);
   void describe_bars();
   PersonTask task_ = PersonTask::identify;

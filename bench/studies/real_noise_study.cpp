@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -10,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "acquisition/core/distributions.h"
 #include "hvs/observer/score_maxima.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "tod/plate/test_pattern.h"
@@ -174,7 +174,8 @@ class Ladder {
       slot->draw(noise_, options_, static_cast<std::uint64_t>(index - smallest_index));
     }
     if (!slot->drawn())
-      return fail(ErrorCode::invalid_input, "no window of the recording is free of moving scene at this size");
+      return fail(ErrorCode::invalid_input,
+                  "no window of the recording is free of pixels that are left out, at this size");
     return slot.get();
   }
 
@@ -277,7 +278,7 @@ Result<std::vector<NoiseAcuity>> real_noise_study(const RecordedNoise& noise, co
     point.white = *under_white;
     point.acuity_ratio = under_white->s75_pitch / under_real->s75_pitch;
     const double clusters = noise.blocks >= 4 ? noise.blocks : 16;
-    const double reach = boost::math::quantile(boost::math::students_t(clusters - 1), 0.975) *
+    const double reach = distribution::quantile(distribution::StudentsT(clusters - 1), 0.975) *
                          std::hypot(point.real.se_ln, point.white.se_ln);
     point.ratio_ci95 = {point.acuity_ratio * std::exp(-reach), point.acuity_ratio * std::exp(reach)};
     const int index = nearest_index(point.real.s75_pitch);

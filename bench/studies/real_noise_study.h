@@ -22,17 +22,19 @@ struct RecordedNoise {
   std::vector<cv::Mat1f> frames;
   std::vector<int> block_of_frame;
   int blocks = 0;
-  cv::Mat1b usable;           ///< 0 where the scene moved: temporal noise above twice the median pixel's
+  cv::Mat1b usable;           ///< as given, or 0 where the scene moved: temporal noise above twice the median pixel's
   double usable_share = 0;    ///< of the pixels
   double temporal_noise = 0;  ///< standard deviation over usable pixels, of what a block holds
   double correlation_x = 0, correlation_y = 0;  ///< of neighbours in a row and in a column, whole-frame changes removed
-  ThreeDNoise components;                       ///< mean of the blocks' variances; fixed components contain the
-                                                ///< scene; pixels that are not usable are held still for it
+  ThreeDNoise components;                       ///< of usable pixels; mean of the blocks' variances; fixed components
+                                                ///< contain the scene
 };
 
 /// Blocks of `block_frames` frames (at least 2; what is left over at the end is not used). `invalid_input`: fewer
-/// frames than that, frames of different sizes, or no noise at all.
-[[nodiscard]] Result<RecordedNoise> recorded_noise(std::span<const cv::Mat1f> frames, int block_frames);
+/// frames than that, frames of different sizes, or no noise at all. `usable`: the pixels to take
+/// (TemporalNoise::usable); empty: they are found here.
+[[nodiscard]] Result<RecordedNoise> recorded_noise(std::span<const cv::Mat1f> frames, int block_frames,
+                                                   const cv::Mat1b& usable = {});
 
 /// White noise in the same frames and blocks, with the same standard deviation in every pixel.
 [[nodiscard]] RecordedNoise white_like(const RecordedNoise& noise, std::uint64_t seed);

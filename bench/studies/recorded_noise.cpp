@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <opencv2/imgproc.hpp>
 
 #include "acquisition/core/rng.h"
@@ -34,13 +35,13 @@ double median_of(std::vector<double> values) {
 
 /// A pixel counts as moving scene when its noise is above twice the median pixel's. With a single residual frame there
 /// is no noise of a pixel; then none is left out.
-void find_usable(RecordedNoise& noise) {
+void find_usable(RecordedNoise& noise, const cv::Mat1b& usable) {
   cv::Mat1d squares(noise.frames[0].size(), 0.0);
   for (const auto& frame : noise.frames) cv::accumulateSquare(frame, squares);
   squares /= static_cast<double>(noise.frames.size());
-  const std::vector<double> all(squares.begin(), squares.end());
-  noise.usable = cv::Mat1b(squares.size(), 255);
-  if (noise.frames.size() > 4) noise.usable = squares <= 4 * median_of(all);
+  noise.usable = usable.empty() ? cv::Mat1b(squares.size(), 255) : usable;
+  if (usable.empty() && noise.frames.size() > 4)
+    noise.usable = squares <= 4 * median_of(std::vector<double>(squares.begin(), squares.end()));
   noise.usable_share = cv::countNonZero(noise.usable) / static_cast<double>(noise.usable.total());
   noise.temporal_noise = std::sqrt(cv::mean(squares, noise.usable)[0]);
 }
@@ -79,27 +80,40 @@ Result<ThreeDNoise> mean_components(std::span<const cv::Mat1f> frames, int block
   return sum;
 }
 
-/// The frames with pixels that are not usable held at their mean of the block: no change in time.
-std::vector<cv::Mat1f> without_moving_scene(std::span<const cv::Mat1f> frames, const RecordedNoise& noise,
-                                            int block_frames) {
-  std::vector<cv::Mat1f> still;
+/// The frames with pixels that are not usable held at the mean of the others in the block.
+std::vector<cv::Mat1f> usable_alone(std::span<const cv::Mat1f> frames, const RecordedNoise& noise, int block_frames) {
+  std::vector<cv::Mat1f> held;
   const auto size = static_cast<std::size_t>(block_frames);
-  const cv::Mat1b moving = noise.usable == 0;
+  const cv::Mat1b other = noise.usable == 0;
   for (std::size_t b = 0; b < static_cast<std::size_t>(noise.blocks); ++b) {
-    cv::Mat1f mean(frames[0].size(), 0.0F);
-    for (std::size_t k = 0; k < size; ++k) cv::accumulate(frames[b * size + k], mean);
-    mean /= static_cast<double>(block_frames);
+    double mean = 0;
+    for (std::size_t k = 0; k < size; ++k) mean += cv::mean(frames[b * size + k], noise.usable)[0] / block_frames;
     for (std::size_t k = 0; k < size; ++k) {
-      still.push_back(frames[b * size + k].clone());
-      mean.copyTo(still.back(), moving);
+      held.push_back(frames[b * size + k].clone());
+      held.back().setTo(mean, other);
     }
   }
-  return still;
+  return held;
+}
+
+/// What the components of the usable pixels are where those of all were found with the others held, if these are spread
+/// over the picture: of a share p, effects of rows, columns and frames shrink to p of themselves, and what the pixels
+/// of one row differ by, p (1 - p) of its variance, is among the pixels.
+ThreeDNoise of_usable(ThreeDNoise held, double p) {
+  const auto pixels = [&](double sum, std::initializer_list<double> effects) {
+    double squares = sum * sum;
+    for (const double effect : effects) squares -= p * (1 - p) * effect * effect;
+    return std::sqrt(std::max(0.0, squares) / p);
+  };
+  for (double* effect : {&held.tv, &held.th, &held.t, &held.v, &held.h}) *effect /= p;
+  held.tvh = pixels(held.tvh, {held.tv, held.th, held.t});
+  held.vh = pixels(held.vh, {held.v, held.h});
+  return held;
 }
 
 }  // namespace
 
-Result<RecordedNoise> recorded_noise(std::span<const cv::Mat1f> frames, int block_frames) {
+Result<RecordedNoise> recorded_noise(std::span<const cv::Mat1f> frames, int block_frames, const cv::Mat1b& usable) {
   if (block_frames < 2 || frames.size() < static_cast<std::size_t>(block_frames)) {
     return fail(ErrorCode::invalid_input, "the recording holds " + std::to_string(frames.size()) +
                                               " frames; a block needs " + std::to_string(std::max(2, block_frames)));
@@ -110,15 +124,14 @@ Result<RecordedNoise> recorded_noise(std::span<const cv::Mat1f> frames, int bloc
     const auto size = static_cast<std::size_t>(block_frames);
     add_residuals(frames.subspan(static_cast<std::size_t>(b) * size, size), b, noise);
   }
-  find_usable(noise);
+  find_usable(noise, usable);
   // Below a millionth of the level it is the rounding of the mean.
   if (!(noise.temporal_noise > 1e-6 * cv::norm(frames[0], cv::NORM_INF)))
     return fail(ErrorCode::invalid_input, "the recording holds no noise: all frames are the same");
   find_correlations(noise);
-  auto components = mean_components(without_moving_scene(frames, noise, block_frames), block_frames, noise.blocks);
+  auto components = mean_components(usable_alone(frames, noise, block_frames), block_frames, noise.blocks);
   if (!components) return tl::unexpected(components.error());
-  noise.components = *components;
-  noise.components.tvh /= std::sqrt(noise.usable_share);
+  noise.components = of_usable(*components, noise.usable_share);
   return noise;
 }
 

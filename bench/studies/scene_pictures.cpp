@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "sim_devices/atmosphere/radiative_path.h"
+#include "sim_devices/sensor/effect_distortion.h"
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/effect_turbulence.h"
 #include "sim_devices/sensor/sensor_model.h"
@@ -154,6 +155,7 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   }
   out.apparent_dt_k = *tau * contrast_of(out.signature, levels);
   out.effects = planned(task, out.apparent_dt_k);
+  if (distorts(task.sensor)) out.effects.warnings.emplace_back("the scene is drawn without the distortion of the lens");
   out.air = air_decisions(task, out, scale.kelvin(seen - radiance));
   out.turbulence = turbulence_seen(task.sensor);
   const SensorPlan& plan = out.effects.plan;

@@ -60,6 +60,23 @@ std::vector<std::vector<double>> sobol(std::size_t n, std::size_t dimensions, st
   return rows;
 }
 
+/// The members of every draw one after the other, so that more draws are added at the end.
+std::vector<std::vector<double>> total_design(std::size_t n, std::size_t dimensions, std::uint64_t seed) {
+  std::vector<std::vector<double>> rows;
+  rows.reserve(n * (dimensions + 2));
+  for (const auto& both : sobol(n, 2 * dimensions, seed)) {
+    const auto middle = both.begin() + static_cast<std::ptrdiff_t>(dimensions);
+    const std::vector<double> a(both.begin(), middle), b(middle, both.end());
+    rows.push_back(a);
+    rows.push_back(b);
+    for (std::size_t k = 0; k < dimensions; ++k) {
+      rows.push_back(a);
+      rows.back()[k] = b[k];
+    }
+  }
+  return rows;
+}
+
 std::size_t product(std::size_t a, std::size_t b) {
   return b != 0 && a > most_combinations / b ? most_combinations + 1 : a * b;
 }
@@ -73,8 +90,13 @@ std::vector<std::vector<double>> unit_sample(SampleKind kind, std::size_t n, std
 
 Sweep::Sweep(SweepFile file, std::string fingerprint) : file_(std::move(file)) {
   base_text_ = fmt::format("kind={}\n{}{}", static_cast<int>(file_.kind), canonical(file_.base), fingerprint);
+}
+
+void Sweep::draw() {
   if (file_.sample.empty()) return;
-  sample_ = unit_sample(file_.sample_kind, file_.sample_count, file_.sample.size(), file_.sample_seed);
+  sample_ = file_.sample_total
+                ? total_design(file_.sample_count, file_.sample.size(), file_.sample_seed)
+                : unit_sample(file_.sample_kind, file_.sample_count, file_.sample.size(), file_.sample_seed);
   for (auto& row : sample_) {
     for (std::size_t d = 0; d < row.size(); ++d) {
       const auto& [key, low, high] = file_.sample[d];
@@ -88,7 +110,7 @@ std::size_t Sweep::combination_count() const {
   std::size_t count = 1;
   for (const auto& axis : file_.grid) count = product(count, axis.values.size());
   if (!file_.zip.empty()) count = product(count, file_.zip.front().values.size());
-  if (!sample_.empty()) count = product(count, sample_.size());
+  if (!file_.sample.empty()) count = product(count, product(file_.sample_count, members()));
   return count;
 }
 
@@ -120,6 +142,7 @@ Result<Sweep> Sweep::expand(SweepFile file, std::string fingerprint, const Numbe
   const std::size_t count = sweep.combination_count();
   if (product(count, sweep.file_.repeats) > most_combinations)
     return fail(ErrorCode::invalid_input, fmt::format("the sweep has more than {} tasks", most_combinations));
+  sweep.draw();
   const auto keys = sweep.keys();
   for (const auto& constraint : sweep.file_.where) {
     for (const auto& name : constraint.names()) {

@@ -42,16 +42,19 @@ class Sweep {
   [[nodiscard]] std::size_t refused() const { return refused_; }
   /// Of everything that decides any result of this sweep.
   [[nodiscard]] const std::string& hash() const { return hash_; }
+  /// Combinations that make one draw: 1, with sample_total A, B and A with each parameter of B, in this order.
+  [[nodiscard]] std::size_t members() const { return file_.sample_total ? file_.sample.size() + 2 : 1; }
   /// The keys that vary, in the order of the file.
   [[nodiscard]] std::vector<std::string> keys() const;
 
  private:
   Sweep(SweepFile file, std::string fingerprint);
+  void draw();
   [[nodiscard]] std::size_t combination_count() const;
   [[nodiscard]] std::vector<SweepParameter> parameters_of(std::size_t combination) const;
   SweepFile file_;
   std::string base_text_, hash_;
-  std::vector<std::vector<double>> sample_;  ///< per draw, one number for each range
+  std::vector<std::vector<double>> sample_;  ///< per draw, or member of one, one number for each range
   std::vector<std::size_t> combinations_;    ///< those that no condition refuses
   std::size_t refused_ = 0;
 };

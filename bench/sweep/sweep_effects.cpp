@@ -2,13 +2,13 @@
 
 #include <Eigen/QR>
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <set>
 #include <utility>
 
+#include "acquisition/core/distributions.h"
 #include "bench/text/text.h"
 
 namespace todbench {
@@ -19,6 +19,7 @@ struct Observation {
   std::vector<std::string> values;  ///< by parameter
   std::size_t repeat = 0;
   double response = 0;
+  std::size_t index = 0;  ///< of the task
 };
 using Observations = std::vector<Observation>;
 
@@ -38,7 +39,8 @@ std::map<double, Observations> observations_of(const std::vector<std::string>& k
                                                std::size_t response) {
   std::vector<std::size_t> columns;
   for (const auto& key : keys) columns.push_back(column_of(table, key).value_or(0));
-  const auto repeat = column_of(table, "repeat"), contrast = column_of(table, "delta_t_k");
+  const auto repeat = column_of(table, "repeat"), contrast = column_of(table, "delta_t_k"),
+             index = column_of(table, "index");
   std::map<double, Observations> by_contrast;
   for (const auto& row : table.rows) {
     if (!row[response].is_number()) continue;
@@ -46,6 +48,7 @@ std::map<double, Observations> observations_of(const std::vector<std::string>& k
     for (const std::size_t column : columns) observation.values.push_back(text_of(row[column]));
     observation.repeat = repeat ? row[*repeat].get<std::size_t>() : 0;
     observation.response = row[response].get<double>();
+    observation.index = index ? row[*index].get<std::size_t>() : 0;
     const double at = contrast && row[*contrast].is_number() ? row[*contrast].get<double>() : 0;
     by_contrast[at].push_back(std::move(observation));
   }
@@ -62,7 +65,7 @@ Interval interval_of(const std::vector<double>& values) {
   const double m = mean(values), n = static_cast<double>(values.size());
   double squares = 0;
   for (const double value : values) squares += (value - m) * (value - m);
-  const double t = boost::math::quantile(boost::math::students_t(n - 1), 0.975);
+  const double t = distribution::quantile(distribution::StudentsT(n - 1), 0.975);
   const double half = t * std::sqrt(squares / (n - 1) / n);
   return {m - half, m + half};
 }
@@ -162,6 +165,90 @@ void add_indices(ParameterEffect& effect, const std::map<std::size_t, Observatio
   if (!total.empty()) effect.total = mean(total);
   effect.first_order_ci95 = interval_of(first);
   effect.total_ci95 = interval_of(total);
+}
+
+/// Responses of the members of a draw, averaged over what repeats have in common.
+using Draw = std::vector<double>;
+
+/// The whole draws of a repeat.
+std::map<std::size_t, Draw> draws_of(const Observations& rows, const Sweep& sweep) {
+  std::map<std::size_t, std::map<std::size_t, double>> found;
+  for (const auto& row : rows) {
+    const std::size_t combination = row.index / sweep.file().repeats;
+    found[combination / sweep.members()][combination % sweep.members()] = row.response;
+  }
+  std::map<std::size_t, Draw> draws;
+  for (const auto& [number, members] : found) {
+    if (members.size() != sweep.members()) continue;
+    for (const auto& [member, response] : members) draws[number].push_back(response);
+  }
+  return draws;
+}
+
+/// A ratio of means over draws with Student's interval from its linearisation, summed in eight to fifteen blocks of 2^m
+/// successive draws (one by one below sixteen): each is a net of its own, which scatters less than independent draws
+/// do. Blocks of one net complete each other, so that the interval is rather too wide.
+struct RatioOfMeans {
+  double value = 0;
+  Interval ci95;
+};
+RatioOfMeans ratio_of_means(const std::vector<double>& above, const std::vector<double>& below) {
+  const std::size_t n = above.size();
+  std::size_t size = 1;
+  while (16 * size <= n) size *= 2;
+  const std::size_t blocks = n / size;
+  const double value = mean(above) / mean(below);
+  std::vector<double> sums(blocks);
+  for (std::size_t i = 0; i < n; ++i) sums[std::min(i / size, blocks - 1)] += above[i] - value * below[i];
+  double squares = 0;
+  for (const double sum : sums) squares += sum * sum;
+  const auto g = static_cast<double>(blocks);
+  const double t = quantile(distribution::StudentsT(g - 1), 0.975);
+  const double half = t * std::sqrt(squares * g / (g - 1)) / static_cast<double>(n) / mean(below);
+  return {value, {value - half, value + half}};
+}
+
+/// First-order index S = <f(B) (f(AB_k) - f(A))> / V (Saltelli et al. 2010, table 2 b), total one T = <(f(A) -
+/// f(AB_k))^2> / 2 V (Jansen 1999; ibid. f), V = <(f(A) - m)^2 + (f(B) - m)^2> / 2; the scatter of repeats, which is
+/// nobody's share, is taken off T where every task has its own random numbers. Each draw is one, with the means over
+/// its repeats. Returns the number of draws.
+std::size_t add_total_indices(std::vector<ParameterEffect>& effects,
+                              const std::map<std::size_t, Observations>& by_repeat, const Sweep& sweep) {
+  // Numbers that tasks share cancel in a difference.
+  const double noise = sweep.file().paired ? 0 : variance_of_repeats(by_repeat);
+  const std::size_t parameters = effects.size();
+  std::map<std::size_t, std::vector<std::pair<double, Draw>>> by_draw;  // with the mean of the repeat
+  for (const auto& [repeat, rows] : by_repeat) {
+    const auto draws = draws_of(rows, sweep);
+    double sum = 0;
+    for (const auto& [number, draw] : draws) sum += draw[0] + draw[1];
+    for (const auto& [number, draw] : draws)
+      by_draw[number].emplace_back(sum / (2 * static_cast<double>(draws.size())), draw);
+  }
+  if (by_draw.size() < 3) return by_draw.size();
+  std::vector<double> variance;
+  std::vector<std::vector<double>> first(parameters), total(parameters);
+  for (const auto& [number, repeats] : by_draw) {
+    const double count = static_cast<double>(repeats.size());
+    double v = 0;
+    std::vector<double> s(parameters), t(parameters);
+    for (const auto& [m, draw] : repeats) {
+      v += (std::pow(draw[0] - m, 2) + std::pow(draw[1] - m, 2)) / 2 / count;
+      for (std::size_t k = 0; k < parameters; ++k) {
+        s[k] += (draw[1] - m) * (draw[k + 2] - draw[0]) / count;
+        t[k] += (std::pow(draw[0] - draw[k + 2], 2) / 2 - noise) / count;
+      }
+    }
+    variance.push_back(v);
+    for (std::size_t k = 0; k < parameters; ++k) first[k].push_back(s[k]), total[k].push_back(t[k]);
+  }
+  if (!(mean(variance) > 0)) return by_draw.size();
+  for (std::size_t k = 0; k < parameters; ++k) {
+    const auto s = ratio_of_means(first[k], variance), t = ratio_of_means(total[k], variance);
+    effects[k].first_order = s.value, effects[k].first_order_ci95 = s.ci95;
+    effects[k].total = t.value, effects[k].total_ci95 = t.ci95;
+  }
+  return by_draw.size();
 }
 
 /// Means at each value, their intervals over the repeats.
@@ -273,10 +360,12 @@ std::vector<ResponseEffects> sweep_effects(const Sweep& sweep, const SweepTable&
       effect.levels = i < fixed ? levels_of(rows, i) : class_levels(rows, i);
       // Beside a grid the plane would have to hold the grid as well.
       if (i >= fixed && fixed == 0) effect.ends = ends_of(by_repeat, sweep.file().sample, fixed, i - fixed);
-      add_indices(effect, by_repeat, i,
-                  sweep.file().sample.empty() ? std::nullopt : std::optional(sweep.file().sample_kind));
+      if (!sweep.file().sample_total)
+        add_indices(effect, by_repeat, i,
+                    sweep.file().sample.empty() ? std::nullopt : std::optional(sweep.file().sample_kind));
       found.parameters.push_back(std::move(effect));
     }
+    if (sweep.file().sample_total) found.draws = add_total_indices(found.parameters, by_repeat, sweep);
     effects.push_back(std::move(found));
   }
   return effects;
@@ -295,7 +384,10 @@ Json to_json(const std::vector<ResponseEffects>& effects) {
                             {"levels", levels_json(effect.levels)},
                             {"ends", levels_json(effect.ends)}});
     }
-    list.push_back({{"response", response.response}, {"delta_t_k", response.delta_t_k}, {"parameters", parameters}});
+    list.push_back({{"response", response.response},
+                    {"delta_t_k", response.delta_t_k},
+                    {"draws", response.draws > 0 ? Json(response.draws) : Json()},
+                    {"parameters", parameters}});
   }
   return list;
 }

@@ -25,7 +25,8 @@ struct ParameterEffect {
   std::vector<EffectLevel> ends{};
   /// Share of the variance of the response that the parameter alone explains, and with all its interactions; of each
   /// repeat, averaged, with the interval of that mean. In a full factorial exact sums of squares; of a drawn sample the
-  /// correlation ratio over classes of equal count, corrected for what they explain by chance (no total).
+  /// correlation ratio over classes of equal count, corrected for what they explain by chance (no total). Of draws with
+  /// total = true the estimators of Saltelli et al. 2010 and Jansen 1999, with intervals over the draws.
   std::optional<double> first_order{}, total{};
   Interval first_order_ci95{}, total_ci95{};
 };
@@ -34,6 +35,7 @@ struct ResponseEffects {
   std::string response;
   double delta_t_k = 0;
   std::vector<ParameterEffect> parameters;
+  std::size_t draws = 0;  ///< whole ones, of which total indices are; 0: not drawn for them
 };
 /// Empty where the response has no numbers.
 [[nodiscard]] std::vector<ResponseEffects> sweep_effects(const Sweep& sweep, const SweepTable& table,

@@ -72,21 +72,114 @@ std::optional<double> number_of(const Json& cell) {
   return cell.is_string() ? parse_number(cell.get<std::string>()) : std::nullopt;
 }
 
-/// Keys of [grid] that have two numbers or more, those that explain most first.
-std::vector<std::string> grid_keys(const Sweep& sweep, const ResponseEffects& effects) {
+/// Those that explain most first.
+std::vector<std::string> by_share(const std::vector<std::string>& names, const ResponseEffects& effects) {
   std::vector<std::pair<double, std::string>> keys;
-  for (const auto& axis : sweep.file().grid) {
-    const bool numbers = std::all_of(axis.values.begin(), axis.values.end(),
-                                     [](const auto& value) { return parse_number(value).has_value(); });
-    if (!numbers || axis.values.size() < 2) continue;
+  for (const auto& name : names) {
     for (const auto& parameter : effects.parameters) {
-      if (parameter.key == axis.key) keys.emplace_back(-parameter.first_order.value_or(0), axis.key);
+      if (parameter.key == name) keys.emplace_back(-parameter.first_order.value_or(0), name);
     }
   }
   std::stable_sort(keys.begin(), keys.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::string> sorted;
+  for (const auto& [share, key] : keys) sorted.push_back(key);
+  return sorted;
+}
+
+/// Keys of [grid] that have two numbers or more.
+std::vector<std::string> grid_keys(const Sweep& sweep, const ResponseEffects& effects) {
   std::vector<std::string> names;
-  for (const auto& [share, key] : keys) names.push_back(key);
-  return names;
+  for (const auto& axis : sweep.file().grid) {
+    const bool numbers = std::all_of(axis.values.begin(), axis.values.end(),
+                                     [](const auto& value) { return parse_number(value).has_value(); });
+    if (numbers && axis.values.size() > 1) names.push_back(axis.key);
+  }
+  return by_share(names, effects);
+}
+
+/// A draw in the plane of two parameters, each from 0 to 1 over its range.
+struct PlacedResponse {
+  double x = 0, y = 0, response = 0;
+};
+
+std::vector<PlacedResponse> placed_responses(const Sweep& sweep, const SweepTable& table,
+                                             const ResponseEffects& effects, const SweepRange& of_x,
+                                             const SweepRange& of_y) {
+  const auto x = place_of(table.columns, of_x.key), y = place_of(table.columns, of_y.key),
+             response = place_of(table.columns, effects.response), contrast = place_of(table.columns, "delta_t_k"),
+             index = place_of(table.columns, "index");
+  // Repeats of a draw are one; of total = true A and B are independent, the others repeat their places.
+  std::map<std::size_t, std::pair<PlacedResponse, double>> draws;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const auto& row = table.rows[i];
+    if (!x || !y || !response || !row[*response].is_number()) continue;
+    if (contrast && row[*contrast].is_number() && row[*contrast].get<double>() != effects.delta_t_k) continue;
+    const std::size_t combination = index ? row[*index].get<std::size_t>() / sweep.file().repeats : i;
+    if (combination % sweep.members() > 1) continue;
+    const auto at_x = number_of(row[*x]), at_y = number_of(row[*y]);
+    if (!at_x || !at_y) continue;
+    auto& [draw, repeats] = draws[combination];
+    draw.x = (*at_x - of_x.low) / (of_x.high - of_x.low), draw.y = (*at_y - of_y.low) / (of_y.high - of_y.low);
+    draw.response += row[*response].get<double>();
+    repeats += 1;
+  }
+  std::vector<PlacedResponse> placed;
+  for (const auto& [combination, found] : draws)
+    placed.push_back({found.first.x, found.first.y, found.first.response / found.second});
+  return placed;
+}
+
+/// Means over side x side squares; nothing where they say too little.
+std::optional<ResponseGrid> square_means(const std::vector<PlacedResponse>& placed, std::size_t side,
+                                         const SweepRange& of_x, const SweepRange& of_y) {
+  constexpr std::size_t least_draws = 8;
+  constexpr double least_range = 8;  // standard errors; 64 means of nothing but chance span 4.7 of them
+  std::vector<std::vector<std::vector<double>>> cells(side, std::vector<std::vector<double>>(side));
+  const double squares = static_cast<double>(side);
+  const auto cell_of = [&](double u) {
+    return static_cast<std::size_t>(std::clamp(std::floor(u * squares), 0.0, squares - 1));
+  };
+  for (const auto& [x, y, response] : placed) cells[cell_of(x)][cell_of(y)].push_back(response);
+  ResponseGrid grid{.x_key = of_x.key, .y_key = of_y.key, .x = {}, .y = {}, .mean = {}, .least = placed.size()};
+  grid.points = placed.size();
+  double low = 0, high = 0, largest_error = 0;
+  for (std::size_t i = 0; i < side; ++i) {
+    const double middle = (static_cast<double>(i) + 0.5) / squares;
+    grid.x.push_back(of_x.low + middle * (of_x.high - of_x.low));
+    grid.y.push_back(of_y.low + middle * (of_y.high - of_y.low));
+    grid.mean.emplace_back();
+    for (const auto& cell : cells[i]) {
+      if (cell.size() < least_draws) return std::nullopt;
+      double sum = 0, scatter = 0;
+      const double n = static_cast<double>(cell.size());
+      for (const double response : cell) sum += response;
+      for (const double response : cell) scatter += std::pow(response - sum / n, 2);
+      largest_error = std::max(largest_error, std::sqrt(scatter / (n - 1) / n));
+      grid.least = std::min(grid.least, cell.size());
+      const bool first = grid.mean.size() == 1 && grid.mean.back().empty();
+      low = first ? sum / n : std::min(low, sum / n), high = first ? sum / n : std::max(high, sum / n);
+      grid.mean.back().push_back(sum / n);
+    }
+  }
+  if (!(high - low > least_range * largest_error)) return std::nullopt;
+  return grid;
+}
+
+Result<ResponseGrid> drawn_grid(const Sweep& sweep, const SweepTable& table, const ResponseEffects& effects) {
+  std::vector<std::string> names;
+  for (const auto& range : sweep.file().sample) names.push_back(range.key);
+  names = by_share(names, effects);
+  const auto range_of = [&](const std::string& key) {
+    return *std::find_if(sweep.file().sample.begin(), sweep.file().sample.end(),
+                         [&](const SweepRange& range) { return range.key == key; });
+  };
+  const SweepRange x = range_of(names[0]), y = range_of(names[1]);
+  const auto placed = placed_responses(sweep, table, effects, x, y);
+  for (std::size_t side = 8; side >= 3; --side) {
+    if (auto grid = square_means(placed, side, x, y)) return *std::move(grid);
+  }
+  return fail(ErrorCode::not_identifiable,
+              std::to_string(placed.size()) + " draws are too few for contours over " + x.key + " and " + y.key);
 }
 
 /// Where the height lies between two corners.
@@ -181,8 +274,10 @@ Result<Drawing> response_curve(const ResponseEffects& effects, const ParameterEf
 
 Result<ResponseGrid> response_grid(const Sweep& sweep, const SweepTable& table, const ResponseEffects& effects) {
   const auto keys = grid_keys(sweep, effects);
+  if (keys.size() < 2 && sweep.file().sample.size() > 1) return drawn_grid(sweep, table, effects);
   if (keys.size() < 2)
-    return fail(ErrorCode::not_identifiable, "contours need two parameters of [grid] with two numbers each");
+    return fail(ErrorCode::not_identifiable,
+                "contours need two parameters of [grid] with two numbers each, or two that are drawn");
   ResponseGrid grid{.x_key = keys[0], .y_key = keys[1], .x = {}, .y = {}, .mean = {}};
   const auto x = place_of(table.columns, grid.x_key), y = place_of(table.columns, grid.y_key),
              response = place_of(table.columns, effects.response), contrast = place_of(table.columns, "delta_t_k");
@@ -235,7 +330,9 @@ Result<Drawing> contour_plot(const ResponseGrid& grid, const ResponseEffects& ef
   if (!(high > low)) return fail(ErrorCode::not_identifiable, "the response is the same everywhere");
   Plot plot{.id = id,
             .title = "Contours of the response over " + grid.x_key + " and " + grid.y_key,
-            .description = "Lines of equal mean response; a square is a combination that was computed.",
+            .description = grid.points > 0
+                               ? "Lines of equal mean response; a square is the middle of those that are averaged."
+                               : "Lines of equal mean response; a square is a combination that was computed.",
             .x = axis_for(grid.x_key, grid.x, 0.04),
             .y = axis_for(grid.y_key, grid.y, 0.06),
             .bands = {},
@@ -260,10 +357,11 @@ Result<Drawing> contour_plot(const ResponseGrid& grid, const ResponseEffects& ef
     ++number;
     plot.series.push_back(std::move(series));
   }
-  PlotSeries computed{.label = response_label(effects) + " at these lines; computed",
-                      .tone = PlotTone::muted,
-                      .marker = PlotMarker::square,
-                      .points = {}};
+  PlotSeries computed{
+      .label = response_label(effects) + (grid.points > 0 ? " at these lines; means" : " at these lines; computed"),
+      .tone = PlotTone::muted,
+      .marker = PlotMarker::square,
+      .points = {}};
   for (const double x : grid.x) {
     for (const double y : grid.y) computed.points.push_back({x, y, {}, {}});
   }

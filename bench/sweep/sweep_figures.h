@@ -20,9 +20,12 @@ struct ResponseGrid {
   std::string x_key, y_key;
   std::vector<double> x, y;  ///< increasing
   std::vector<std::vector<double>> mean;
+  std::size_t points = 0, least = 0;  ///< of drawn parameters: draws in all squares and in the emptiest
 };
-/// Of the two parameters of [grid] that explain most, each with two numbers or more. `not_identifiable` where there are
-/// none, or cells without a task.
+/// Of the two parameters of [grid] that explain most, each with two numbers or more; without [grid] of two drawn ones:
+/// means over equal squares, as many (8 x 8 to 3 x 3) as leave eight draws or more in each and means whose range is
+/// eight times the largest standard error of one. `not_identifiable` where there are none, cells without a task, or too
+/// few draws.
 [[nodiscard]] Result<ResponseGrid> response_grid(const Sweep& sweep, const SweepTable& table,
                                                  const ResponseEffects& effects);
 /// Where a bilinear surface through the grid has this height: stretches of straight lines, each from edge to edge of a

@@ -125,6 +125,11 @@ void read_sample(const toml::table& table, Reading& reading, SweepFile& sweep) {
   const auto seed = table["seed"].value_or<std::int64_t>(1);
   if (seed < 0) reading.wrong(table, "seed: expected 0 or more");
   sweep.sample_seed = static_cast<std::uint64_t>(std::max<std::int64_t>(seed, 0));
+  if (const auto* total = table.get("total")) {
+    if (!total->is_boolean() || (total->value_or(false) && kind != "sobol"))
+      reading.wrong(*total, "total: expected true or false, and true with kind = \"sobol\" alone");
+    sweep.sample_total = total->value_or(false);
+  }
   const auto* ranges = table["ranges"].as_table();
   if (ranges == nullptr || ranges->empty()) reading.wrong(table, "expected ranges = { key = [low, high], ... }");
   if (ranges == nullptr) return;
@@ -136,7 +141,7 @@ void read_sample(const toml::table& table, Reading& reading, SweepFile& sweep) {
     sweep.sample.push_back({key, low.value_or(0), high.value_or(1)});
   });
   for (const auto& [key, node] : in_order(table)) {
-    if (key != "kind" && key != "n" && key != "seed" && key != "ranges")
+    if (key != "kind" && key != "n" && key != "seed" && key != "ranges" && key != "total")
       reading.wrong(*node, "unknown key '" + one_line(key) + "' in [sample]");
   }
 }
@@ -261,6 +266,8 @@ Result<SweepFile> parse_sweep(std::string_view text, const std::filesystem::path
   Reading reading(name);
   for (const auto& [key, node] : in_order(root)) read_entry(key, *node, reading, sweep);
   if (reading.mistake()) return fail(ErrorCode::invalid_input, *reading.mistake());
+  if (sweep.sample_total && !(sweep.grid.empty() && sweep.zip.empty() && sweep.where.empty()))
+    return fail(ErrorCode::invalid_input, name + ": total indices need draws without conditions, [grid] and [zip]");
   if (const auto key = named_twice(sweep))
     return fail(ErrorCode::invalid_input, name + ": the parameter '" + one_line(*key) + "' is stated twice");
   return sweep;

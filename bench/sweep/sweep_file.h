@@ -50,6 +50,9 @@ struct SweepFile {
   std::vector<SweepRange> sample;
   std::size_t sample_count = 0;
   std::uint64_t sample_seed = 1;
+  /// Of a Sobol sample: every draw is a pair A, B of independent ones and, for each parameter, A with that of B, so
+  /// that total indices can be had (Saltelli et al. 2010): sample_count (ranges + 2) combinations.
+  bool sample_total = false;
   std::size_t repeats = 1;
   std::vector<Constraint> where;
   std::filesystem::path folder;   ///< of the file: what it names is relative to it

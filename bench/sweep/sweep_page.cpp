@@ -20,13 +20,16 @@ RichText share(std::optional<double> value, const Interval& interval, std::strin
 }
 
 Table index_table(const ResponseEffects& effects, bool drawn) {
-  Table table{.caption = "Shares of the variance of " + effects.response + ", 95 % over the repeats",
+  const std::string over =
+      effects.draws > 0 ? fmt::format("{} whole draws", effects.draws) : std::string("the repeats");
+  Table table{.caption = "Shares of the variance of " + effects.response + ", 95 % over " + over,
               .header = {"Parameter", "First order", "Total"},
               .rows = {}};
   for (const auto& effect : effects.parameters) {
     table.rows.push_back(
         {plain(effect.key), share(effect.first_order, effect.first_order_ci95, "no variance"),
-         share(effect.total, effect.total_ci95, drawn ? "not identifiable from a drawn sample" : "no variance")});
+         share(effect.total, effect.total_ci95,
+               drawn && effects.draws == 0 ? "not identifiable from a sample without total = true" : "no variance")});
   }
   return table;
 }
@@ -64,10 +67,14 @@ Section response_section(const Sweep& sweep, const SweepTable& table, const Resp
   }
   if (!curves.figures.empty()) section.blocks.emplace_back(std::move(curves));
   const auto grid = response_grid(sweep, table, effects);
-  section.blocks.emplace_back(
-      Figure{grid ? contour_plot(*grid, effects, id + "-contours") : Result<Drawing>(tl::unexpected(grid.error())),
-             "Contours over the two parameters that explain most, means over everything else, bilinear between the "
-             "combinations"});
+  section.blocks.emplace_back(Figure{
+      grid ? contour_plot(*grid, effects, id + "-contours") : Result<Drawing>(tl::unexpected(grid.error())),
+      grid && grid->points > 0
+          ? fmt::format("Contours over the two drawn parameters that explain most: {} draws in {} x {} squares of "
+                        "{} or more, bilinear between the middles of their means",
+                        grid->points, grid->x.size(), grid->y.size(), grid->least)
+          : "Contours over the two parameters that explain most, means over everything else, bilinear between "
+            "the combinations"});
   section.blocks.emplace_back(level_table(effects));
   return section;
 }

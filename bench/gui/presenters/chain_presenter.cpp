@@ -44,6 +44,7 @@ Result<Setting> setting_of(const ChainOptions& options) {
   s.effects = full_plan(s.sensor, options.skip, {});
   s.side_pitch = 2 * static_cast<int>(std::ceil(options.size_pitch + 3));
   s.sensor.width = s.sensor.height = s.side_pitch;
+  s.sensor.distortion_percent = s.sensor.distortion_r4_percent = 0;  // what is shown is the middle of the picture
   s.scene.distance_m = 1;
   s.scene.delta_t_k = options.delta_t_k;
   s.scene.background_k = s.sensor.scene_temperature_k;

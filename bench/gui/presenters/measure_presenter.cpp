@@ -124,7 +124,7 @@ void MeasurePresenter::begin(const Plan& plan) {
   notes_.clear();
   request_.reset();
   waiting_.clear();
-  done_ = planned_ = 0;
+  done_ = planned_ = presented_ = 0;
   folder_.clear();
   trials_.clear();
   twin_trials_.clear();
@@ -270,6 +270,7 @@ void MeasurePresenter::collect() {
   }
   if (progress) {
     std::tie(done_, planned_) = *progress;
+    presented_ = done_;
     if (!in_phase_.isValid()) {
       in_phase_.start();
       done_at_start_ = done_;
@@ -312,6 +313,7 @@ void MeasurePresenter::conclude(const Result<ExperimentOutcome>& outcome) {
     folder_ = outcome->folder;
     measured_ = outcome->curve;
     twin_ = outcome->twin;
+    if (!outcome->ended_by) done_ = planned_ = presented_;
     phase_ = outcome->ended_by ? "ended early: " + QString::fromStdString(outcome->ended_by->message)
                                : "verdict: " + QString::fromUtf8(to_string(outcome->verdict.decision).data());
     if (same_)

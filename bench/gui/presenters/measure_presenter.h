@@ -130,6 +130,7 @@ class MeasurePresenter final : public QObject {
   std::optional<OperatorRequest> request_;
   QStringList notes_;
   std::size_t done_ = 0, planned_ = 0, done_at_start_ = 0;
+  std::size_t presented_ = 0;  ///< of the last part that counts its presentations
   QElapsedTimer in_phase_, since_fit_;
   std::filesystem::path folder_;
   std::vector<JudgedTrial> trials_;

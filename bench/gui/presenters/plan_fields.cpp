@@ -65,6 +65,7 @@ struct AskFor {
     field.low = static_cast<int>(type.low);
     field.high = static_cast<int>(std::min<std::int64_t>(type.high, std::numeric_limits<int>::max()));
   }
+  void operator()(const WholesKey&) const { field.kind = FieldKind::text; }
   void operator()(const ChoiceKey& type) const {
     field.kind = FieldKind::choice;
     field.words = list_of(type.words);
@@ -182,34 +183,44 @@ PlanField field_of(const KeyAt& list, const PlanSection& section) {
   return field;
 }
 
-/// A name of a key as the head of a column: "At least".
-QString column_head(std::string_view name) {
-  const QString words = text_of(name).replace('_', ' ');
-  return words.left(1).toUpper() + words.mid(1);
+/// A name of a key as the head of a column, its unit once: "At least", "Delta t (K)".
+QString column_head(const PlanKey& key) {
+  QString words = text_of(key.name);
+  if (const QString unit = "_" + text_of(key.unit).toLower(); words.endsWith(unit)) words.chop(unit.size());
+  words.replace('_', ' ');
+  return with_unit(words.left(1).toUpper() + words.mid(1), key.unit);
+}
+
+QString longest_of(const KeyType& type) {
+  if (const auto* numbers = std::get_if<NumbersKey>(&type))
+    return QStringList(static_cast<qsizetype>(numbers->count.value_or(1)), "0.25").join(", ");
+  if (std::holds_alternative<TextKey>(type)) return "temporal_noise";
+  return "0.0000";
 }
 
 QString table_shown(const PlanSection& section, const Plan& plan) {
-  QStringList rows;
+  std::vector<QStringList> rows;
   for (std::size_t row = 0; row < section.count(plan); ++row) {
     QStringList values;
     for (const PlanKey& key : section.keys) values << shown_value({&section, &key, row}, plan);
-    rows << values.join(": ");
+    rows.push_back(std::move(values));
   }
-  return rows.join(", ");
+  return text_of_rows(rows);
 }
 
 QString enter_table(const PlanSection& section, Plan& plan, const QString& text) {
   Plan changed = plan;
-  const QStringList rows = text.split(',', Qt::SkipEmptyParts);
+  const std::vector<QStringList> rows = rows_of_text(text);
   section.rows.resize(changed, 0);
-  section.rows.resize(changed, static_cast<std::size_t>(rows.size()));
-  for (qsizetype i = 0; i < rows.size(); ++i) {
-    const QStringList values = rows[i].split(':');
-    if (values.size() > static_cast<qsizetype>(section.keys.size()))
-      return "'" + rows[i].trimmed() + "': more values than columns";
+  section.rows.resize(changed, rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].size() > static_cast<qsizetype>(section.keys.size()))
+      return "'" + rows[i].join(": ") + "': more values than columns";
     for (std::size_t k = 0; k < section.keys.size(); ++k) {
-      const KeyAt at{&section, &section.keys[k], static_cast<std::size_t>(i)};
-      const QString wrong = enter(at, changed, values.value(static_cast<qsizetype>(k)).trimmed());
+      const QString value = rows[i].value(static_cast<qsizetype>(k));
+      // A new row has the defaults.
+      if (value.isEmpty() && section.keys[k].required != Required::always) continue;
+      const QString wrong = enter({&section, &section.keys[k], i}, changed, value);
       if (!wrong.isEmpty()) return wrong;
     }
   }
@@ -225,8 +236,8 @@ PlanField field_of(const PlanSection& section) {
   field.kind = FieldKind::rows;
   for (const PlanKey& key : section.keys) {
     const auto* choice = std::get_if<ChoiceKey>(&key.type);
-    field.columns.push_back(
-        {with_unit(column_head(key.name), key.unit), choice ? list_of(choice->words) : QStringList{}});
+    field.columns.push_back({column_head(key), choice ? list_of(choice->words) : QStringList{},
+                             section.keys.size() > most_columns_beside ? longest_of(key.type) : QString()});
     field.paths.push_back(path_of(section, key));
   }
   field.shown = [&section](const Plan& plan) { return table_shown(section, plan); };
@@ -235,6 +246,54 @@ PlanField field_of(const PlanSection& section) {
 }
 
 }  // namespace
+
+QString text_of_rows(const std::vector<QStringList>& rows) {
+  QStringList lines;
+  for (const QStringList& row : rows) {
+    QStringList values;
+    for (const QString& value : row) {
+      const bool plain = !value.contains(',') && !value.contains(':') && !value.contains('"');
+      values << (plain ? value : '"' + QString(value).replace("\"", "\"\"") + '"');
+    }
+    lines << values.join(": ");
+  }
+  return lines.join(", ");
+}
+
+std::vector<QStringList> rows_of_text(const QString& text) {
+  std::vector<QStringList> rows;
+  QString value;
+  bool quoted = false, empty = true;  // whether the row has anything in it
+  QStringList row;
+  const auto end_value = [&] {
+    row << value.trimmed();
+    value.clear();
+  };
+  const auto end_row = [&] {
+    end_value();
+    if (!empty) rows.push_back(row);
+    row.clear(), empty = true;
+  };
+  for (qsizetype i = 0; i < text.size(); ++i) {
+    const QChar c = text[i];
+    if (!quoted && c == ',') {
+      end_row();
+      continue;
+    }
+    empty = empty && c.isSpace();
+    if (c == '"' && quoted && text.mid(i + 1, 1) == "\"") {
+      value += text[++i];
+    } else if (c == '"' && (quoted || value.trimmed().isEmpty())) {
+      quoted = !quoted;
+    } else if (!quoted && c == ':') {
+      end_value();
+    } else {
+      value += c;
+    }
+  }
+  end_row();
+  return rows;
+}
 
 std::vector<PlanField> plan_fields() {
   std::vector<PlanField> fields;

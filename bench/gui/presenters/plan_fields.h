@@ -20,13 +20,22 @@ enum class FieldKind {
   choice,  ///< one of `words`
   name,    ///< one of `words`, or a file
   boxes,   ///< any of `words`, with commas
-  rows,    ///< rows with commas, their values with colons; empty values where a column is not needed
+  rows,    ///< rows with commas, their values with colons; empty values where a column is not needed. A value with one
+           ///< of these in it stands in double quotes, its own quotes doubled; not in rows of one column
 };
+
+/// Tables of more columns than this stand below their label, not beside it.
+inline constexpr std::size_t most_columns_beside = 3;
+
+/// The text of rows of several columns, and the rows of such a text.
+[[nodiscard]] QString text_of_rows(const std::vector<QStringList>& rows);
+[[nodiscard]] std::vector<QStringList> rows_of_text(const QString& text);
 
 /// A column of a field of rows.
 struct FieldColumn {
   QString title;      ///< with the unit
   QStringList words;  ///< names that may stand in it, beside others; none: anything
+  QString longest{};  ///< that has to be seen whole; empty: the title
 };
 
 /// A line of the form. What it accepts is what can be read and is in range; what the rest of the plan says against it

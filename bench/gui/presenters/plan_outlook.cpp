@@ -5,6 +5,7 @@
 
 #include "bench/plan/plan_options.h"
 #include "bench/run/bench_time.h"
+#include "bench/run/graded_precision.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "tod/plate/test_pattern.h"
 
@@ -29,6 +30,18 @@ const ContrastPrediction* at(const std::vector<ContrastPrediction>& contrasts, d
   const auto found = std::find_if(contrasts.begin(), contrasts.end(),
                                   [&](const ContrastPrediction& c) { return c.delta_t_k == delta_t_k; });
   return found == contrasts.end() ? nullptr : &*found;
+}
+
+std::vector<std::pair<int, double>> half_widths_by_frames(Plan plan, const ExperimentInputs& inputs) {
+  std::vector<std::pair<int, double>> out;
+  if (chosen_answers(plan, inputs.sensor).kind == AnswerKind::binary) return out;
+  for (const int frames : frame_choices) {
+    plan.schedule.frames_per_presentation = {frames};
+    const auto predicted = predict_plan(plan, inputs);
+    if (predicted && predicted->figures.predicted_uncertainty_percent)
+      out.emplace_back(frames, *predicted->figures.predicted_uncertainty_percent);
+  }
+  return out;
 }
 
 }  // namespace
@@ -67,6 +80,7 @@ Result<PlanForecast> forecast(const LoadedPlan& loaded, EffectPlanner& planner, 
   out.plan = plan;
   auto inputs = experiment_inputs(loaded, planner);
   if (!inputs) return tl::unexpected(inputs.error());
+  out.frames = with_frames(plan, *inputs).schedule.frames_per_presentation;
   auto prediction = predict_plan(plan, *inputs);
   // A tolerance that the simulation cannot meet does not keep the effects from being planned.
   out.warnings = prediction ? prediction->warnings : inputs->warnings;
@@ -82,6 +96,7 @@ Result<PlanForecast> forecast(const LoadedPlan& loaded, EffectPlanner& planner, 
   out.effects = inputs->effects;
   if (out.problem.empty() && plan.simulation.phases == plan.target.phases) {
     out.camera = out.twin;
+    out.by_frames = half_widths_by_frames(plan, *inputs);
     return out;
   }
   Plan camera = plan;
@@ -92,6 +107,7 @@ Result<PlanForecast> forecast(const LoadedPlan& loaded, EffectPlanner& planner, 
   if (!accuracy) return tl::unexpected(accuracy.error());
   inputs->accuracy = *accuracy;
   if (auto seen = predict_plan(camera, *inputs)) out.camera = std::move(seen->contrasts);
+  out.by_frames = half_widths_by_frames(camera, *inputs);
   return out;
 }
 
@@ -109,7 +125,10 @@ PlanOutlook outlook(const Plan& plan, const std::vector<TargetPlate>& plates, co
   PlanOutlook out;
   const bool adaptive = plan.schedule.kind == ScheduleKind::adaptive;
   const auto expected = seen != nullptr ? expected_presentations(plan, plates, seen->camera) : std::optional<double>();
-  const BenchTime bench = bench_time(plan, plates, frame_rate_hz, expected);
+  Plan timed = plan;
+  if (seen != nullptr && plan.schedule == seen->plan.schedule && plan.target.delta_t_k == seen->plan.target.delta_t_k)
+    timed.schedule.frames_per_presentation = seen->frames;
+  const BenchTime bench = bench_time(timed, plates, frame_rate_hz, expected);
   out.presentations = bench.presentations;
   out.bench_s = bench.total_s();
   const double per_presentation = plates.empty() ? 0 : triangles_of(plates) / static_cast<double>(plates.size());
@@ -128,6 +147,14 @@ PlanOutlook outlook(const Plan& plan, const std::vector<TargetPlate>& plates, co
       entry.twin_uncertainty_percent = scaled(twin, seen->plan.simulation.phases, plan.simulation.phases);
     }
     out.contrasts.push_back(entry);
+  }
+  if (seen != nullptr) {
+    for (const auto& [frames, percent] : seen->by_frames) {
+      timed.schedule.frames_per_presentation = {frames};
+      const auto here = rescaled_percent(percent, seen->plan.target.phases, plan.target.phases);
+      const double seconds = bench_time(timed, plates, frame_rate_hz, expected).total_s();
+      if (here) out.by_frames.emplace_back(seconds, *here);
+    }
   }
   if (seen != nullptr && seen->twin_s && seen->plan.simulation.phases > 0) {
     const double ratio = static_cast<double>(plan.simulation.phases) / seen->plan.simulation.phases;
@@ -205,13 +232,15 @@ Plot accuracy_plot(const std::vector<AccuracyPrice>& prices, const PlanOutlook& 
     add(bench, price.bench_s, price.tolerance_percent);
     add(twin, price.twin_s, price.tolerance_percent);
   }
+  PlotSeries frames{.label = "1, 2, 4, 8 frames", .tone = PlotTone::third, .line = PlotLine::dotted, .points = {}};
+  for (const auto& [seconds, percent] : now.by_frames) add(frames, seconds, percent);
   add(plan, now.bench_s, now.uncertainty_percent());
   add(plan, now.twin_s, now.uncertainty_percent());
   if (times.empty()) return plot;
   const auto [low, high] = std::minmax_element(times.begin(), times.end());
   plot.x.low = *low / 1.4;
   plot.x.high = *high * 1.4;
-  plot.series = {bench, twin, plan};
+  plot.series = {bench, twin, frames, plan};
   return plot;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/plan/loaded_plan.h"
@@ -29,12 +30,15 @@ struct ExpectedThreshold {
 /// What predict_plan() and predict_times() say: some tenths of a second.
 struct PlanForecast {
   Plan plan;                               ///< of which
+  std::vector<int> frames;                 ///< per presentation, where it leaves them open: with_frames()
   SensorPlan effects;                      ///< the planner's decisions and reasons
   std::vector<std::string> warnings;       ///< a sentence each
   std::vector<ContrastPrediction> twin;    ///< with the phases of the simulation; empty: see `problem`
   std::vector<ContrastPrediction> camera;  ///< the same with the phases of the target
-  std::optional<double> twin_s;            ///< to simulate, on one core
-  std::string problem;                     ///< why the tolerance cannot be met; empty: it can
+  /// Largest half-width of the camera with 1, 2, 4 and 8 frames per presentation; none of right and wrong answers.
+  std::vector<std::pair<int, double>> by_frames;
+  std::optional<double> twin_s;  ///< to simulate, on one core
+  std::string problem;           ///< why the tolerance cannot be met; empty: it can
 };
 
 /// Errors: `interrupted`. `planner` remembers what only tolerance and trials leave as it is.
@@ -52,6 +56,7 @@ struct PlanOutlook {
   double bench_s = 0;                           ///< as bench_time() (bench/run/bench_time.h)
   std::optional<double> twin_s;
   std::vector<PlannedContrast> contrasts;
+  std::vector<std::pair<double, double>> by_frames;  ///< bench time and uncertainty of PlanForecast::by_frames
   /// Of the camera, the largest of the contrasts; nothing when one has no threshold.
   [[nodiscard]] std::optional<double> uncertainty_percent() const;
 };
@@ -80,7 +85,8 @@ struct AccuracyPrice {
                                                          double frame_rate_hz, EffectPlanner& planner,
                                                          const std::stop_token& stop);
 
-/// Uncertainty against time on the bench and time of the simulation; the plan itself is the square.
+/// Uncertainty against time on the bench and time of the simulation, and of the same presentations with 1, 2, 4 and 8
+/// frames; the plan itself is the square.
 [[nodiscard]] Plot accuracy_plot(const std::vector<AccuracyPrice>& prices, const PlanOutlook& now);
 
 }  // namespace todbench

@@ -38,17 +38,18 @@ ChainView::ChainView(ChainPresenter& presenter, QWidget* parent) : QWidget(paren
   auto* grid = new QGridLayout;
   int place = 0;
   for (const Stage stage : all_stages) {
-    auto* column = new QVBoxLayout;
-    column->addWidget(title_label(QString("%1  %2").arg(place + 1).arg(name_of(stage))));
+    // Title, picture and note have rows of their own: a note of three lines makes all four pictures smaller, not one.
+    const int row = 3 * (place / 4), column = place % 4;
+    grid->addWidget(title_label(QString("%1  %2").arg(place + 1).arg(name_of(stage))), row, column);
     auto* picture = new PictureView;
     picture->setObjectName(QString("stage%1").arg(place));
     picture->setAccessibleName(name_of(stage));
     pictures_.push_back(picture);
-    column->addWidget(picture, 1);
+    grid->addWidget(picture, row + 1, column);
+    grid->setRowStretch(row + 1, 1);
     QLabel* note = hint_label();
     notes_.push_back(note);
-    column->addWidget(note);
-    grid->addLayout(column, place / 4, place % 4);
+    grid->addWidget(note, row + 2, column, Qt::AlignTop);
     ++place;
   }
   for (int i = 0; i < 4; ++i) grid->setColumnStretch(i, 1);

@@ -54,7 +54,7 @@ QString words_of(const QString& word) {
 }
 
 QString table_text(const QTableWidget& table) {
-  QStringList rows;
+  std::vector<QStringList> rows;
   for (int row = 0; row < table.rowCount(); ++row) {
     QStringList values;
     for (int column = 0; column < table.columnCount(); ++column) {
@@ -62,9 +62,12 @@ QString table_text(const QTableWidget& table) {
       values << (item == nullptr ? QString() : item->text().trimmed());
     }
     while (!values.isEmpty() && values.back().isEmpty()) values.pop_back();
-    if (!values.isEmpty()) rows << values.join(": ");
+    if (!values.isEmpty()) rows.push_back(std::move(values));
   }
-  return rows.join(", ");
+  if (table.columnCount() > 1) return text_of_rows(rows);
+  QStringList lines;
+  for (const QStringList& row : rows) lines << row.front();
+  return lines.join(", ");
 }
 
 bool edits_a_cell(const QTableWidget& table) {
@@ -95,10 +98,15 @@ void edit_new_row(QTableWidget& table) {
 /// Which rows a text has; a colon separates values only where there are several columns.
 void show_rows(QTableWidget& table, const QString& text) {
   const QSignalBlocker quiet(&table);
-  const QStringList rows = text.split(',', Qt::SkipEmptyParts);
+  std::vector<QStringList> rows;
+  if (table.columnCount() > 1) {
+    rows = rows_of_text(text);
+  } else {
+    for (const QString& line : text.split(',', Qt::SkipEmptyParts)) rows.push_back({line});
+  }
   table.setRowCount(static_cast<int>(rows.size()));
   for (int row = 0; row < table.rowCount(); ++row) {
-    const QStringList values = table.columnCount() > 1 ? rows[row].split(':') : QStringList{rows[row]};
+    const QStringList& values = rows[static_cast<std::size_t>(row)];
     for (int column = 0; column < table.columnCount(); ++column)
       table.setItem(row, column, new QTableWidgetItem(values.value(column).trimmed()));  // NOLINT: of the table
   }
@@ -258,14 +266,19 @@ void FieldEditor::make_boxes(const PlanField& field) {
 }
 
 void FieldEditor::make_rows(const PlanField& field) {
-  QStringList titles;
-  for (const FieldColumn& column : field.columns) titles << column.title;
+  QStringList titles, longest;
+  for (const FieldColumn& column : field.columns) {
+    titles << column.title;
+    if (const auto space = column.title.lastIndexOf(' '); space > 0 && field.columns.size() > most_columns_beside)
+      titles.back()[space] = '\n';
+    longest << (column.longest.isEmpty() ? column.title : column.longest);
+  }
   QTableWidget* table = plain_table(titles, field.object_name);
   set_part(table, field);
   table->setEditTriggers(QAbstractItemView::DoubleClicked | QAbstractItemView::EditKeyPressed |
                          QAbstractItemView::AnyKeyPressed | QAbstractItemView::SelectedClicked);
   table->setSelectionBehavior(QAbstractItemView::SelectItems);
-  table->setMinimumWidth(column_widths(*table, titles));
+  table->setMinimumWidth(column_widths(*table, longest));
   auto* buttons = new QHBoxLayout;  // NOLINT
   QPushButton* add = plain_button("Add", field.object_name + "Add");
   QPushButton* remove = plain_button("Remove", field.object_name + "Remove");

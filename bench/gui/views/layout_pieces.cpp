@@ -60,7 +60,7 @@ int column_widths(QTableWidget& table, const QStringList& longest) {
   int total = 2 * table.frameWidth();
   for (int column = 0; column < table.columnCount() && column < longest.size(); ++column) {
     const QTableWidgetItem* title = table.horizontalHeaderItem(column);
-    const int heading = title == nullptr ? 0 : metrics.horizontalAdvance(title->text());
+    const int heading = title == nullptr ? 0 : metrics.size(0, title->text()).width();
     const int width = std::max(heading, metrics.horizontalAdvance(longest[column])) + margins;
     table.setColumnWidth(column, width);
     total += width;

@@ -244,6 +244,7 @@ void MainWindow::connect_parts() {
   connect(&sessions_, &SessionPresenter::problem, this, &MainWindow::show_trouble);
   connect(&bench_, &Workbench::noted, this, [this](const QString& text) { statusBar()->showMessage(text, 8000); });
   connect(&bench_, &Workbench::activity_changed, this, [this] {
+    statusBar()->clearMessage();  // what was said belongs to what ended
     if (bench_.activity() != Activity::idle) {
       last_activity_ = bench_.activity();
       message_->hide();

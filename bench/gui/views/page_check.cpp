@@ -54,7 +54,7 @@ void check_table(const QTableWidget& table, QStringList& faults) {
   const QFontMetrics metrics = table.fontMetrics();
   for (int column = 0; column < table.columnCount(); ++column) {
     if (const QTableWidgetItem* title = table.horizontalHeaderItem(column)) {
-      if (metrics.horizontalAdvance(title->text()) > table.columnWidth(column)) faults << cut(table, title->text());
+      if (metrics.size(0, title->text()).width() > table.columnWidth(column)) faults << cut(table, title->text());
     }
     for (int row = 0; row < table.rowCount(); ++row) {
       const QTableWidgetItem* item = table.item(row, column);

@@ -84,7 +84,12 @@ QWidget* PlanView::form_page() {
     auto* label = new QLabel(field.label);
     label->setToolTip(field.tool_tip);
     label->setBuddy(editor);
-    form->addRow(label, editor);
+    if (field.columns.size() > most_columns_beside) {
+      form->addRow(label);
+      form->addRow(editor);
+    } else {
+      form->addRow(label, editor);
+    }
     connect(editor, &FieldEditor::edited, this, [this, i] { enter(i); });
     editors_.push_back(editor);
   }

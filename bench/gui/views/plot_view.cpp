@@ -89,8 +89,6 @@ PlotView::PlotView(QWidget* parent) : QCustomPlot(parent) {
   plotLayout()->addElement(0, 0, legend);
   plotLayout()->setRowStretchFactor(0, 0.001);
   plotLayout()->setRowSpacing(0);
-  legend->setFillOrder(QCPLegend::foColumnsFirst);
-  legend->setWrap(4);
   legend->setBorderPen(Qt::NoPen);
   legend->setBrush(Qt::NoBrush);
   legend->setMargins({8, 4, 8, 0});
@@ -265,7 +263,20 @@ void PlotView::draw_plot() {
   small.setPixelSize(11);
   legend->setFont(small);
   legend->setTextColor(colours.ink);
+  arrange_legend();
   replot(QCustomPlot::rpQueuedReplot);
+}
+
+/// In as many columns as the words have room.
+void PlotView::arrange_legend() {
+  constexpr int column_px = 110;
+  legend->setWrap(std::clamp(width() / column_px, 2, 4));
+  legend->setFillOrder(QCPLegend::foColumnsFirst);
+}
+
+void PlotView::resizeEvent(QResizeEvent* event) {
+  arrange_legend();
+  QCustomPlot::resizeEvent(event);
 }
 
 QVector<QPointF> PlotView::points(const QString& label) const {

@@ -29,12 +29,14 @@ class PlotView final : public QCustomPlot {
   void focusInEvent(QFocusEvent* event) override;
   void focusOutEvent(QFocusEvent* event) override;
   void paintEvent(QPaintEvent* event) override;
+  void resizeEvent(QResizeEvent* event) override;
 
  private:
   void zoom(double factor);
   void shift(double right, double up);
   void show_all();
   void draw_plot();
+  void arrange_legend();
   void set_axis(QCPAxis& axis, const PlotAxis& description, bool keep_range);
   void add_series(const PlotSeries& series);
   void add_intervals(const PlotSeries& series, const QColor& colour);

@@ -1,4 +1,4 @@
-#include "bench/report/letterhead.h"
+#include "bench/plan/letterhead.h"
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -156,9 +156,13 @@ Result<std::string> checked_png(std::string_view bytes) {
 }
 
 Result<Letterhead> load_letterhead(const std::filesystem::path& file) {
-  const auto text = read_text_file(file);
+  auto text = read_text_file(file);
   if (!text) return tl::unexpected(text.error());
-  auto reader = TomlReader::parse(*text, file.string());
+  return parse_letterhead({file.string(), *std::move(text)});
+}
+
+Result<Letterhead> parse_letterhead(const Resource& resource) {
+  auto reader = TomlReader::parse(resource.text, resource.origin);
   if (!reader) return tl::unexpected(reader.error());
   Letterhead letterhead;
   letterhead.title = paragraph_in(*reader, "title");
@@ -177,7 +181,7 @@ Result<Letterhead> load_letterhead(const std::filesystem::path& file) {
   if (letterhead.foot.size() > 80) reader->reject("foot", "expected at most 80 bytes");
   if (auto read = reader->finish(); !read) return tl::unexpected(read.error());
   if (logo.empty()) return letterhead;
-  auto png = logo_in(file.parent_path() / logo);
+  auto png = logo_in(std::filesystem::path(resource.origin).parent_path() / logo);
   if (!png) return tl::unexpected(png.error());
   letterhead.logo_png = *std::move(png);
   return letterhead;

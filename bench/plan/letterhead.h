@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "acquisition/core/result.h"
+#include "bench/plan/resources.h"
 
 namespace todbench {
 
@@ -30,9 +31,10 @@ struct Letterhead {
 /// `invalid_input` with the reason.
 [[nodiscard]] Result<std::string> checked_png(std::string_view bytes);
 
-/// Reads a file and the logo that it names, relative to it. `invalid_input` with file and line for a key that is
-/// unknown or out of range, a text of more than 2000 characters, more than 20 of a kind, a control character, or a logo
-/// that is none.
+/// Reads a description and the logo that it names, relative to its file. `invalid_input` with file and line for a key
+/// that is unknown or out of range, a text of more than 2000 characters, more than 20 of a kind, a control character,
+/// or a logo that is none.
+[[nodiscard]] Result<Letterhead> parse_letterhead(const Resource& resource);
 [[nodiscard]] Result<Letterhead> load_letterhead(const std::filesystem::path& file);
 
 /// Files of a session that keep it, relative to its folder.
