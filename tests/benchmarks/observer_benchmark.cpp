@@ -10,8 +10,9 @@
 namespace todbench {
 namespace {
 
-/// A noisy blurred spot: the time of a decision does not depend on what is in the patch.
-Patch noisy_patch(int side) {
+/// A noisy blurred spot: the time of a decision does not depend on what is in the patch; that of a graded one does,
+/// since a sure one is not drawn for.
+Patch noisy_patch(int side, double contrast_k = 1) {
   const RandomStream stream(1, "benchmark.patch");
   Patch patch{.kelvin = cv::Mat1d(side, side), .phase = {0, 0}, .noise_k = 0.07};
   for (int row = 0; row < side; ++row) {
@@ -20,7 +21,7 @@ Patch noisy_patch(int side) {
       const double y = row - (side - 1) / 2.0;
       const auto index = static_cast<std::uint64_t>(row * side + column);
       patch.kelvin(row, column) =
-          300 + std::exp(-(x * x + y * y) / 4) + 0.07 * static_cast<double>(stream.normal(index));
+          300 + contrast_k * std::exp(-(x * x + y * y) / 4) + 0.07 * static_cast<double>(stream.normal(index));
     }
   }
   return patch;
@@ -39,15 +40,22 @@ BENCHMARK_CAPTURE(observer_decision, size_1_6, 1.6)->Unit(benchmark::kMicrosecon
 BENCHMARK_CAPTURE(observer_decision, size_2_6, 2.6)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(observer_decision, size_5, 5.0)->Unit(benchmark::kMicrosecond);
 
-/// Probabilities of the answers, 32 draws of the observer's noise.
+/// Probabilities of the answers, 32 draws of the observer's noise for each: `draws`.
 void observer_graded(benchmark::State& state, double size_samples) {
+  constexpr double contrast_k = 0.23;
   TemplateObserver observer({}, triangle_alternatives());
   const auto prepared = observer.prepare(size_samples, 1).value();
-  const Patch patch = noisy_patch(prepared->window_samples());
+  const Patch patch = noisy_patch(prepared->window_samples(), contrast_k);
   const RandomStream noise(1, "benchmark.observer");
   std::uint64_t trial = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(prepared->judge(patch, 1.0, noise.sub(trial++), 32));
+  double draws = 0;
+  for (auto _ : state) {
+    const GradedChoice graded = prepared->judge(patch, contrast_k, noise.sub(trial++), 32);
+    benchmark::DoNotOptimize(graded);
+    draws += graded.answers.draws;
+  }
   state.SetItemsProcessed(state.iterations());
+  state.counters["draws"] = benchmark::Counter(draws, benchmark::Counter::kAvgIterations);
 }
 BENCHMARK_CAPTURE(observer_graded, size_1_6, 1.6)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(observer_graded, size_2_6, 2.6)->Unit(benchmark::kMicrosecond);

@@ -41,6 +41,7 @@ std::vector<TimedPlan> plans() {
   all.push_back(varied("demo", [](Plan&) {}));
   all.push_back(varied("draft, one contrast, one plate", [](Plan& p) {
     p.simulation.accuracy = "draft";
+    p.schedule.frames_per_presentation = {8};
     p.target.delta_t_k = {16.9};
     p.target.plates = {"tcat-a"};
   }));
@@ -60,6 +61,7 @@ std::vector<TimedPlan> plans() {
   }));
   all.push_back(varied("tolerance 0.6 %, 0.23 K", [](Plan& p) {
     p.simulation.phases = 2;
+    p.schedule.frames_per_presentation = {8};
     p.target.delta_t_k = {0.23};
     p.simulation.tolerance_percent = 0.6;
   }));

@@ -113,6 +113,18 @@ class Examples(unittest.TestCase):
         self.assertIn("fit: ", ended.stdout)
         self.assertEqual(figure.read_text().count("<circle"), 2)
 
+    def test_the_script_prints_the_noise_that_a_recording_has(self):
+        raw, recording = self.folder / "noise.raw", self.folder / "noise.todrec"
+        # 7 counts of noise: the middle one of their differences is a whole count, 5 % too large for them.
+        noise = np.random.default_rng(1).normal(30000, 7, (12, 120, 160))
+        np.rint(noise).astype("<u2").tofile(raw)
+        camera = f"file:{raw}?width=160&height=120&kelvin_per_count=0.01&offset_k=0"
+        self.assertEqual(run(PROGRAM, "record", camera, "--out", recording, "--quiet").returncode, 0)
+        ended = run(sys.executable, EXAMPLES / "look_at_session.py", self.session, recording)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        found = float(ended.stdout.split("temporal noise ")[1].split()[0])
+        self.assertAlmostEqual(found, 0.07, delta=0.0007)
+
     def test_the_verdict_is_as_its_schema_says(self):
         try:
             import jsonschema

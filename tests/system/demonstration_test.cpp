@@ -23,5 +23,28 @@ TEST(Demonstration, MeasuresSimulatesComparesReportsAndPasses) {
   EXPECT_EQ(comparison["verdict"], "equivalent");
 }
 
+// The plan of `demo --full`, before the simulated sensor.
+TEST(Demonstration, TheFullOneJudgesItsMeasuresByItsBudget) {
+  const TemporaryFolder folder;
+
+  const Ended ended =
+      todbench({"simulate", "acceptance", "--accuracy", "draft", "--out", "s"}, {.folder = folder.path()});
+
+  // Nothing is compared with a twin, which the plan demands.
+  EXPECT_EQ(ended.code, 3) << ended.err;
+  const Json verdict = Json::parse(content_of(folder.path() / "s" / "verdict.json"), nullptr, false);
+  ASSERT_TRUE(verdict.contains("demands")) << verdict;
+  int measures = 0;
+  for (const Json& demand : verdict["demands"]) {
+    const std::string kind = demand["kind"];
+    if (kind == "equivalence") continue;
+    EXPECT_EQ(demand["decision"], "pass") << demand;
+    if (kind != "acuity" && kind != "identified") ++measures;
+  }
+  EXPECT_EQ(measures, 8);
+  const Json budget = Json::parse(content_of(folder.path() / "s" / "uncertainty.json"), nullptr, false);
+  EXPECT_EQ(budget.value("not_stated", Json()), Json::array()) << budget;
+}
+
 }  // namespace
 }  // namespace todbench::testing

@@ -289,14 +289,45 @@ TEST(SceneDependenceCommand, SaysWhetherAHotBarMattersByItsExitCode) {
     return todbench(arguments, {.folder = folder.path()});
   };
 
-  const Ended linear = run({"--json"});
-  const Ended equalised = run({"--package", "equalised.toml", "--json"});
+  const Ended linear = run({"--json", "--out", "linear"});
+  const Ended equalised = run({"--package", "equalised.toml", "--json", "--out", "equalised"});
 
   EXPECT_EQ(linear.code, 0) << linear.err;
   EXPECT_EQ(one_object(linear)["verdict"], "independent");
   EXPECT_EQ(equalised.code, 1) << equalised.err;
   EXPECT_EQ(one_object(equalised)["verdict"], "depends");
   expect_refused(todbench({"scene-dependence", "./plan.toml", "--cycles", "2"}, {.folder = folder.path()}), 2, "");
+
+  // Sessions as others, but for the curve.
+  const auto say = [&](const std::vector<std::string>& arguments) {
+    return todbench(arguments, {.folder = folder.path()});
+  };
+  EXPECT_EQ(one_object(linear)["judgement"]["decision"], "pass");
+  EXPECT_EQ(one_object(equalised)["judgement"]["decision"], "fail");
+  const Json demand = one_object(equalised)["judgement"]["demands"][0];
+  EXPECT_NEAR(demand["result"].get<double>(), 100 * (1 / one_object(equalised)["sizes"][0]["ratio"].get<double>() - 1),
+              3)
+      << "a gain control changes all sizes alike";
+  EXPECT_GT(demand["interval"][0].get<double>(), demand["limit"].get<double>());
+  for (const char* name : {"linear", "equalised"}) {
+    const auto session = folder.path() / name;
+    EXPECT_EQ(say({"verify", name}).code, 0);
+    const std::string page = content_of(session / "report.html");
+    std::filesystem::remove(session / "report.html");
+    EXPECT_EQ(say({"report", name}).code, 0);
+    EXPECT_TRUE(content_of(session / "report.html") == page);
+    EXPECT_EQ(say({"verify", name}).code, 0);
+    EXPECT_TRUE(std::filesystem::exists(session / "pictures" / "main-bar_in.png"));
+    EXPECT_FALSE(std::filesystem::exists(session / "curve.csv"));
+  }
+  EXPECT_EQ(content_of(folder.path() / "equalised" / "inputs" / "package.toml"),
+            content_of(folder.path() / "equalised.toml"));
+  const Ended added = say({"history", "add", ".", "--index", "h.sqlite", "--json"});
+  EXPECT_EQ(added.code, 0) << added.out;
+  EXPECT_EQ(one_object(added)["added"], 2);
+  EXPECT_THAT(say({"history", "export", "--index", "h.sqlite"}).out, ::testing::HasSubstr("scene_ratio"));
+  expect_refused(say({"compare", "linear", "equalised"}), 2, "");
+  expect_refused(say({"range", "--tod", "linear", "--size-m", "2", "--delta-t-k", "2"}), 2, "");
 }
 
 }  // namespace

@@ -26,9 +26,9 @@ TEST(NoiseCommand, TellsTheAcuityUnderARealCamerasNoiseFromThatUnderWhiteNoise) 
   const Json json = one_object(ended);
   EXPECT_THAT(keys_of(json),
               UnorderedElementsAre("recording", "unit", "width", "height", "blocks", "block_frames", "usable_share",
-                                   "temporal_noise", "lag1_correlation", "structure_function", "whole_to_successive",
-                                   "block_noise", "components", "correlation_x", "correlation_y", "observer", "sensor",
-                                   "verdict", "points"));
+                                   "pixels_left_out", "temporal_noise", "lag1_correlation", "structure_function",
+                                   "whole_to_successive", "block_noise", "components", "correlation_x", "correlation_y",
+                                   "observer", "sensor", "verdict", "points"));
   EXPECT_EQ(json["unit"], "counts");
   EXPECT_EQ(json["width"], 160);
   EXPECT_EQ(json["blocks"], 10);  // 100 frames
@@ -80,15 +80,24 @@ TEST(NoiseCommand, GivesTemporalNoiseThatNoBlockLengthEntersAndSaysThatItRemembe
   EXPECT_EQ(noise[0], noise[2]);
 }
 
+struct Faults {
+  double dead_share = 0;  ///< of the pixels: always 0
+  double bounce = 0;      ///< standard deviation of an offset of each whole frame
+  double jump = 0;        ///< of all frames from the 21st on
+};
+
 /// 40 frames of 80 x 60 pixels with white noise of so many counts, cut off above.
-std::string white_frames(double level, double sd, double most = 65535) {
+std::string white_frames(double level, double sd, double most = 65535, const Faults& faults = {}) {
   std::string frames;
   const RandomStream stream(5, "white recording");
+  const RandomStream dead(5, "dead pixels"), bounce(5, "bounce");
   std::vector<float> z(80 * 60);
   for (std::uint64_t frame = 0; frame < 40; ++frame) {
     stream.sub(frame).fill_normal(z);
-    for (const float value : z) {
-      const auto count = static_cast<std::uint16_t>(std::lround(std::min(most, level + sd * value)));
+    const double whole = level + faults.bounce * bounce.normal(frame) + (frame >= 20 ? faults.jump : 0);
+    for (std::size_t i = 0; i < z.size(); ++i) {
+      const bool lives = dead.uniform(i) >= faults.dead_share;
+      const auto count = static_cast<std::uint16_t>(lives ? std::lround(std::min(most, whole + sd * z[i])) : 0);
       frames += {static_cast<char>(count & 255), static_cast<char>(count >> 8)};
     }
   }
@@ -128,6 +137,47 @@ TEST(NoiseCommand, FindsNothingWrongWithWhiteNoise) {
   // 39 differences of 4800 pixels: 0.3 %, four times that; rounding adds 1/12.
   EXPECT_NEAR(json["temporal_noise"].get<double>() / std::sqrt(25 + 1.0 / 12), 1, 0.012);
   EXPECT_NEAR(json["lag1_correlation"].get<double>(), 0, 0.02);
+}
+
+TEST(NoiseCommand, TakesTheSamePixelsForAllNumbersWhereAThirdIsDead) {
+  const TemporaryFolder folder;
+  const std::string file =
+      folder.write("dead.raw", white_frames(8000, 5, 65535, {.dead_share = 0.33, .bounce = 5})).string();
+
+  const Ended ended = todbench({"noise", file + "?width=80&height=60", "--contrast-over-noise", "8", "--json"});
+
+  // No window of the observer is without dead pixels: the noise is stated, no acuity.
+  EXPECT_EQ(ended.code, 3) << ended.err;
+  const Json json = one_object(ended);
+  EXPECT_EQ(json["verdict"], "ok");
+  EXPECT_EQ(json["points"].size(), 0u);
+  EXPECT_NEAR(json["temporal_noise"].get<double>(), std::sqrt(50), 4 * 0.14 * 5);
+  // Of 4800 pixels, four standard deviations of the share.
+  EXPECT_NEAR(json["pixels_left_out"].get<double>() / 4800, 0.33, 4 * std::sqrt(0.33 * 0.67 / 4800));
+  EXPECT_NEAR(json["usable_share"].get<double>(), 1 - json["pixels_left_out"].get<double>() / 4800, 1e-12);
+  EXPECT_THAT(ended.err, HasSubstr("in no number"));
+  // The pixels' part is known to 0.3 %, that of 40 whole frames to 11 %: the frames are the same in both.
+  const Json& c = json["components"];
+  EXPECT_NEAR(c["tvh"].get<double>() / std::sqrt(25 + 1.0 / 12), 1, 0.02);
+  EXPECT_NEAR(c["t"].get<double>(), 5, 4 * 5 / std::sqrt(2 * 36.0));
+  EXPECT_LT(c["vh"].get<double>(), 0.5);
+  const double sum = std::hypot(c["tvh"].get<double>(), c["t"].get<double>());
+  EXPECT_NEAR(json["block_noise"].get<double>() / sum, 1, 0.03);
+}
+
+TEST(NoiseCommand, TellsABounceOfWholeFramesFromACorrection) {
+  const TemporaryFolder folder;
+  const auto noise_of = [&](const Faults& faults) {
+    const std::string file = folder.write("frames.raw", white_frames(8000, 5, 65535, faults)).string();
+    return one_object(todbench({"noise", file + "?width=80&height=60", "--contrast-over-noise", "8", "--json"}));
+  };
+
+  const Json bounced = noise_of({.bounce = 10}), corrected = noise_of({.jump = 50});
+
+  // 39 differences of the frames with a memory of one: 14 %.
+  EXPECT_NEAR(bounced["temporal_noise"].get<double>(), std::hypot(5, 10), 4 * 0.14 * 10);
+  EXPECT_EQ(bounced["blocks"], 4);
+  EXPECT_NEAR(corrected["temporal_noise"].get<double>() / std::sqrt(25 + 1.0 / 12), 1, 0.012);
 }
 
 TEST(NoiseCommand, SaysThatComponentsKnowNoMemory) {

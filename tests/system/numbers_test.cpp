@@ -55,6 +55,9 @@ TEST(FitJson, ExactProportionsOfAWeibullFunctionGiveItsThresholdBack) {
 TEST(FitJson, WhatCannotBeIdentifiedIsNullAndInconclusive) {
   EXPECT_EQ(fit("1,0,0\n2,0,0\n", 3)["threshold"], nullptr);
   EXPECT_EQ(fit("1,25,100\n2,26,100\n3,24,100\n4,25,100\n", 3)["ci95"][1], nullptr);
+  const Json ridge = fit("1,30,60\n2,55,60\n", 3, {"--lapse", "free"});
+  EXPECT_EQ(ridge["verdict"], "underdetermined");
+  EXPECT_EQ(fit("1,30,60\n2,55,60\n", 0)["verdict"], "ok");
   const Json all_right = fit("1,100,100\n2,100,100\n3,100,100\n", 3);
   EXPECT_EQ(all_right["ci95"][0], nullptr);
   EXPECT_TRUE(all_right["ci95"][1].is_number());

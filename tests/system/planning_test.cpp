@@ -99,6 +99,24 @@ TEST_F(Planning, SkipAndForceAreObeyedAndTheReportSaysSo) {
   EXPECT_EQ(effect_of(provenance["effects"], "detector")["decision"], "skip");
 }
 
+TEST_F(Planning, WhatTheCameraWillShowRestsOnItsOwnPhasesNotOnThoseOfTheSimulation) {
+  const std::string limit = "[[limits.acuity]]\ndelta_t_k = 16.9\nleast_acuity_per_mrad = 0.3\n";
+  const std::string alike = small_measurement(4, limit);
+  std::string other = alike;
+  other.replace(other.rfind("phases = 4"), 10, "phases = 16");
+  write("alike.toml", alike);
+  write("other.toml", other);
+
+  const Json of_alike = one_object(run({"plan", "./alike.toml", "--json"}));
+  const Json of_other = one_object(run({"plan", "./other.toml", "--json"}));
+
+  EXPECT_EQ(of_other["trials"], 4 * of_alike["trials"].get<int>());
+  EXPECT_EQ(of_other["limits"], of_alike["limits"]);
+  ASSERT_EQ(of_other["frontier"].size(), of_alike["frontier"].size());
+  for (std::size_t i = 0; i < of_alike["frontier"].size(); ++i)
+    EXPECT_EQ(of_other["frontier"][i]["half_width_percent"], of_alike["frontier"][i]["half_width_percent"]) << i;
+}
+
 TEST_F(Planning, AComparisonThatThePlanCannotDecideIsWarnedOfBeforeAndAfter) {
   // 160 answers each: a standard error near 4 % each, where 10 % equivalence needs 3.25 % of the ratio.
   write("few.toml", small_measurement(8));
@@ -123,6 +141,27 @@ TEST_F(Planning, AComparisonThatThePlanCannotDecideIsWarnedOfBeforeAndAfter) {
   EXPECT_THAT(content_of(at("m") / "report.html"), HasSubstr("the plan can hardly show equivalence within 10 %"));
   ASSERT_TRUE(completed(compared));
   EXPECT_THAT(compared.err, AllOf(HasSubstr("warning: trials like these"), HasSubstr("(160 made)")));
+}
+
+TEST_F(Planning, NumbersOfFramesGoWithTheirContrasts) {
+  write("plan.toml",
+        "[target]\ndistance_m = 2\ndelta_t_k = [16.9, 0.23]\nphases = 2\n"
+        "[schedule]\nframes_per_presentation = [2, 15]\n");
+
+  const Ended ended = run({"plan", "./plan.toml", "--delta-t-k", "0.23,5,16.9", "--json"});
+
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  int planned = 0;
+  const Json plan = one_object(ended);
+  for (const Json& row : plan["frontier"]) {
+    if (!row["planned"]) continue;
+    ++planned;
+    ASSERT_EQ(row["frames_per_presentation"].size(), 3U);
+    EXPECT_EQ(row["frames_per_presentation"][0], 15);
+    EXPECT_GT(row["frames_per_presentation"][1], 0) << "5 K is not among those of the plan: chosen";
+    EXPECT_EQ(row["frames_per_presentation"][2], 2);
+  }
+  EXPECT_EQ(planned, 1);
 }
 
 }  // namespace

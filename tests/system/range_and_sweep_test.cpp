@@ -94,7 +94,9 @@ TEST(RangeCommand, ReadsTheSessionThroughAirAndRefusesWhatIsNone) {
   expect_refused(range({"--background-k", "-3"}), 2, "above 0 K");
   expect_refused(range({"--air-k", "0"}), 2, "above 0 K");
   const Json weak = one_object(range({"--cn2", "1e-16"}));
-  const Json strong = one_object(range({"--cn2", "1e-11", "--models", "all"}));
+  const Json strong = one_object(range({"--cn2", "1e-11", "--models", "all", "--page", "turbulent.html"}));
+  EXPECT_THAT(content(folder.path() / "p.html"), Not(HasSubstr("1e-11")));
+  EXPECT_THAT(content(folder.path() / "turbulent.html"), HasSubstr("1e-11"));
   EXPECT_EQ(weak["r75_m"], plain["r75_m"]);
   EXPECT_EQ(weak["turbulence"]["decision"], "skip");
   EXPECT_EQ(strong["turbulence"]["decision"], "simulate");
@@ -244,6 +246,9 @@ TEST(PictureCommand, RefusesScenesAndRangesThatCannotBe) {
   expect_refused(picture("craft-at-see", "100"), 2, "craft-at-sea");
   expect_refused(picture("craft-at-sea", "-1"), 2, "--range-m");
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "p"));
+  // Before anything is read or computed.
+  folder.write("p/notes.txt", "mine");
+  expect_refused(picture("./crossing.toml", "100"), 2, "not empty");
 }
 
 TEST(IdentifyCommand, SaysWhereASetIsToldApartAndWhatTheTodCurveWouldHaveSaid) {
@@ -315,10 +320,27 @@ TEST(MrtdCommand, TellsWhatIsAnMrtdFromWhatAMachineDoesBeyond) {
     EXPECT_TRUE(points[0]["formula_mrtd_k"].is_number());
     EXPECT_TRUE(points[1]["threshold_k"].is_number());
     EXPECT_TRUE(points[1]["mrtd_k"].is_null());
-    EXPECT_TRUE(points[1]["reason"].is_string());
+    // On the page in place of a number, not beside an interval of nothing.
+    EXPECT_THAT(content(folder.path() / "mrtd.html"), HasSubstr(points[1]["reason"].get<std::string>()));
   }
   EXPECT_EQ(content(folder.path() / "mrtd.html").find("<script"), std::string::npos);
   EXPECT_NE(content(folder.path() / "mrtd.svg").find("<svg"), std::string::npos);
+  // Behind air every contrast of the bars is exp(k R) times that at the camera: the answers are the same ones.
+  const Json far = one_object(mrtd({"--of-nyquist", "0.4,1.2", "--range-m", "1500", "--extinction-per-km", "0.7"}));
+  EXPECT_NEAR(far["transmittance"].get<double>(), std::exp(-1.05), 1e-12);
+  EXPECT_TRUE(json["range_m"].is_null());
+  for (const char* key :
+       {"threshold_k", "mrtd_k", "best_phase_k", "worst_phase_k", "formula_mrtd_k", "ideal_k", "highest_k"}) {
+    const Json &own = json["axes"]["horizontal"][0][key], &behind = far["axes"]["horizontal"][0][key];
+    ASSERT_EQ(own.is_number(), behind.is_number()) << key;
+    if (!own.is_number()) continue;
+    EXPECT_NEAR(behind.get<double>(), own.get<double>() * std::exp(1.05), 1e-9) << key;
+  }
+  EXPECT_NEAR(far["axes"]["vertical"][0]["threshold_ci95_k"][1].get<double>(),
+              json["axes"]["vertical"][0]["threshold_ci95_k"][1].get<double>() * std::exp(1.05), 1e-9);
+  expect_refused(mrtd({"--atmosphere", "tropical"}), 2, "--range-m");
+  expect_refused(mrtd({"--atmosphere", "tropical", "--range-m", "1e6"}), 2, "table ends");
+  expect_refused(mrtd({"--extinction-per-km", "1e3", "--range-m", "1e6"}), 2, "nothing is left");
   // Microscan does not make the detectors smaller: next to Nyquist bars are told apart, but not resolved.
   const std::vector<std::string> resolved{"--axis",      "vertical", "--criterion", "bars-resolved",
                                           "--microscan", "2",        "--of-nyquist"};
@@ -353,11 +375,13 @@ TEST(SweepCommand, EndsWithACodeOfItsOwnWhereAnotherProcessHoldsATask) {
   std::filesystem::remove(result);
   std::ofstream(result.replace_extension(".lock")) << "a-host-that-is-not-this-one\n1\n";
 
-  const Ended held = run({"--json"}), in_processes = run({"--jobs", "2"});
+  const Ended held = run({"--json"}), in_processes = run({"--jobs", "2", "--json"});
 
   EXPECT_EQ(held.code, 4) << held.err;
   EXPECT_EQ(one_object(held)["locked"], 1);
   EXPECT_EQ(in_processes.code, 4) << in_processes.err;
+  EXPECT_EQ(one_object(in_processes),
+            one_object(todbench({"sweep", "status", "s.toml", "--json"}, {.folder = folder.path()})));
 }
 
 TEST(SweepCommand, PrintsTaskListsAndRefusesInASentence) {

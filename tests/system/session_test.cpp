@@ -126,6 +126,36 @@ TEST_F(Sessions, TheReportIsRebuiltFromTheFolderByteForByte) {
   expect_whole_session(at("m"), "complete");
 }
 
+TEST_F(Sessions, TheLetterheadOfAPlanStaysWithItsSession) {
+  write("plans/plan.toml", small_measurement(2, "[report]\nletterhead = \"lab.toml\"\n"));
+  const Ended missing = run({"measure", "plans/plan.toml", "--out", "m"});
+  write("plans/lab.toml", "logo = \"none.png\"\nlogo_text = \"L\"\n");
+  const Ended broken = run({"measure", "plans/plan.toml", "--out", "m"});
+  write("other.toml", "title = \"Of the option\"\n");
+  const Ended chosen = run({"measure", "plans/plan.toml", "--letterhead", "other.toml", "--out", "n"});
+  write("plans/lab.toml", "title = \"Of the plan\"\n");
+
+  ASSERT_TRUE(completed(run({"measure", "plans/plan.toml", "--out", "m"})));
+  std::filesystem::remove(at("plans/lab.toml"));
+
+  expect_refused(missing, 2, "lab.toml");
+  expect_refused(broken, 2, "none.png");
+  EXPECT_EQ(chosen.code, 2) << "a broken plan stays one";
+  EXPECT_FALSE(std::filesystem::exists(at("n")));
+  expect_whole_session(at("m"), "complete");
+  EXPECT_THAT(content_of(at("m") / "session.toml"), HasSubstr("letterhead = \"inputs/letterhead.toml\""));
+  EXPECT_THAT(content_of(at("m") / "report.html"), HasSubstr("Of the plan"));
+  const std::string before = content_of(at("m") / "report.html");
+  ASSERT_EQ(run({"report", "m"}).code, 0);
+  EXPECT_TRUE(content_of(at("m") / "report.html") == before);
+  ASSERT_TRUE(completed(run({"measure", "m/session.toml", "--letterhead", "other.toml", "--out", "n"})));
+  EXPECT_THAT(content_of(at("n") / "report.html"), AllOf(HasSubstr("Of the option"), Not(HasSubstr("Of the plan"))));
+  ASSERT_EQ(run({"report", "m", "--letterhead", "other.toml"}).code, 0);
+  ASSERT_EQ(run({"report", "m"}).code, 0);
+  EXPECT_THAT(content_of(at("m") / "report.html"), AllOf(HasSubstr("Of the option"), Not(HasSubstr("Of the plan"))));
+  expect_whole_session(at("m"), "complete");
+}
+
 TEST_F(Sessions, TheReportShowsTheStoredVerdictAndNotOneByOtherLimits) {
   write("plan.toml", small_plan(8));
   ASSERT_EQ(run({"simulate", "./plan.toml", "--out", "s"}).code, 0);

@@ -140,7 +140,24 @@ TEST(SuperResolutionStage, GivesWhatTheLibraryGivesOfTheLastFrames) {
   for (int k = 0; k < 3; ++k) (void)stage->process(soft_square({0, 0})).value();
   const auto never_moved = stage->process(soft_square({0, 0}));
   ASSERT_FALSE(never_moved) << "three cells of a pixel have no frame";
-  EXPECT_EQ(never_moved.error().code, ErrorCode::integrity);
+  EXPECT_EQ(never_moved.error().code, ErrorCode::not_identifiable);
+}
+
+TEST(Enhancement, ByMeasuredShiftsOutlivesChangesOfTheTargetButNotACameraThatRests) {
+  const auto plan = small_plan("16.9", 3, "[measurement]\nregistration_frames = 8\ncontrast_frames = 4\n");
+  const StagePlan measured{.kind = StagePlan::Kind::super_resolution,
+                           .super_resolution = {.frames = 4, .factor = 2, .shifts = FrameShifts::measured}};
+
+  const auto moved = compare_packages(plan, {package_of({measured})}, {.dither = 2}, {});
+  const auto at_rest = compare_packages(plan, {package_of({measured})}, {}, {});
+
+  ASSERT_TRUE(moved) << moved.error().message;
+  EXPECT_FALSE(moved->results[1].error) << moved->results[1].error->message;
+  EXPECT_EQ(moved->results[1].trials.size(), 3u * 20);
+  ASSERT_TRUE(at_rest) << at_rest.error().message;
+  ASSERT_TRUE(at_rest->results[1].error) << "three cells of a pixel have no frame";
+  EXPECT_EQ(at_rest->results[1].error->code, ErrorCode::integrity);
+  EXPECT_TRUE(at_rest->results[1].trials.empty());
 }
 
 TEST(Enhancement, BySuperResolutionOfADitheredSensorIsThatOfFinerSampling) {

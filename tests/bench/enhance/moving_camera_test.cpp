@@ -15,6 +15,7 @@ Plan moving_plan(const testing::TemporaryFolder& folder) {
   Plan plan = *load_plan("demo");
   plan.target.plates = {"tcat-a"};
   plan.target.mountings = {Mounting::identity};
+  plan.schedule.frames_per_presentation = {8};
   plan.target.delta_t_k = {16.9};
   plan.simulation.accuracy = "draft";
   const std::string text = testing::content_of(source_file("sim_devices/sensors/sc2000.toml"));

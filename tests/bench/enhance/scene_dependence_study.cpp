@@ -16,6 +16,7 @@ TEST(SceneDependenceStudy, OfALinearCameraHoldsOneInAllIntervalsTogether) {
   plan.target.kind = TargetKind::scene;
   plan.target.plates = {"tcat-a"};
   plan.target.mountings = {Mounting::identity};
+  plan.schedule.frames_per_presentation = {8};
   plan.target.delta_t_k = {16.9};
   plan.simulation.accuracy = "draft";
   plan.limits = {};

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "bench/enhance/dynamic_session.h"
+#include "bench/enhance/scene_dependence_session.h"
 #include "bench/plan/plan.h"
 #include "bench/text/text.h"
 #include "sim_devices/sensor/sensor_model.h"
@@ -22,6 +23,7 @@ LoadedPlan bar_plan() {
   plan.target.kind = TargetKind::scene;
   plan.target.plates = {"tcat-a"};
   plan.target.mountings = {Mounting::identity};
+  plan.schedule.frames_per_presentation = {8};
   plan.target.delta_t_k = {1.93, 16.9};
   plan.simulation.accuracy = "draft";
   plan.measurement.registration_frames = 16;
@@ -138,6 +140,45 @@ TEST(SceneDependence, OfACameraHasItsBarMovedByTheOperator) {
   const StagePlan stage;
   const EnhancementPackage package = package_of_stage(stage);
   EXPECT_FALSE(plan_scene_dependence(*loaded, &package, 40, quick, host, {})) << "a package behind a camera";
+}
+
+TEST(SceneDependenceSession, ThatIsStoppedIsMarkedSo) {
+  const testing::TemporaryFolder folder;
+  std::stop_source stop;
+  stop.request_stop();
+
+  const auto session = measure_scene_dependence_session(bar_plan(), {.options = quick},
+                                                        {.folder = folder.path() / "stopped"}, {}, stop.get_token());
+
+  ASSERT_FALSE(session);
+  EXPECT_EQ(session.error().code, ErrorCode::interrupted);
+  const auto kept = read_session(folder.path() / "stopped");
+  ASSERT_TRUE(kept) << kept.error().message;
+  EXPECT_EQ(kept->provenance.state, SessionState::interrupted);
+  EXPECT_EQ(verdict_of(*kept).decision, VerdictKind::inconclusive);
+}
+
+TEST(SceneDependenceSession, IsJudgedByTheSizeThatIsFarthestOff) {
+  SceneDependence found;
+  found.set_delta_t_k = 16.9, found.tolerance_percent = 2;
+  found.sizes = {{.size_mm = 25, .ratio = 1.001, .ci95 = {0.999, 1.003}},
+                 {.size_mm = 10, .ratio = 0.95, .ci95 = {0.94, 0.96}}};
+  found.verdict = SceneDependenceVerdict::depends;
+  LimitsPlan limits;
+  const Verdict fails = verdict_on(found, limits);
+  found.sizes.pop_back();
+  found.verdict = SceneDependenceVerdict::independent;
+  limits.acuity = {{.delta_t_k = 16.9, .least_acuity_per_mrad = 0.1}};
+  const Verdict passes = verdict_on(found, limits);
+
+  EXPECT_EQ(fails.decision, VerdictKind::fail);
+  ASSERT_EQ(fails.demands.size(), 1u);
+  EXPECT_NEAR(*fails.demands[0].result, 100 * (1 / 0.95 - 1), 1e-9);
+  EXPECT_NEAR(*fails.demands[0].interval.low, 100 * (1 / 0.96 - 1), 1e-9);
+  EXPECT_NEAR(*fails.demands[0].interval.high, 100 * (1 / 0.94 - 1), 1e-9);
+  EXPECT_EQ(passes.decision, VerdictKind::pass);
+  EXPECT_EQ(*passes.demands[0].interval.low, 0) << "the interval holds 1";
+  EXPECT_NE(passes.reason, verdict_on(found, {}).reason) << "limits of the plan were not judged";
 }
 
 /// Rows that are on the disk, without the header.

@@ -21,6 +21,7 @@ bool wait_until(const std::function<bool()>& so, int patience_ms) {
 Plan small_plan(Plan plan, int phases) {
   plan.target.plates = {"tcat-a"};
   plan.target.mountings = {Mounting::identity};
+  plan.schedule.frames_per_presentation = {8};
   plan.target.delta_t_k = {16.9, 0.23};
   plan.target.phases = phases;
   plan.simulation.phases = phases;

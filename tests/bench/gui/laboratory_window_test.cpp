@@ -2,6 +2,7 @@
 #include <QLabel>
 #include <QListWidget>
 #include <QSlider>
+#include <QStatusBar>
 #include <QTableWidget>
 #include <QTreeWidget>
 
@@ -60,6 +61,7 @@ TEST(LaboratoryWindow, AlignsThenMeasuresThenComparesAndWritesThePdf) {
   EXPECT_EQ(window.part<PictureView>("alignPicture").outlines().size(), 41u);
   window.click("startAligning");
   ASSERT_TRUE(wait_until([&] { return window->bench().activity() == Activity::idle; }));
+  EXPECT_EQ(window->statusBar()->currentMessage(), "") << "nothing is aligned any more";
   window.measure();
   ASSERT_TRUE(wait_until([&] { return window->sessions().current().has_value(); }));
   window->show_view(View::report);

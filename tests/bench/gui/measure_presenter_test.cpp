@@ -43,6 +43,8 @@ TEST(MeasurePresenter, EndsWithTheCurvesOfTheSessionFolder) {
     EXPECT_EQ(session->twin->points[i].fit.threshold, b.presenter.twin()->points[i].fit.threshold);
   }
   EXPECT_EQ(session->trials.size(), b.presenter.trials().size());
+  EXPECT_GT(b.presenter.planned(), 0u);
+  EXPECT_EQ(b.presenter.done(), b.presenter.planned());
 }
 
 TEST(MeasurePresenter, KeepsThePatchThatWasJudgedForEveryAnswer) {

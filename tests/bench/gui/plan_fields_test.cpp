@@ -68,6 +68,8 @@ TEST(PlanFields, HaveTheKindThatTheValueAsksFor) {
                                                   {"planDriftTime", FieldKind::number},
                                                   {"planResponseSettling", FieldKind::number},
                                                   {"planMeasureLimits", FieldKind::rows},
+                                                  {"planZoneLimits", FieldKind::rows},
+                                                  {"planFleets", FieldKind::rows},
                                                   {"planContrasts", FieldKind::rows}})
     EXPECT_EQ(field(fields, name).kind, kind) << name.toStdString();
   EXPECT_EQ(field(fields, "planContrasts").columns.size(), 2u) << "contrasts and limits are one table";
@@ -104,6 +106,44 @@ TEST(PlanFields, HaveTheLimitsOnMeasuresAsATable) {
   EXPECT_EQ(to_toml(plan), to_toml(before));
   EXPECT_EQ(limits.entered(plan, ""), "");
   EXPECT_TRUE(plan.limits.measures.empty());
+}
+
+TEST(PlanFields, HaveZonesOfPixelLimitsAndEarlierUnitsAsTables) {
+  Plan plan = demo();
+  plan.measures.noise = plan.measures.pixels = true;
+  const auto fields = plan_fields();
+  const PlanField &zones = field(fields, "planZoneLimits"), &fleets = field(fields, "planFleets");
+  ASSERT_EQ(zones.columns.size(), 6u);
+  ASSERT_EQ(fleets.columns.size(), 7u);
+  EXPECT_EQ(fleets.columns[1].title, "Delta t (K)");
+
+  ASSERT_EQ(zones.entered(plan, "middle: \"0.25, 0.25, 0.75, 0.75\": 0: : 2, whole: : 40"), "");
+  ASSERT_EQ(
+      fleets.entered(plan, "acuity: 2: 0.6: 0.05: 0.01: 24: \"lot 7: \"\"A\"\", 2025\", netd: : 0.05: 0.004: : 24"),
+      "");
+
+  ASSERT_EQ(plan.limits.zones.size(), 2u);
+  EXPECT_EQ(plan.limits.zones[0].name, "middle");
+  EXPECT_EQ(plan.limits.zones[0].area[2], 0.75);
+  EXPECT_EQ(plan.limits.zones[0].bad_pixels, 0);
+  EXPECT_EQ(plan.limits.zones[0].substituted_pixels, std::nullopt);
+  EXPECT_EQ(plan.limits.zones[0].clusters, 2);
+  EXPECT_EQ(plan.limits.zones[1].bad_pixels, 40);
+  ASSERT_EQ(plan.limits.fleets.size(), 2u);
+  EXPECT_EQ(plan.limits.fleets[0].source, "lot 7: \"A\", 2025");
+  EXPECT_EQ(plan.limits.fleets[1].u, FleetRow{}.u);
+  EXPECT_TRUE(PlanForm(plan).right());
+  for (const PlanField* table : {&zones, &fleets}) {
+    Plan again = plan;
+    EXPECT_EQ(table->entered(again, table->shown(plan)), "");
+    EXPECT_EQ(to_toml(again), to_toml(plan)) << table->shown(plan).toStdString();
+  }
+  const Plan before = plan;
+  EXPECT_NE(zones.entered(plan, "left: half: 1"), "");
+  EXPECT_NE(fleets.entered(plan, "netd: : 0.05: wide"), "");
+  EXPECT_EQ(to_toml(plan), to_toml(before));
+  ASSERT_EQ(zones.entered(plan, "left: \"0, 0, 0.5\": 1"), "");
+  EXPECT_FALSE(PlanForm(plan).right());
 }
 
 TEST(PlanFields, KeepALimitAtTheContrastThatItWasWrittenWith) {

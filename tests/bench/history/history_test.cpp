@@ -8,6 +8,7 @@
 #include "bench/history/control_chart.h"
 #include "bench/history/fleet_history.h"
 #include "bench/history/history_index.h"
+#include "bench/history/history_series.h"
 #include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/tod/measures/measures_reference.h"
@@ -272,6 +273,38 @@ TEST_F(History, SaysOfAKindOfCameraWhatItsUnitsAre) {
   const auto plan = parse_plan({.origin = "test", .text = "[target]\ndistance_m = 2\n" + fleets_toml(*found)}, ".");
   ASSERT_TRUE(plan) << plan.error().message;
   EXPECT_EQ(plan->limits.fleets, std::vector{row});
+}
+
+TEST_F(History, ListsWhatLiesBeforeAnEventOrAnotherFirmwareApartFromTheChart) {
+  auto index = HistoryIndex::open(file());
+  ASSERT_TRUE(index) << index.error().message;
+  for (int year = 2020; year < 2026; ++year) {
+    HistorySession session = session_of(1, year, 0.1 * (year - 2020), 0.02);
+    session.firmware = year < 2024 ? "1" : "2";
+    ASSERT_TRUE(index->add(session));
+  }
+  ASSERT_TRUE(index->add(session_of(2, 2021, 0.5, 0.02)));
+  ASSERT_TRUE(index->add_event({"S1", "2022-01-01T00:00:00Z", "repair", ""}));
+  ASSERT_TRUE(index->add_event({"S2", "2022-06-01T00:00:00Z", "transport", ""}));
+
+  const auto charts = history_series(*index, "", "");
+  const auto listed = history_series(*index, "", "", WithoutChart::listed);
+
+  ASSERT_TRUE(charts && listed);
+  ASSERT_EQ(charts->size(), 1u);
+  ASSERT_EQ(listed->size(), 2u);
+  const HistorySeries& first = listed->front();
+  ASSERT_EQ(first.values.size(), 2u);
+  EXPECT_EQ(first.started_utc.front(), "2024-01-01T00:00:00Z");
+  EXPECT_EQ(charts->front().started_utc, first.started_utc);
+  ASSERT_EQ(first.earlier.size(), 4u);
+  for (std::size_t i = 0; i < first.earlier.size(); ++i) {
+    EXPECT_EQ(first.earlier[i].ended_by, i < 2 ? "repair" : "firmware");
+    EXPECT_EQ(first.earlier[i].value.value, 0.1 * static_cast<double>(i));
+  }
+  EXPECT_TRUE(listed->back().values.empty());
+  ASSERT_EQ(listed->back().earlier.size(), 1u);
+  EXPECT_EQ(listed->back().earlier.front().ended_by, "transport");
 }
 
 TEST_F(History, RefusesAPriorOfTooFewUnitsOrOfSeveralKinds) {

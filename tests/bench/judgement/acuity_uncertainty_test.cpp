@@ -273,6 +273,30 @@ TEST(CurveUncertainty, CancelsInTheRatioToTheTwinWhatBothShare) {
   EXPECT_EQ(decision(shared), VerdictKind::pass);
 }
 
+TEST(CurveUncertainty, OfFewDegreesOfFreedomWidensRatiosLimitsAndMeasuresByStudentsT) {
+  constexpr double t95 = 2.776445105, t90 = 2.131846786;  // of 4 degrees of freedom
+  const std::vector<BudgetRow> rows{{.name = "emissivity", .value = 3, .degrees_of_freedom = 4, .unit = "%"},
+                                    {.name = "camera-scale", .value = 3, .degrees_of_freedom = 4, .unit = "%"},
+                                    {.name = "distance", .value = 3, .degrees_of_freedom = 4, .unit = "%"}};
+  Plan plan = plan_of({rows[2]});
+  TodPoint limit = point_of(2, 2.5, 0.01);
+  limit.fit.threshold.reset();
+  limit.fit.ci95.high.reset();
+  const double low_mrad = *limit.fit.ci95.low;
+
+  const auto ratio =
+      applied(plan, {"o", "s", {point_of(2, 2.5, 0.01)}}, {}, comparison_at(2, 1, 1e-9)).points.at(0).ratio.value();
+  const auto moved = applied(plan, {"o", "s", {limit}}).points.at(0).expanded_mrad;
+  plan.uncertainty.rows = rows;
+
+  EXPECT_NEAR(half_of(ratio.ci95), t95 * 0.03, 1e-6);
+  EXPECT_NEAR(half_of(ratio.ci90), t90 * 0.03, 1e-6);
+  EXPECT_NEAR(std::log(low_mrad / *moved.low), t95 * 0.03, 1e-9);
+  EXPECT_NEAR(z95 * relative_u_of_scale(plan), t95 * 0.03, 1e-9);
+  EXPECT_NEAR(z95 * relative_u_of_camera_scale(plan), t95 * 0.03, 1e-9);
+  EXPECT_NEAR(z95 * relative_u_of_distance(plan), t95 * 0.03, 1e-9);
+}
+
 TEST(VerdictWithABudget, IsDecidedByTheExpandedInterval) {
   const TodCurve curve{"o", "s", {point_of(2, 2.5, 0.01)}};
   LimitsPlan limits;

@@ -162,6 +162,10 @@ TEST(MeasureLimits, CountTheScaleOfTheBudget) {
   EXPECT_NEAR(netd.interval.high.value(), 0.050 + std::hypot(0.002, two_sided_95 * 0.15 * 0.050), 1e-12);
   EXPECT_EQ(netd.statistical.value().high, 0.052);
   EXPECT_EQ(demand_of(verdict, DemandKind::noise_vh).decision, VerdictKind::pass);
+  // A noise that is none is not negative by its scale.
+  uncertainty.u_camera_scale = 0.01;
+  const Verdict none = judged(limits, {{"noise_vh", 0.001, {0.0, 0.002}}}, &uncertainty);
+  EXPECT_EQ(demand_of(none, DemandKind::noise_vh).interval.low.value(), 0);
 }
 
 TEST(MeasureLimits, StayOpenWhereNothingWasMeasured) {

@@ -102,6 +102,7 @@ std::optional<KeyValue> impossible(const KeyType& type) {
     return nan;
   if (std::holds_alternative<NumbersKey>(type)) return std::vector<double>{nan, 1};
   if (std::holds_alternative<WholeKey>(type)) return std::int64_t{-1};
+  if (std::holds_alternative<WholesKey>(type)) return std::vector<double>{-1};
   return std::nullopt;
 }
 

@@ -92,7 +92,7 @@ Plan plan_with_rule() {
 Plan graded_plan() {
   Plan plan;
   plan.schedule.answers = AnswersChoice::graded;
-  plan.schedule.frames_per_presentation = 4;
+  plan.schedule.frames_per_presentation = {4};
   plan.fit.estimator = EstimatorChoice::twin_shape;
   return plan;
 }
@@ -178,6 +178,26 @@ TEST(Plan, SeveralFramesAreForGradedAnswers) {
   EXPECT_TRUE(parse(two)) << "graded is what answers are where nothing is said";
   // It says how many there are of graded answers, where there are any.
   EXPECT_EQ(chosen_answers(parse(two + "[fit]\nestimator = \"weibull\"\n").value(), {}).frames, 1);
+}
+
+TEST(Plan, FramesAreOfEveryContrastOrOneNumberForEach) {
+  const auto with = [](const std::string& frames) {
+    return parse("[target]\ndistance_m = 2\ndelta_t_k = [16.9, 0.23]\n[schedule]\nframes_per_presentation = " + frames +
+                 "\n");
+  };
+  const Result<Plan> each = with("[1, 12]"), one = with("3"), open = with("[2, 0]");
+
+  ASSERT_TRUE(each && one && open);
+  EXPECT_EQ(frames_at(*each, 16.9), 1);
+  EXPECT_EQ(chosen_answers(*each, {}, 0.23).frames, 12);
+  EXPECT_EQ(frames_at(*each, 1.93), 0) << "not among its contrasts";
+  EXPECT_EQ(frames_at(*one, 0.23), 3);
+  EXPECT_EQ(chosen_answers(*open, {}, 0.23).frames, 4);
+  for (const Result<Plan>& plan : {each, one, open}) EXPECT_EQ(parse(to_toml(*plan)), *plan);
+  EXPECT_THAT(to_toml(*one), HasSubstr("frames_per_presentation = 3\n"));
+  for (const char* wrong : {"[1, 2, 3]", "[]", "[1, -1]", "[1, 2.5]", "[1, 1001]", "1.5", "[1, [2]]", "'2'"})
+    EXPECT_FALSE(with(wrong)) << wrong;
+  EXPECT_FALSE(parse("[schedule]\nanswers = 'binary'\nframes_per_presentation = [1, 1, 2]\n"));
 }
 
 TEST(Plan, GradedAnswersAreNotFittedWithAWeibullFunction) {

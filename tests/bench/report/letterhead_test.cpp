@@ -1,5 +1,5 @@
 // The letterhead of a laboratory on reports.
-#include "bench/report/letterhead.h"
+#include "bench/plan/letterhead.h"
 
 #include <gmock/gmock.h>
 #include <zlib.h>

@@ -278,6 +278,24 @@ TEST(SvgPlot, ADocumentOfItsOwnCarriesAStyleThatEveryViewerKnows) {
   EXPECT_THAT(document, HasSubstr("viewBox=\"0 0 400.00 824.00\""));  // two of 400 by 400, each with 12 below
 }
 
+TEST(TodFigures, BarsOfGradedAnswersAreFromTheirScatterOverPresentations) {
+  TodPoint point;
+  // Means of 4 answers: 0.5, 0.6, 0.7, 0.8; mean 0.65, standard deviation 0.1291, of the mean 0.06455; t of 3: 3.1824.
+  for (int k = 0; k < 4; ++k)
+    point.levels.push_back({.size = 2, .correct = 4 * (0.5 + 0.1 * k), .total = 4, .cluster = k});
+  const Interval independent = proportion_interval(answers_by_size(point)[0]);
+  point.fit.dispersion = 0.1;
+  const Interval graded = proportion_interval(answers_by_size(point)[0]);
+
+  EXPECT_EQ(independent.low, wilson_interval(10.4, 16).low);
+  EXPECT_NEAR(*graded.low, 0.65 - 3.1824 * 0.06455, 1e-4);
+  EXPECT_NEAR(*graded.high, 0.65 + 3.1824 * 0.06455, 1e-4);
+  for (Level& level : point.levels) level.correct = 4;
+  EXPECT_EQ(proportion_interval(answers_by_size(point)[0]).low, 1) << "all certain: no scatter";
+  point.levels.resize(1);
+  EXPECT_FALSE(proportion_interval(answers_by_size(point)[0]).low) << "one presentation says nothing of scatter";
+}
+
 TEST(TodFigures, WilsonIntervalsAgreeWithTheScoreEquation) {
   // The bounds are the proportions q at which (p - q)^2 = z^2 q (1 - q) / n: checked by putting them back. Both sides
   // are below 1, so that a few roundings of 1e-16 stay below 1e-14.
@@ -295,9 +313,10 @@ TEST(TodFigures, WilsonIntervalsAgreeWithTheScoreEquation) {
 }
 
 TEST(TodFigures, AnswersOfEqualSizeAreAddedUpOverPresentations) {
-  const std::vector<Level> levels{{2, 3, 4, 1}, {1, 1, 4, 0}, {2, 1, 4, 2}, {5, 0, 0, -1}, {1.0000001, 2, 4, 3}};
+  TodPoint point;
+  point.levels = {{2, 3, 4, 1}, {1, 1, 4, 0}, {2, 1, 4, 2}, {5, 0, 0, -1}, {1.0000001, 2, 4, 3}};
 
-  const std::vector<AnswersAtSize> answers = answers_by_size(levels);
+  const std::vector<AnswersAtSize> answers = answers_by_size(point);
 
   ASSERT_THAT(answers, SizeIs(2));
   EXPECT_EQ(answers[0].correct, 3);

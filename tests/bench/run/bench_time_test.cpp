@@ -117,6 +117,19 @@ TEST(BenchTime, OfTheDefaultPlanIsThatOfTheSlowestChangeOfEachPresentation) {
   EXPECT_DOUBLE_EQ(time.frames_s, time.frames / 50.0);
 }
 
+TEST(BenchTime, HasTheFramesOfEachContrast) {
+  Plan plan = small_plan();
+  plan.target.delta_t_k = {16.9, 0.23};
+  const LoadedPlan loaded = LoadedPlan::load(plan).value();
+  plan.target.kind = TargetKind::scpi;
+  plan.schedule.frames_per_presentation = {1};
+  const BenchTime ones = bench_time(plan, loaded.plates(), 50, std::nullopt);
+  plan.schedule.frames_per_presentation = {3, 7};
+  const BenchTime each = bench_time(plan, loaded.plates(), 50, std::nullopt);
+
+  EXPECT_EQ(each.frames, ones.frames + ones.presentations / 2 * (2 + 6));
+}
+
 TEST(BenchTime, ASimulatedSceneTakesNone) {
   const LoadedPlan loaded = LoadedPlan::load(Plan{}).value();
 

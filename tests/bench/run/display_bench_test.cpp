@@ -33,6 +33,7 @@ Plan display_plan(const std::filesystem::path& shown) {
   plan.camera.contrast = ContrastUnit::grey_levels;
   plan.camera.settings = {{"PixelFormat", "Mono8"}, {"ImageAdjustMethod", "Linear"}};
   plan.target.mountings = {Mounting::identity};
+  plan.schedule.frames_per_presentation = {8};
   plan.target.delta_t_k = {16.9, 4};
   plan.target.phases = 6;
   plan.target.display = shown_on(shown);

@@ -13,6 +13,7 @@
 #include "bench/session/measures_record.h"
 #include "bench/session/open_session.h"
 #include "tests/bench/run/measures_plan.h"
+#include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace todbench {
@@ -22,6 +23,17 @@ using ::testing::HasSubstr;
 using testing::line_of;
 using testing::plan_of_one;
 using testing::TemporaryFolder;
+
+CameraMeasuresOptions drift_options(const SensorSpec& sensor, const TargetPlate& plate, double drift_s) {
+  CameraMeasuresOptions options;
+  options.drift_s = drift_s;
+  options.transfer_steps_k = {16.9};
+  options.measurement.ifov_mrad = sensor.ifov_mrad();
+  options.measurement.distance_m = 2;
+  options.measurement.plates = {plate};
+  options.measurement.registration_frames = 4;
+  return options;
+}
 
 TEST(PhysicalMeasures, FindTheIfovOfTheSensorAndJudgeItWithTheDistance) {
   const TemporaryFolder folder;
@@ -79,6 +91,90 @@ TEST(PhysicalMeasures, FindTheIfovOfTheSensorAndJudgeItWithTheDistance) {
   EXPECT_THAT(render_report(*report_data(*session, "session")), HasSubstr("geometry-main"));
 }
 
+TEST(PhysicalMeasures, FindTheDistortionOfTheSensorAndOfItsTwin) {
+  const TemporaryFolder folder;
+  const std::string text = testing::content_of(source_file("sim_devices/sensors/sc2000.toml"));
+  const std::string sensor = folder.write("barrel.toml", text + "\ndistortion_percent = -3\n").string();
+  Plan plan = plan_of_one(&MeasuresPlan::geometry);
+  plan.camera.id = "sim:" + sensor;
+  plan.simulation.sensor = sensor;
+
+  const auto outcome = measure_plan(plan, {.folder = folder.path() / "session"}, {}, {});
+
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  const auto session = open_session(folder.path() / "session", {});
+  ASSERT_TRUE(session) << session.error().message;
+  ASSERT_TRUE(session->measures);
+  for (const auto* side : {&session->measures->main, &session->measures->twin}) {
+    const auto* line = line_of(*side, "distortion");
+    ASSERT_NE(line, nullptr);
+    const double half = 0.5 * (line->ci95.high.value() - line->ci95.low.value());
+    // Two half-widths are four standard uncertainties.
+    EXPECT_NEAR(line->value.value(), -3, 2 * half);
+    EXPECT_LT(half, 1);
+    const auto* residual = line_of(*side, "geometry_residual");
+    ASSERT_NE(residual, nullptr);
+    EXPECT_LT(residual->value.value(), 0.02);
+  }
+  EXPECT_EQ(line_of(session->measures->twin, "distortion_model")->value, -3);
+}
+
+TEST(PhysicalMeasures, HoldTheDistortionOfTheSensorInTheirInterval) {
+  constexpr std::uint64_t seeds = 20;
+  int within = 0;
+  double half = 0, error = 0;
+  const TargetPlate plate = *load_plate("tcat-a");
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    SensorSpec sensor = *load_sensor("sc2000");
+    sensor.distortion_percent = seed % 2 == 0 ? 4 : -4;
+    const auto model = std::make_shared<const SensorModel>(sensor, full_plan(sensor, {}, {}), Accuracy::draft(), seed);
+    OpenedBench bench = simulated_bench(model, {plate}, 2, {});
+    CameraMeasuresOptions options = drift_options(sensor, plate, 0);
+    options.drift_s.reset();
+    options.geometry = true;
+    const auto measures = measure_camera(*bench.camera, *bench.target, options, *bench.host, {});
+    ASSERT_TRUE(measures) << measures.error().message;
+    ASSERT_TRUE(measures->geometry);
+    const GeometryValue& found = measures->geometry->geometry.distortion_percent;
+    within += found.low <= sensor.distortion_percent && sensor.distortion_percent <= found.high ? 1 : 0;
+    half += 0.5 * (found.high - found.low) / seeds;
+    error += (found.value - sensor.distortion_percent) / seeds;
+  }
+  RecordProperty("half_width_percent", std::to_string(half));
+  RecordProperty("mean_error_percent", std::to_string(error));
+  // 20 seeds at 95 %: fewer than 16 come by chance once in 390.
+  EXPECT_GE(within, 16) << half << ' ' << error;
+  EXPECT_LT(half, 1.5);
+}
+
+TEST(PhysicalMeasures, FindNoDriftOfASensorThatHasNoneNorOfItsTwin) {
+  const TemporaryFolder folder;
+  Plan plan = plan_of_one(&MeasuresPlan::drift);
+  plan.measures.drift_s = 4;
+
+  const auto outcome = measure_plan(plan, {.folder = folder.path() / "session"}, {}, {});
+
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  const auto session = open_session(folder.path() / "session", {});
+  ASSERT_TRUE(session) << session.error().message;
+  ASSERT_TRUE(session->measures);
+  for (const auto* side : {&session->measures->main, &session->measures->twin}) {
+    ASSERT_TRUE(*side);
+    EXPECT_THAT((*side)->reasons, ::testing::IsEmpty());
+    ASSERT_TRUE((*side)->drift);
+    // 200 frames of its own clock, however long they took.
+    EXPECT_NEAR((*side)->drift->time_s.back() - (*side)->drift->time_s.front(), 3.8, 0.1);
+    for (const char* name : {"drift_rate", "drift_pattern_rate"}) {
+      const auto* line = line_of(*side, name);
+      ASSERT_NE(line, nullptr);
+      const double half = 0.5 * (line->ci95.high.value() - line->ci95.low.value());
+      // Two half-widths are four standard uncertainties.
+      EXPECT_NEAR(line->value.value(), 0, 2 * half);
+      EXPECT_LT(half, 0.1);
+    }
+  }
+}
+
 /// A camera that drifts after each correction, with a clock of its own: 20 frames a second. It takes commands, or
 /// corrects itself and tells of it.
 class DriftingCamera : public FrameSource {
@@ -134,17 +230,6 @@ class DriftingCamera : public FrameSource {
   /// Ahead of the host's clock, so that no frame is older than a change of the target.
   std::int64_t start_ns_ = std::chrono::steady_clock::now().time_since_epoch().count() + 3'600'000'000'000;
 };
-
-CameraMeasuresOptions drift_options(const SensorSpec& sensor, const TargetPlate& plate, double drift_s) {
-  CameraMeasuresOptions options;
-  options.drift_s = drift_s;
-  options.transfer_steps_k = {16.9};
-  options.measurement.ifov_mrad = sensor.ifov_mrad();
-  options.measurement.distance_m = 2;
-  options.measurement.plates = {plate};
-  options.measurement.registration_frames = 4;
-  return options;
-}
 
 TEST(PhysicalMeasures, FindTheDriftOfACameraThatIsCorrectedOrCorrectsItself) {
   const SensorSpec sensor = *load_sensor("sc2000");

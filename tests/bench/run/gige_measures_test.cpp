@@ -18,6 +18,7 @@ Plan wire_plan() {
   Plan plan = *load_plan("demo");
   plan.target.plates = {"tcat-a"};
   plan.target.mountings = {Mounting::identity};
+  plan.schedule.frames_per_presentation = {8};
   plan.target.delta_t_k = {16.9};
   plan.simulation.accuracy = "draft";
   plan.measurement.registration_frames = 4;

@@ -37,6 +37,36 @@ TEST(GradedPrecision, IsWiderForFewSetUps) {
   EXPECT_GT(graded_interval_factor({.set_ups = 5}), graded_interval_factor({.set_ups = 16}));
 }
 
+TEST(GradedPrecision, FramesAreTheFewestNearTheLeastVarianceTimesTime) {
+  const GradedDesignFigures all_sensor{.sensor_share = 1}, all_observer{.sensor_share = 0};
+  // Variance times time with 1, 2, 4, 8: (2/3 + 1/96) / F + 0.004, and 1 / (32 F) + 0.004.
+  EXPECT_EQ(cheapest_frames(all_sensor, 1, 1), 1) << "0.681, 0.685, 0.693, ...: a frame costs as much as all else";
+  EXPECT_EQ(cheapest_frames(all_sensor, 1, 0.1), 8);
+  EXPECT_EQ(cheapest_frames(all_observer, 1, 0.2), 4) << "0.0353, 0.0236, 0.0189, 0.0190";
+  EXPECT_EQ(cheapest_frames(all_observer, 1, 0), 8);
+}
+
+TEST(WithFrames, ChoosesWhatThePlanLeavesOpenAndNothingElse) {
+  Plan plan;
+  plan.simulation.accuracy = "draft";
+  EffectPlanner planner;
+  const auto inputs = experiment_inputs(LoadedPlan::load(plan).value(), planner).value();
+  const auto frames = [&] { return with_frames(plan, inputs).schedule.frames_per_presentation; };
+  EXPECT_EQ(frames(), std::vector<int>{4}) << "a simulated scene takes no time on a bench";
+  plan.target.kind = TargetKind::scpi;
+  EXPECT_EQ(frames(), std::vector<int>{8});
+  plan.target.plate_change_s = plan.target.mounting_change_s = plan.target.contrast_change_s =
+      plan.target.shift_change_s = 0;
+  plan.measurement.registration_frames = plan.measurement.contrast_frames = 1;
+  const std::vector<int> quick = frames();
+  ASSERT_EQ(quick.size(), 3U);
+  EXPECT_LT(quick[0], quick[2]) << "phases limit at a high contrast, noise at a low one";
+  plan.schedule.frames_per_presentation = {0, 5, 0};
+  EXPECT_EQ(frames(), (std::vector<int>{quick[0], 5, quick[2]}));
+  plan.schedule.answers = AnswersChoice::binary;
+  EXPECT_EQ(frames(), std::vector<int>{1});
+}
+
 /// Six presentations of five sizes, graded: the larger the more probable, and mostly right.
 std::vector<Trial> graded_trials() {
   std::vector<Trial> trials;
@@ -85,12 +115,29 @@ TEST(GradedAnswers, KeepTheFunctionOfTheTwinWhereTheyHaveIt) {
   EXPECT_FALSE(curve->points[0].answers);
 }
 
+TEST(PrecisionFrontier, HasTheNumbersOfEachContrast) {
+  Plan plan;
+  plan.target.phases = plan.simulation.phases = 2;
+  plan.simulation.accuracy = "draft";
+  plan.schedule.frames_per_presentation = {2, 2, 16};
+  EffectPlanner planner;
+  const auto inputs = experiment_inputs(LoadedPlan::load(plan).value(), planner).value();
+
+  const auto choices = precision_frontier(plan, inputs, {}).value();
+
+  ASSERT_EQ(choices.size(), 6U);
+  EXPECT_TRUE(choices[3].planned);
+  EXPECT_EQ(frontier_json(choices)[3]["frames_per_presentation"], Json({2, 2, 16}));
+  EXPECT_EQ(choices[3].contrasts[0].uncertainty_percent, choices[2].contrasts[0].uncertainty_percent);
+  EXPECT_LT(choices[3].contrasts[2].uncertainty_percent, choices[5].contrasts[2].uncertainty_percent);
+}
+
 TEST(PrecisionFrontier, HasEveryChoiceAndRecommendsOne) {
   Plan plan;
   plan.target.phases = plan.simulation.phases = 4;
   plan.simulation.accuracy = "draft";
   plan.schedule.answers = AnswersChoice::graded;
-  plan.schedule.frames_per_presentation = 3;
+  plan.schedule.frames_per_presentation = {3};
   plan.fit.estimator = EstimatorChoice::twin_shape;
   EffectPlanner planner;
   const auto inputs = experiment_inputs(LoadedPlan::load(plan).value(), planner);

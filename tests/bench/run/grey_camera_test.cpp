@@ -21,6 +21,7 @@ namespace {
 Plan grey_plan() {
   Plan plan = *load_plan("demo");
   plan.target.mountings = {Mounting::identity};
+  plan.schedule.frames_per_presentation = {8};
   plan.target.delta_t_k = {16.9, 1.93};
   plan.target.phases = 6;
   plan.simulation.phases = 1;

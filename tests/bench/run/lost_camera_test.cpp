@@ -27,6 +27,7 @@ Plan short_plan() {
   auto plan = *load_plan("demo");
   plan.target.plates = {"tcat-a"};
   plan.target.mountings = {Mounting::identity};
+  plan.schedule.frames_per_presentation = {8};
   plan.target.delta_t_k = {16.9};
   plan.target.phases = 6;
   plan.simulation.accuracy = "draft";

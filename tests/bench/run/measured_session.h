@@ -32,6 +32,7 @@ inline Plan short_plan() {
   plan.camera.nuc_wait_s = 0;
   plan.target.plates = {"tcat-a"};
   plan.target.mountings = {Mounting::identity};
+  plan.schedule.frames_per_presentation = {8};
   plan.target.delta_t_k = {16.9, 1.93};
   plan.target.phases = 3;
   plan.simulation.accuracy = "draft";

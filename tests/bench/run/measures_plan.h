@@ -19,6 +19,7 @@ inline Plan measures_plan() {
   plan.target.kind = TargetKind::scene;
   plan.target.plates = {"tcat-a"};
   plan.target.mountings = {Mounting::identity};
+  plan.schedule.frames_per_presentation = {8};
   plan.target.delta_t_k = {16.9};
   plan.target.phases = 2;
   plan.simulation.accuracy = "draft";

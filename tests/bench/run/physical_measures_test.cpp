@@ -64,6 +64,10 @@ TEST(PhysicalMeasures, FindTheNoiseAndTheScaleOfTheSimulatedSensor) {
   // a slope over 8 K to 3 mK/K.
   EXPECT_NEAR(slope->value.value(), 1, 0.012);
   EXPECT_NEAR(netd->value.value(), noise->value.value() / slope->value.value(), 1e-9);
+  const auto relative = [](const MeasureLine* line) {
+    return 0.5 * (*line->ci95.high - *line->ci95.low) / *line->value;
+  };
+  EXPECT_NEAR(relative(netd) / std::hypot(relative(noise), relative(slope)), 1, 0.01);
   const auto* model = line_of(session->measures->main, "netd_model");
   ASSERT_NE(model, nullptr);
   EXPECT_NEAR(model->value.value(), expected_k, 1e-3 * expected_k);

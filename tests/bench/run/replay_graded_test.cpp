@@ -14,7 +14,7 @@ using GradedSession = testing::MeasuredSession;
 
 TEST_F(GradedSession, ReplaysWithTheSameProbabilitiesAndTheFunctionOfTheTwin) {
   plan_.schedule.answers = AnswersChoice::graded;
-  plan_.schedule.frames_per_presentation = 3;
+  plan_.schedule.frames_per_presentation = {3};
   plan_.fit.estimator = EstimatorChoice::twin_shape;
   ASSERT_TRUE(measure("m"));
 

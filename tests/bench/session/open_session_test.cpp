@@ -206,7 +206,7 @@ TEST(ReadSession, OfAVersionWithoutAnEstimatorStaysFittedWithAWeibullFunction) {
   ASSERT_TRUE(session) << session.error().message;
   EXPECT_EQ(session->plan.fit.estimator, EstimatorChoice::weibull);
   EXPECT_EQ(session->plan.schedule.answers, AnswersChoice::binary);
-  EXPECT_EQ(session->plan.schedule.frames_per_presentation, 1);
+  EXPECT_EQ(session->plan.schedule.frames_per_presentation, std::vector<int>{1});
   for (const TodPoint& point : session->curve->points) {
     EXPECT_FALSE(point.fit.twin_shape);
     EXPECT_FALSE(point.estimator_reason);

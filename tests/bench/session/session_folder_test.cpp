@@ -113,6 +113,7 @@ TEST(SessionFolder, ComesBackAsTheValuesThatWereWritten) {
   ASSERT_TRUE(session) << session.error().message;
   Plan plan;
   plan.name = "acceptance";
+  plan.schedule.frames_per_presentation = {4};  // what a session had where its plan left them open
   EXPECT_EQ(session->plan, plan);
   EXPECT_TRUE(session->complete());
   ASSERT_EQ(session->trials.size(), 20u);

@@ -31,8 +31,8 @@ std::vector<Studied> designs() {
   const SensorSpec rounded = with([](SensorSpec& s) { s.kelvin_per_count = s.netd_k; });
   return {{{.name = "demonstration"}, 600},
           {{.name = "quarter", .phases = 3}},
-          {{.name = "6 phases of 8 frames", .phases = 6, .frames = 8}},
-          {{.name = "4 phases of 12 frames", .phases = 4, .frames = 12}},
+          {{.name = "6 phases of 8 frames", .phases = 6, .frames = {8}}},
+          {{.name = "demonstration by contrast", .phases = 6, .frames = {1, 2, 10}}},
           {{.name = "fixed pattern 0.1 K", .camera = pattern, .twin = pattern}},
           {{.name = "rounding to one sigma", .camera = rounded, .twin = rounded}},
           {{.name = "microscan", .microscan = 2}},

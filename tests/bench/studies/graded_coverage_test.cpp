@@ -6,7 +6,7 @@ namespace todbench::testing {
 namespace {
 
 TEST(GradedCoverage, OfGradedAnswersIsNarrowerAndHoldsTheTruth) {
-  const GradedDesign design{.name = "short", .phases = 3, .frames = 2, .delta_t_k = {1.93}};
+  const GradedDesign design{.name = "short", .phases = 3, .frames = {2}, .delta_t_k = {1.93}};
   // As of graded_coverage_study: three times 8000 draws at the level reference, standard error 0.1 %.
   const std::map<double, double> truth = true_s75_mrad(design, {1.93}, 1);
   std::vector<GradedResult> rows;

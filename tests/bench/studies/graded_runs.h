@@ -26,7 +26,7 @@ struct GradedDesign {
   std::string name;
   SensorSpec camera{}, twin{};
   int phases = 12;  ///< as in the demonstration; 96 presentations of 20 triangles at each contrast
-  int frames = 4;
+  std::vector<int> frames{4};
   int microscan = 1;
   std::vector<double> delta_t_k{16.9, 1.93, 0.23};
 };

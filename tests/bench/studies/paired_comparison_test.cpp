@@ -5,7 +5,7 @@ namespace todbench::testing {
 namespace {
 
 const GradedDesign& short_pairs() {
-  static const GradedDesign design{.name = "short pairs", .phases = 3, .frames = 2, .delta_t_k = {1.93}};
+  static const GradedDesign design{.name = "short pairs", .phases = 3, .frames = {2}, .delta_t_k = {1.93}};
   return design;
 }
 
@@ -38,7 +38,7 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
 /// Of the plan's seed and of another: the twin knows the phases of the camera, and nothing of its noise.
 TEST(PairedComparison, SharesNoNoiseWithASimulatedCameraOfTheSameSeed) {
   GradedDesign design = short_pairs();
-  design.frames = 1;
+  design.frames = {1};
   design.phases = 2;
   design.delta_t_k = {0.23};
   const Plan plan = plan_of(design, 913);

@@ -40,7 +40,7 @@ inline std::vector<BudgetRow> rows_of_a_laboratory() {
 }
 
 inline GradedDesign laboratory_design() {
-  return {.name = "laboratory", .phases = 3, .frames = 2};
+  return {.name = "laboratory", .phases = 3, .frames = {2}};
 }
 
 /// A quarter of the demonstration's presentations: a laboratory takes three seconds.

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <complex>
 #include <numbers>
+#include <vector>
 
 #include "hvs/shape/gauss_legendre.h"
 #include "tod/plate/test_pattern.h"
@@ -113,36 +115,97 @@ TEST(PolygonImage, OfASquareBlurredByAGaussianIsAProductOfErrorFunctions) {
   }
 }
 
+/// Triangles of which half a spectrum is kept, each way up, and one beside the origin, of which all is.
+std::vector<Polygon> shapes(double size) {
+  std::vector<Polygon> out{triangle(size, Apex::right, {0.1, 0.2})};
+  for (const Apex apex : all_apexes) out.push_back(triangle(size, apex));
+  return out;
+}
+
 TEST(PolygonImage, FineImageHoldsEveryPhaseThatSampleComputesSingly) {
   const FilterTable filter({.period = 16, .band = 60}, gaussian(0.35));
-  const PolygonImage image(triangle(1.6, Apex::right, {0.1, 0.2}), filter);
+  for (const Polygon& shape : shapes(1.6)) {
+    const PolygonImage image(shape, filter);
 
-  const cv::Mat1d fine = image.fine_image(16);
-  const cv::Mat1d values = image.sample({-3 + 5 / 16.0, -3 + 11 / 16.0}, 1, {7, 7});
+    const cv::Mat1d fine = image.fine_image(16);
+    const cv::Mat1d values = image.sample({-3 + 5 / 16.0, -2 + 11 / 16.0}, 1, {7, 5});
 
-  for (int j = 0; j < 7; ++j) {
-    for (int i = 0; i < 7; ++i) {
-      const int y = (((-3 + j) * 16 + 11) + 256) % 256;
-      const int x = (((-3 + i) * 16 + 5) + 256) % 256;
-      EXPECT_NEAR(values(j, i), fine(y, x), 1e-14);
+    for (int j = 0; j < 5; ++j) {
+      for (int i = 0; i < 7; ++i) {
+        const int y = (((-2 + j) * 16 + 11) + 256) % 256;
+        const int x = (((-3 + i) * 16 + 5) + 256) % 256;
+        EXPECT_NEAR(values(j, i), fine(y, x), 1e-14);
+      }
     }
   }
 }
 
 TEST(PolygonImage, FineImageNearTheOriginIsThatOfTheWholePeriod) {
   const FilterTable filter({.period = 20, .band = 75}, gaussian(0.35));
-  const PolygonImage image(triangle(2.6, Apex::right, {0.1, 0.2}), filter);
-
-  const cv::Mat1d whole = image.fine_image(16);
-  for (const int reach : {3, 9, 10, 40}) {
-    const cv::Mat1d near = image.fine_image(16, reach);
-    const int rows = std::min(160, 16 * reach);
-    for (int y = -rows; y < rows; ++y) {
-      const int row = (y + 320) % 320;
-      // Another plan of the transform may round otherwise.
-      for (int x = 0; x < 320; ++x) EXPECT_NEAR(near(row, x), whole(row, x), 1e-15) << reach;
+  for (const Polygon& shape : shapes(2.6)) {
+    const PolygonImage image(shape, filter);
+    const cv::Mat1d whole = image.fine_image(16);
+    for (const int reach : {3, 9, 10, 40}) {
+      const cv::Mat1d near = image.fine_image(16, reach);
+      const int points = std::min(160, 16 * reach);
+      for (int y = -points; y < points; ++y) {
+        const int row = (y + 320) % 320;
+        for (int x = -points; x < points; ++x) {
+          const int column = (x + 320) % 320;
+          ASSERT_EQ(near(row, column), whole(row, column)) << reach;
+        }
+      }
     }
   }
+}
+
+TEST(PolygonImage, OfHalfASpectrumIsThatOfTheWholeOne) {
+  const FrequencyLattice lattice{.period = 24, .band = 90};
+  const FilterTable even(lattice, gaussian(0.25));
+  // So little that no sum sees it, and no longer equal at w and -w.
+  const FilterTable uneven(lattice, [blur = gaussian(0.25)](double u, double w) {
+    return blur(u, w) + std::complex<double>(0, std::copysign(1e-200, w));
+  });
+  ASSERT_TRUE(even.turns_alike());
+  ASSERT_FALSE(uneven.even());
+  for (const Polygon& shape : shapes(2.3)) {
+    const PolygonImage image(shape, even), expected(shape, uneven);
+    for (const double step : {1.0, 0.5, 24.0 / 23}) {
+      const cv::Point2d first(-4.7, -3.2);
+      EXPECT_LT(cv::norm(image.sample(first, step, {9, 30}), expected.sample(first, step, {9, 30}), cv::NORM_INF),
+                5e-15);
+    }
+    for (const int per_unit : {8, 11}) {
+      EXPECT_LT(cv::norm(image.fine_image(per_unit), expected.fine_image(per_unit), cv::NORM_INF), 5e-15);
+    }
+  }
+}
+
+TEST(PolygonImage, TurnedIsThatOfTheTurnedShape) {
+  const FilterTable filter({.period = 16, .band = 60}, gaussian(0.3));
+  Polygon shape{{-1.2, -0.4}, {0.9, -0.7}, {0.3, 1.1}};  // no mirror image of itself
+  const PolygonImage image(shape, filter);
+  for (int quarters = 0; quarters < 5; ++quarters) {
+    const PolygonImage expected(shape, filter);
+
+    EXPECT_LT(cv::norm(image.turned(quarters).sample({-3.1, -2.4}, 1, {7, 5}), expected.sample({-3.1, -2.4}, 1, {7, 5}),
+                       cv::NORM_INF),
+              5e-15);
+    EXPECT_LT(cv::norm(image.turned(quarters).fine_image(8), expected.fine_image(8), cv::NORM_INF), 5e-15);
+    for (auto& vertex : shape) vertex = {-vertex.y, vertex.x};
+  }
+}
+
+TEST(PolygonImage, OfAFilterThatDiffersInXAndYIsNotTurned) {
+  const TransferFunction oblong = [](double u, double w) { return std::exp(-8 * u * u - 3 * w * w); };
+  const FilterTable filter({.period = 16, .band = 60}, oblong);
+  EXPECT_TRUE(filter.even());
+  EXPECT_FALSE(filter.turns_alike());
+  // A half of the upright one is kept, all of the one that lies; swapping x and y everywhere gives the same numbers.
+  const FilterTable swapped({.period = 16, .band = 60}, [&](double u, double w) { return oblong(w, u); });
+  const cv::Mat1d upright = PolygonImage(triangle(2, Apex::down), filter).sample({-3.2, -2.9}, 1, {7, 6});
+  const cv::Mat1d lying = PolygonImage(triangle(2, Apex::right), swapped).sample({-2.9, -3.2}, 1, {6, 7});
+  EXPECT_LT(cv::norm(upright, lying.t(), cv::NORM_INF), 5e-15);
 }
 
 TEST(PolygonImage, ConservesTheAreaOfTheShape) {

@@ -126,6 +126,25 @@ TEST(Turbulence, AgreesWithTheReference) {
   }
 }
 
+// Two numbers are in use for the variance of the dance in (D / r0)^(5/3) (lambda / D)^2: 0.182, the tilt of a wavefront
+// over the aperture (Noll 1976: 4 / pi^2 of 1.0299 - 0.582 rad^2), which tilt_sd_mrad() states; and 3.44 / (2 pi^2) =
+// 0.1743, what Fried's short exposure in the near field leaves out of the long one.
+TEST(Turbulence, OfShortFramesAndTheirDanceIsThatOfTheLongExposure) {
+  const TurbulentPath path{.cn2_m_minus_2_3 = 2e-13, .path_m = 1000, .wavelength_um = 10};
+  constexpr double aperture_m = 0.1, noll = 0.182, pi = std::numbers::pi;
+  const double tilt_mrad = tilt_sd_mrad(path, aperture_m);
+  const double left_out = 3.44 / (2 * pi * pi);
+
+  EXPECT_NEAR(4 / (pi * pi) * (1.0299 - 0.582), noll, 5e-4);
+  EXPECT_NEAR(std::sqrt(left_out / noll), 0.9786, 1e-4) << "2 % of the standard deviation";
+  for (const double f : {0.1, 1.0, 5.0, 9.9}) {
+    const auto still = short_exposure_mtf(path, aperture_m, PropagationField::near_field, f);
+    ASSERT_TRUE(still);
+    const double dance = std::exp(-2 * pi * pi * tilt_mrad * tilt_mrad * left_out / noll * f * f);
+    EXPECT_NEAR(*still * dance, long_exposure_mtf(path, f), 1e-12) << f;
+  }
+}
+
 /// A run as MODTRAN writes it: a grey path of `extinction_per_km` with one opaque line.
 std::string tape7(double range_km, double extinction_per_km) {
   std::string text =

@@ -239,6 +239,20 @@ TEST(EffectPlanner, SimulatesTurbulenceOnlyWhereItMatters) {
   EXPECT_EQ(decision_of(*simulated, Effect::turbulence).decision, Decision::simulate);
 }
 
+TEST(EffectPlanner, SkipsDistortionThatMovesNothingFar) {
+  SensorSpec little = test::sc2000(), much = little;
+  little.distortion_percent = 0.1;  // 0.2 pixels at the corner
+  much.distortion_percent = -1;
+
+  const auto skipped = plan_of(little, {1.93}), simulated = plan_of(much, {1.93});
+
+  ASSERT_TRUE(skipped && simulated);
+  EXPECT_EQ(decision_of(*skipped, Effect::distortion).decision, Decision::skip);
+  EXPECT_NEAR(decision_of(*skipped, Effect::distortion).predicted_change_percent.value(), 0.3, 0.01);
+  EXPECT_EQ(decision_of(*simulated, Effect::distortion).decision, Decision::simulate);
+  EXPECT_FALSE(decision_of(*simulated, Effect::distortion).predicted_change_percent);
+}
+
 /// What skipping the effect truly changes, in percent of the acuity, beside the bound.
 void expect_bounded(Effect effect, const SensorSpec& sensor, SceneMotion motion, double delta_t_k) {
   TemplateObserver observer({}, triangle_alternatives());

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numeric>
 
+#include "acquisition/core/rng.h"
 #include "hvs/observer/identification_bank.h"
 #include "hvs/shape/step_image.h"
 #include "sim_devices/sensor/image_chain.h"
@@ -58,10 +60,10 @@ TEST(IdentificationBank, ScoresTrianglesAsTheTemplateObserverDoes) {
   for (std::size_t t = 0; t < found.size(); ++t) ASSERT_NEAR(found[t], expected[t], 1e-4) << t;
 }
 
-FieldScene triangle_scene(Apex apex, double size_m) {
+FieldScene triangle_scene(Apex apex, double size_m, double temperature_k = 300.3) {
   FieldScene scene;
   scene.background_k = 300;
-  scene.regions = {{"triangle", triangle(size_m, apex), 300.3, 1, true}};
+  scene.regions = {{"triangle", triangle(size_m, apex), temperature_k, 1, true}};
   return scene;
 }
 
@@ -114,6 +116,103 @@ TEST(Identification, OfTwoMirrorImagesIsTheClosedFormOfTwoAlternatives) {
   EXPECT_LT(found->front().standard_error(), 0.01);
   const auto& answers = found->front().answers;
   EXPECT_EQ(answers[0][0] + answers[0][1], 4000);
+}
+
+/// The two triangles behind the camera, without their mean; of norm 1 or as they are. One row.
+cv::Mat1f seen_triangle(const IdentificationTask& task, double size_pitch, Apex apex, cv::Point2d at, int side) {
+  cv::Mat1f seen;
+  ImageChain(task.sensor, task.plan, task.accuracy)
+      .image(triangle(size_pitch, apex))
+      .sample(cv::Point2d(0.5 - side / 2.0, 0.5 - side / 2.0) - at, 1, {side, side})
+      .convertTo(seen, CV_32F);
+  seen -= cv::mean(seen)[0];
+  return seen.reshape(1, 1);
+}
+
+struct PairReference {
+  double proportion = 0, standard_error = 0;
+};
+
+/// Of two triangles that the observer knows behind the camera. At a known place in closed form; where it searches, by
+/// every template at every place and by noise of its own.
+PairReference pair_reference(const IdentificationTask& task, double size_pitch, double contrast_k, int draws) {
+  const double reach = std::max(std::abs(triangle(size_pitch, Apex::up)[0].x), 0.7 * size_pitch);
+  const int side = 2 * static_cast<int>(std::ceil(1.1 * reach + task.observer.window_margin_pitch));
+  const int steps = static_cast<int>(std::lround(1 / task.observer.search_step_samples));
+  const int search = static_cast<int>(std::lround(task.observer.search_range_samples * steps));
+  const double noise_k = std::sqrt(std::pow(task.sensor.netd_k, 2) + std::pow(task.sensor.kelvin_per_count, 2) / 12 +
+                                   std::pow(task.observer.internal_noise * contrast_k, 2));
+  std::array<cv::Mat1f, 2> templates;
+  const std::array apexes{Apex::up, Apex::down};
+  for (std::size_t a = 0; a < 2; ++a) {
+    for (int place = 0; place < (2 * search + 1) * (2 * search + 1); ++place) {
+      const cv::Point2d at(place % (2 * search + 1) - search, place / (2 * search + 1) - search);
+      cv::Mat1f row = seen_triangle(task, size_pitch, apexes[a], at / steps, side);
+      row /= cv::norm(row);
+      templates[a].push_back(row);
+    }
+  }
+  cv::Mat1f noise(draws, side * side);
+  const RandomStream numbers(7, "pair");
+  numbers.fill_normal({noise.ptr<float>(), noise.total()});
+  const std::array<cv::Mat1f, 2> noise_scores{noise_k * noise * templates[0].t(), noise_k * noise * templates[1].t()};
+  PairReference out;
+  std::vector<double> shares(static_cast<std::size_t>(draws));
+  for (int phase = 0; phase < 16; ++phase) {
+    const cv::Point2d at((phase % 4 + 0.5) / 4 - 0.5, (phase / 4 + 0.5) / 4 - 0.5);
+    for (std::size_t a = 0; a < 2; ++a) {
+      const cv::Mat1f signal = contrast_k * seen_triangle(task, size_pitch, apexes[a], at, side);
+      const cv::Mat1f own = signal * templates[a].t(), other = signal * templates[1 - a].t();
+      if (search == 0) {
+        const double d = (own(0) - other(0)) / (noise_k * cv::norm(templates[0] - templates[1]));
+        out.proportion += 0.5 * std::erfc(-d / std::sqrt(2.0)) / 32;
+        continue;
+      }
+      for (int draw = phase; draw < draws; draw += 16) {
+        double best = 0, best_other = 0;
+        cv::minMaxLoc(own + noise_scores[a].row(draw), nullptr, &best);
+        cv::minMaxLoc(other + noise_scores[1 - a].row(draw), nullptr, &best_other);
+        shares[static_cast<std::size_t>(draw)] += best > best_other ? 0.5 : 0;
+      }
+    }
+  }
+  if (search == 0) return out;
+  for (const double share : shares) out.proportion += share / draws;
+  out.standard_error = std::sqrt(out.proportion * (1 - out.proportion) / draws);
+  return out;
+}
+
+// From 0.6 of a pitch, where two triangles are all but one blob, at a known place and with the search of the observer:
+// a search that knows the templates at some places only prefers the wrong triangle there.
+TEST(Identification, OfTwoMirrorImagesBehindAKnownCameraIsWhatEveryPlaceOfTheSearchSays) {
+  struct Case {
+    double size_pitch, temperature_k, search;
+  };
+  for (const Case& c : {Case{0.6, 309, 0}, Case{1.1, 301, 0}, Case{2.2, 300.3, 0}, Case{0.6, 309, 1}, Case{0.8, 309, 1},
+                        Case{1.2, 309, 1}}) {
+    SCOPED_TRACE(c.size_pitch);
+    SCOPED_TRACE(c.search);
+    IdentificationTask task = two_mirror_images();
+    task.knowledge = TemplateKnowledge::behind_camera;
+    task.observer.search_range_samples = c.search;
+    task.targets = {{"up", {triangle_scene(Apex::up, 1, c.temperature_k)}},
+                    {"down", {triangle_scene(Apex::down, 1, c.temperature_k)}}};
+    task.ranges = {{1e3 / (c.size_pitch * task.sensor.ifov_mrad()), 1}};
+    task.decisions = 8000;
+    const RadianceScale scale{{task.sensor.wavelength_min_um, task.sensor.wavelength_max_um},
+                              task.sensor.scene_temperature_k};
+    const auto signature = target_signature(task.targets[0].aspects[0], scale);
+    ASSERT_TRUE(signature);
+    const PairReference expected = pair_reference(task, c.size_pitch, signature->dt_rss_k(), 8000);
+
+    const auto found = identify(task);
+
+    ASSERT_TRUE(found) << found.error().message;
+    // Four standard errors of both, and 0.002 for the band of the templates and for periods.
+    EXPECT_NEAR(found->front().proportion(), expected.proportion,
+                4 * std::hypot(found->front().standard_error(), expected.standard_error) + 0.002);
+    EXPECT_GT(expected.proportion, 0.5);
+  }
 }
 
 TEST(Identification, FallsWithRangeToChance) {

@@ -30,6 +30,8 @@ SensorSpec small(int microscan = 1) {
   spec.turbulence_path_m = 3000;
   spec.exposure_ms = 6;
   spec.row_time_us = 120;
+  spec.distortion_percent = -2;
+  spec.distortion_r4_percent = 0.5;
   return spec;
 }
 
@@ -124,6 +126,66 @@ INSTANTIATE_TEST_SUITE_P(Effects, EffectWithANeutralValue, testing::ValuesIn(eff
                            return row.neutralise != nullptr;
                          })),
                          [](const auto& effect) { return std::string(to_string(effect.param)); });
+
+/// Sum of a picture and the place of its mean.
+std::array<double, 3> moments(const cv::Mat1f& picture) {
+  double sum = 0, x = 0, y = 0;
+  for (int row = 0; row < picture.rows; ++row) {
+    for (int column = 0; column < picture.cols; ++column) {
+      const auto value = static_cast<double>(picture(row, column));
+      sum += value, x += value * column, y += value * row;
+    }
+  }
+  return {sum, x / sum, y / sum};
+}
+
+// A second way: points spread over the triangle, each moved by the lens and counted by the area that it becomes.
+TEST(Effects, DistortionShowsATriangleWhereAndAsLargeAsTheLensDoes) {
+  for (const auto& [k1, k2] : {std::pair(6.0, 0.0), std::pair(-6.0, 2.0)}) {
+    SensorSpec straight = test::sc2000();
+    constexpr int fine = 4;  // samples a pitch: a straight side along the rows aliases at one a pitch
+    straight.microscan = fine;
+    SensorSpec bent = straight;
+    bent.distortion_percent = k1, bent.distortion_r4_percent = k2;
+    PlateScene before = scene(1);
+    const double mm_per_px = before.distance_m * straight.ifov_mrad();
+    before.plate.triangles = {{.name = "far out",
+                               .position_mm = {-100 * mm_per_px, 60 * mm_per_px},
+                               .size_mm = 20 * mm_per_px,
+                               .apex = Apex::up}};
+    before.motion = {};
+    before.centre_px = {0, 0};
+    const auto seen = [&](const SensorSpec& spec) {
+      return moments(*SensorModel(spec, full_plan(spec, {}, {}), Accuracy::normal(), 1).unit_signal(before));
+    };
+    const auto place = [&](cv::Point2d p) {
+      const double s = p.dot(p) / 40000;  // half the diagonal of 320 x 240 is 200
+      return p * (1 + 0.01 * s * (k1 + s * k2));
+    };
+
+    const auto from = seen(straight), to = seen(bent);
+
+    const Polygon outline = triangle(20, Apex::up, {-100, 60});
+    double area = 0;
+    cv::Point2d middle(0, 0);
+    constexpr int steps = 300;
+    for (int i = 0; i < steps; ++i) {
+      for (int j = 0; j < steps - i; ++j) {
+        const double a = (i + 1.0 / 3) / steps, b = (j + 1.0 / 3) / steps, h = 1e-4;
+        const cv::Point2d p = outline[0] + a * (outline[1] - outline[0]) + b * (outline[2] - outline[0]);
+        const cv::Point2d dx = (place(p + cv::Point2d(h, 0)) - place(p - cv::Point2d(h, 0))) / (2 * h),
+                          dy = (place(p + cv::Point2d(0, h)) - place(p - cv::Point2d(0, h))) / (2 * h);
+        const double part = dx.cross(dy);
+        area += part, middle += part * place(p);
+      }
+    }
+    middle /= area;
+    // Points stand for half of the little triangles: the same share of all, but for 1 / steps of an edge.
+    EXPECT_NEAR(to[0] / from[0], area / (0.5 * steps * (steps + 1)), 1e-3) << k1;
+    EXPECT_NEAR((to[1] - from[1]) / fine, middle.x + 100, 0.01) << k1;
+    EXPECT_NEAR((to[2] - from[2]) / fine, middle.y - 60, 0.01) << k1;
+  }
+}
 
 TEST(Effects, EveryOneChangesThePicture) {
   const SensorSpec spec = small(2);

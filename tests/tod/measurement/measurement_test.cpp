@@ -122,8 +122,12 @@ TEST(Measurement, GradedAnswersStandBesideTheSameAnswers) {
   const auto one = run(bench, observer, graded);
   graded.frames_per_presentation = 4;
   const auto four = run(bench, observer, graded);
+  graded.frames_at_contrast[1.93] = 2;
+  const auto two = run(bench, observer, graded);
 
-  ASSERT_TRUE(binary && one && four);
+  ASSERT_TRUE(binary && one && four && two);
+  EXPECT_EQ(two->frames_used, binary->frames_used + two->presentations.size());
+  EXPECT_EQ(two->trials.front().frames, 2);
   EXPECT_EQ(one->frames_used, binary->frames_used);
   EXPECT_EQ(four->frames_used, binary->frames_used + 3 * four->presentations.size());
   ASSERT_EQ(one->trials.size(), binary->trials.size());

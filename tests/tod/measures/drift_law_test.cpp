@@ -15,7 +15,8 @@ namespace {
 using testing::DriftCase;
 
 TEST(DriftLaws, HoldTheDriftThatIsThere) {
-  const DriftCase cases[] = {{}, {.time_constant_s = 6.0}, {.level_k = -0.3, .pattern_k = 0, .pixel_noise_k = 0.03}};
+  const DriftCase cases[] = {
+      {}, {.time_constant_s = 6.0}, {.level_k = -0.3, .pattern_k = 0, .pixel_noise_k = 0.03}, {.frame_noise_k = 0}};
   constexpr int seeds = 30;
   for (const DriftCase& drift : cases) {
     const auto found = testing::drift_coverage(drift, seeds);
