@@ -52,8 +52,9 @@ if arguments.recording:
     if frames[0].camera["scale"]["kind"] != "uncalibrated":
         unit, values = ("K", lambda frame: frame.kelvin())
     print(f"mean {np.mean(values(frames[0])):.3f} {unit}")
-    # The median of the differences, because between two of them the target may have moved.
-    noise = [np.median(np.abs(values(b) - values(a))) / 0.6745 / np.sqrt(2) for a, b in zip(frames, frames[1:])]
+    # The median over pairs, because between two of them the target may have moved; within one the mean size of the
+    # differences, sd 2 / sqrt(pi) of normal noise, because a median of whole counts would be a whole count.
+    noise = [np.mean(np.abs(values(b) - values(a))) * np.sqrt(np.pi) / 2 for a, b in zip(frames, frames[1:])]
     if noise:
         print(f"temporal noise {np.median(noise):.4f} {unit}")
 
