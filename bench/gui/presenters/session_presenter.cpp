@@ -165,14 +165,15 @@ void SessionPresenter::open(const std::filesystem::path& folder) {
   in_background<OpenedSession>([folder] { return read_opened_session(folder); },
                                [this](Result<OpenedSession> session) {
                                  const bool last = --opening_ == 0;
-                                 if (session) {
+                                 const bool read = session.has_value();
+                                 if (read) {
                                    current_ = *std::move(session);
                                    compared_.reset();
                                    emit opened();
                                  }
                                  if (!last || !compare_when_opened_) return;
                                  const auto other = *std::exchange(compare_when_opened_, std::nullopt);
-                                 if (session) compare(other);
+                                 if (read) compare(other);
                                });
 }
 
