@@ -83,7 +83,7 @@ int draws_of_twin_shape(std::optional<double> se_ln_threshold, const Accuracy& a
 }
 
 TwinShapesOutcome fit_twin_shapes(TodCurve& curve, std::span<const Trial> trials, const ExperimentInputs& inputs,
-                                  const FitOptions& fit, DirectEstimateOptions options, const TodCurve* known) {
+                                  const FitOptions& fit, const DirectEstimateOptions& options, const TodCurve* known) {
   TemplateObserver observer(inputs.observer, triangle_alternatives());
   TwinShapesOutcome outcome;
   for (TodPoint& point : curve.points) {

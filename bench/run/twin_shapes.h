@@ -55,7 +55,7 @@ struct TwinShapesOutcome {
 /// for the same scenes; they are taken from it where it has them.
 [[nodiscard]] TwinShapesOutcome fit_twin_shapes(TodCurve& curve, std::span<const Trial> trials,
                                                 const ExperimentInputs& inputs, const FitOptions& fit,
-                                                DirectEstimateOptions options, const TodCurve* known = nullptr);
+                                                const DirectEstimateOptions& options, const TodCurve* known = nullptr);
 
 /// The points of graded answers that have no function of the twin are fitted anew from the right and wrong answers of
 /// the same trials: a Weibull function is off by more than the interval of graded ones. TodPoint::answers says so.
