@@ -6,16 +6,12 @@
 #include "acquisition/core/distributions.h"
 #include "bench/plan/bench_air.h"
 #include "bench/plan/joined_uncertainty.h"
+#include "tod/psychometric/contrast_slope.h"
 
 namespace todbench {
 namespace {
 
 constexpr double upper_tail = 0.025;
-
-double contrast_k(const TodPoint& point) {
-  const double seen = std::abs(point.delta_t_k);
-  return seen > 0 && std::isfinite(seen) ? seen : std::abs(point.set_delta_t_k);
-}
 
 /// Smallest interval that contains both; an open side stays open.
 Interval hull_of(const Interval& a, const Interval& b) {
@@ -23,39 +19,6 @@ Interval hull_of(const Interval& a, const Interval& b) {
   if (a.low && b.low) both.low = std::min(*a.low, *b.low);
   if (a.high && b.high) both.high = std::max(*a.high, *b.high);
   return both;
-}
-
-/// A point of a curve as its form has it: the square of the size over the inverse contrast.
-struct SlopePoint {
-  std::size_t index;
-  double z;       ///< 1 / contrast
-  double square;  ///< S75^2
-};
-
-/// d square / d z at p of the parabola through p, a and b.
-double parabola_slope(const SlopePoint& p, const SlopePoint& a, const SlopePoint& b) {
-  const double to_a = (a.square - p.square) / (a.z - p.z), to_b = (b.square - p.square) / (b.z - p.z);
-  return (to_a * (b.z - p.z) - to_b * (a.z - p.z)) / (b.z - a.z);
-}
-
-/// d ln acuity / d ln contrast = z / (2 S^2) dS^2/dz.
-double in_logarithms(const SlopePoint& p, double slope) {
-  return std::abs(0.5 * p.z * slope / p.square);
-}
-
-double slope_at(const std::vector<SlopePoint>& points, std::size_t i) {
-  const std::size_t last = points.size() - 1;
-  if (last == 0) return 1;
-  const SlopePoint& p = points[i];
-  if (last == 1) {
-    // Two points have one term: that which says more, 1 / C or 1 / C^2.
-    const SlopePoint& other = points[1 - i];
-    const double rise = p.square - other.square;
-    return std::max(in_logarithms(p, rise / (p.z - other.z)),
-                    in_logarithms(p, 2 * p.z * rise / (p.z * p.z - other.z * other.z)));
-  }
-  if (i > 0 && i < last) return in_logarithms(p, parabola_slope(p, points[i - 1], points[i + 1]));
-  return in_logarithms(p, parabola_slope(p, points[i == 0 ? 1 : last - 1], points[i == 0 ? 2 : last - 2]));
 }
 
 /// Mean of what the camera saw less what the air leaves of what the target said, at a set contrast.
@@ -118,6 +81,7 @@ std::vector<BudgetRow> rows_at(const UncertaintyPlan& plan, const TodPoint& poin
   if (point.delta_t_se_k > 0 && std::isfinite(point.delta_t_se_k)) {
     rows.push_back({.name = std::string(seen_contrast_row),
                     .value = point.delta_t_se_k,
+                    .degrees_of_freedom = freedom_of_contrast(point),
                     .unit = "K",
                     .source = "standard error over the measurements of it",
                     .enters = BudgetInput::contrast});
@@ -158,7 +122,9 @@ BudgetRow trials_row(double half, const PsychometricFit& fit) {
           .enters = BudgetInput::acuity};
 }
 
+/// The scatter of the contrast is in a ratio to the twin by the ratio's own interval.
 bool cancels_in(const BudgetRow& row, BudgetCommon common) {
+  if (common == BudgetCommon::twin && row.name == seen_contrast_row) return true;
   return std::find(row.common.begin(), row.common.end(), common) != row.common.end();
 }
 
@@ -289,26 +255,6 @@ Interval deciding_interval(const TodPoint& point) {
   return point.lapse_warning && point.free_lapse_fit ? hull_of(interval, usable(*point.free_lapse_fit)) : interval;
 }
 
-std::vector<double> contrast_slopes(const TodCurve& curve) {
-  std::vector<double> slopes(curve.points.size(), 1.0);
-  for (const bool positive : {false, true}) {
-    std::vector<SlopePoint> points;
-    for (std::size_t i = 0; i < curve.points.size(); ++i) {
-      const TodPoint& point = curve.points[i];
-      if ((point.set_delta_t_k > 0) != positive || !point.fit.threshold || !(*point.fit.threshold > 0)) continue;
-      if (!(contrast_k(point) > 0)) continue;
-      points.push_back({i, 1 / contrast_k(point), *point.fit.threshold * *point.fit.threshold});
-    }
-    std::sort(points.begin(), points.end(), [](const SlopePoint& a, const SlopePoint& b) { return a.z < b.z; });
-    // Contrasts that the camera saw as the same one have no slope between them.
-    points.erase(std::unique(points.begin(), points.end(),
-                             [](const SlopePoint& a, const SlopePoint& b) { return std::log(b.z / a.z) < 0.005; }),
-                 points.end());
-    for (std::size_t i = 0; i < points.size(); ++i) slopes[points[i].index] = slope_at(points, i);
-  }
-  return slopes;
-}
-
 Result<std::optional<CurveUncertainty>> curve_uncertainty(const Plan& plan, const TodCurve& curve,
                                                           std::span<const Presentation> presentations,
                                                           const std::optional<Comparison>& comparison) {
@@ -336,7 +282,7 @@ Result<std::optional<CurveUncertainty>> curve_uncertainty(const Plan& plan, cons
     const std::vector<BudgetRow> rows = rows_at(plan.uncertainty, point,
                                                 {.distance_m = distance_m,
                                                  .size_m = size_mrad * 1e-3 * distance_m,
-                                                 .contrast_k = contrast_k(point),
+                                                 .contrast_k = contrast_seen_k(point),
                                                  .slope = slopes[i]},
                                                 deviation_k, air);
     if (auto expanded = expand(found, point, rows, plan.uncertainty.rows.size(), plan.seed); !expanded)

@@ -63,12 +63,6 @@ struct CurveUncertainty {
 /// lower bound makes any threshold number meaningless, and a ridge has no point: no interval then.
 [[nodiscard]] Interval deciding_interval(const TodPoint& point);
 
-/// Slope of ln acuity over ln |effective contrast| at each point, its size: of S75^2 = A + B / C + D / C^2 through the
-/// point and its neighbours of the same sign, the constant of resolution and what noise adds to it; of two points the
-/// larger of A + B / C and A + D / C^2. 1, the slope of an acuity in proportion to the contrast, where no neighbour has
-/// a threshold.
-[[nodiscard]] std::vector<double> contrast_slopes(const TodCurve& curve);
-
 /// Nothing where the plan states no budget. The seed makes the draws of the Monte Carlo check. Errors: combined().
 [[nodiscard]] Result<std::optional<CurveUncertainty>> curve_uncertainty(const Plan& plan, const TodCurve& curve,
                                                                         std::span<const Presentation> presentations,

@@ -242,7 +242,9 @@ TwinResults run_twin(const Plan& plan, const ExperimentInputs& inputs, const Tod
   results.run = run_record(twin->result, twin->wall_s);
   results.ended_by = twin->result.ended_by;
   results.curve = std::move(twin->curve);
-  auto comparison = compare(measured, *results.curve, comparison_options(plan));
+  ComparisonOptions options = comparison_options(plan);
+  options.b_shown_contrasts_of_a = true;
+  auto comparison = compare(measured, *results.curve, options);
   if (comparison) {
     results.comparison = std::move(*comparison);
   } else if (!results.ended_by) {

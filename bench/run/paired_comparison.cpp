@@ -20,8 +20,8 @@ bool unfit_for_pairs(const TodPoint& point) {
   return point.adequacy && !point.adequacy->adequate();
 }
 
-Result<RatioOfPairs> ratio_at(const TodPoint& point, std::span<const Trial> trials, double margin_percent,
-                              const ExperimentInputs& inputs, TemplateObserver& observer,
+Result<RatioOfPairs> ratio_at(const TodPoint& point, const ContrastScatter& contrast, std::span<const Trial> trials,
+                              double margin_percent, const ExperimentInputs& inputs, TemplateObserver& observer,
                               const PairedTwinOptions& options) {
   if (!point.fit.twin_shape)
     return fail(ErrorCode::invalid_input, "the camera's answers are not fitted with the function of the twin");
@@ -33,7 +33,7 @@ Result<RatioOfPairs> ratio_at(const TodPoint& point, std::span<const Trial> tria
   for (std::size_t i = 0; i < camera.size(); ++i)
     pairs.push_back({camera[i], (*twin)[i].probability_correct, (*twin)[i].variance});
   return paired_ratio(pairs, point.fit.twin_shape->table, point.fit.twin_shape->slope_fitted, options.draws,
-                      margin_percent);
+                      margin_percent, contrast);
 }
 
 }  // namespace
@@ -59,6 +59,7 @@ PairedOutcome add_paired_ratios(Comparison& comparison, const PairedCamera& came
                                 const PairedTwinOptions& options) {
   TemplateObserver observer(inputs.observer, triangle_alternatives());
   PairedOutcome outcome;
+  const std::vector<ContrastScatter> contrasts = contrast_scatter(camera.curve);
   for (std::size_t i = 0; i < comparison.points.size(); ++i) {
     const ComparisonPoint& compared = comparison.points[i];
     const TodPoint* point = point_at(camera.curve, compared.set_delta_t_k);
@@ -66,7 +67,8 @@ PairedOutcome add_paired_ratios(Comparison& comparison, const PairedCamera& came
     std::vector<Trial> own;
     std::ranges::copy_if(camera.trials, std::back_inserter(own),
                          [&](const Trial& trial) { return trial.set_delta_t_k == point->set_delta_t_k; });
-    auto paired = ratio_at(*point, own, compared.margin_percent, inputs, observer, options);
+    auto paired = ratio_at(*point, contrasts[static_cast<std::size_t>(point - camera.curve.points.data())], own,
+                           compared.margin_percent, inputs, observer, options);
     if (!paired) {
       if (paired.error().code == ErrorCode::interrupted) {
         outcome.ended_by = paired.error();

@@ -129,6 +129,7 @@ Json point_record(const TodPoint& point) {
   json["set_delta_t_k"] = json_number(point.set_delta_t_k);
   json["delta_t_k"] = json_number(point.delta_t_k);
   json["delta_t_se_k"] = json_number(point.delta_t_se_k);
+  json["delta_t_measurements"] = point.delta_t_measurements;
   json["fit"] = fit_record(point.fit);
   json["estimator"] = to_string(estimator_of(point.fit));
   json["estimator_reason"] = point.estimator_reason ? Json(to_string(*point.estimator_reason)) : Json(nullptr);
@@ -151,6 +152,8 @@ TodPoint read_point(const JsonReader& reader) {
   point.set_delta_t_k = reader.at("set_delta_t_k").number();
   point.delta_t_k = reader.at("delta_t_k").number();
   point.delta_t_se_k = reader.at("delta_t_se_k").number();
+  if (const JsonReader count = reader.at_if_there("delta_t_measurements"); !count.is_null())
+    point.delta_t_measurements = static_cast<int>(count.whole());
   point.fit = read_fit(reader.at("fit"));
   if (const JsonReader reason = reader.at_if_there("estimator_reason"); !reason.is_null())
     point.estimator_reason = reason.named(all_estimator_reasons);

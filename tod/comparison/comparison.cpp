@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "acquisition/core/distributions.h"
+#include "tod/psychometric/contrast_slope.h"
 #include "tod/psychometric/threshold_pair.h"
 
 namespace todbench {
@@ -42,22 +43,27 @@ std::optional<double> ln_threshold(const PsychometricFit& fit) {
 }
 
 // Interval of exp(tb - ta) from the intervals of both, asymmetric on the log scale (method of variance estimates
-// recovery, Zou and Donner 2008). A side needs the two sides it is made of.
-Interval ratio_interval(double ta, const Interval& a, double tb, const Interval& b) {
+// recovery, Zou and Donner 2008), and a half-width that belongs to either side. A side needs the two sides it is made
+// of.
+Interval ratio_interval(double ta, const Interval& a, double tb, const Interval& b, double half) {
   Interval ratio;
   const double d = tb - ta;
-  if (b.low && a.high) ratio.low = std::exp(d - std::hypot(tb - std::log(*b.low), std::log(*a.high) - ta));
-  if (b.high && a.low) ratio.high = std::exp(d + std::hypot(std::log(*b.high) - tb, ta - std::log(*a.low)));
+  if (b.low && a.high) ratio.low = std::exp(d - std::hypot(tb - std::log(*b.low), std::log(*a.high) - ta, half));
+  if (b.high && a.low) ratio.high = std::exp(d + std::hypot(std::log(*b.high) - tb, ta - std::log(*a.low), half));
   return ratio;
 }
 
-// What clustering does to the difference of two ln thresholds.
+double freedom_of(const ContrastScatter& contrast) {
+  return contrast.degrees_of_freedom.value_or(infinite);
+}
+
+// What clustering and the scatter of the contrast do to the difference of two ln thresholds.
 struct DifferenceSpread {
   double inflation = 1;                  // of the variance of the difference
   double degrees_of_freedom = infinite;  // Welch and Satterthwaite; infinite without clusters
 };
 
-DifferenceSpread spread_of(const PsychometricFit& a, const PsychometricFit& b) {
+DifferenceSpread spread_of(const PsychometricFit& a, const PsychometricFit& b, const ContrastScatter& contrast) {
   DifferenceSpread spread;
   const auto freedom = [](const PsychometricFit& fit) {
     return fit.clusters > 0 ? std::max(fit.clusters - 1, 1.0) : infinite;
@@ -69,9 +75,10 @@ DifferenceSpread spread_of(const PsychometricFit& a, const PsychometricFit& b) {
   }
   const double plain_a = *a.se_ln_threshold * *a.se_ln_threshold, plain_b = *b.se_ln_threshold * *b.se_ln_threshold;
   const double va = a.variance_inflation * plain_a, vb = b.variance_inflation * plain_b;
-  spread.inflation = (va + vb) / (plain_a + plain_b);
-  const double rest = va * va / freedom(a) + vb * vb / freedom(b);
-  if (rest > 0) spread.degrees_of_freedom = (va + vb) * (va + vb) / rest;
+  const double vc = contrast.se_ln_acuity * contrast.se_ln_acuity, all = va + vb + vc;
+  spread.inflation = all / (plain_a + plain_b);
+  const double rest = va * va / freedom(a) + vb * vb / freedom(b) + vc * vc / freedom_of(contrast);
+  if (rest > 0) spread.degrees_of_freedom = all * all / rest;
   return spread;
 }
 
@@ -147,7 +154,8 @@ Result<double> difference_probability(const TodPoint& a, const TodPoint& b, cons
   return std::min(1.0, 2 * upper_tail(std::sqrt(test->lr / spread.inflation), spread.degrees_of_freedom));
 }
 
-Result<ComparisonPoint> compare_points(const TodPoint& a, const TodPoint& b, const ComparisonOptions& options) {
+Result<ComparisonPoint> compare_points(const TodPoint& a, const TodPoint& b, const ContrastScatter& contrast,
+                                       const ComparisonOptions& options) {
   ComparisonPoint point;
   point.set_delta_t_k = a.set_delta_t_k;
   point.delta_t_a_k = a.delta_t_k;
@@ -156,9 +164,12 @@ Result<ComparisonPoint> compare_points(const TodPoint& a, const TodPoint& b, con
   const auto ta = ln_threshold(a.fit), tb = ln_threshold(b.fit);
   if (!ta || !tb) return point;
   point.ratio = std::exp(*tb - *ta);
-  point.ratio_ci95 = ratio_interval(*ta, a.fit.ci95, *tb, b.fit.ci95);
-  point.ratio_ci90 = ratio_interval(*ta, a.fit.ci90, *tb, b.fit.ci90);
-  const DifferenceSpread spread = spread_of(a.fit, b.fit);
+  const auto of_contrast = [&](double tail) {
+    return contrast.se_ln_acuity > 0 ? contrast.se_ln_acuity * upper_quantile(tail, freedom_of(contrast)) : 0;
+  };
+  point.ratio_ci95 = ratio_interval(*ta, a.fit.ci95, *tb, b.fit.ci95, of_contrast(0.025));
+  point.ratio_ci90 = ratio_interval(*ta, a.fit.ci90, *tb, b.fit.ci90, of_contrast(0.05));
+  const DifferenceSpread spread = spread_of(a.fit, b.fit, contrast);
   auto p_difference = difference_probability(a, b, spread, options);
   if (!p_difference) return tl::unexpected(p_difference.error());
   point.p_difference = *p_difference;
@@ -227,13 +238,16 @@ Result<Comparison> compare(const TodCurve& a, const TodCurve& b, const Compariso
     return fail(ErrorCode::invalid_input, "the curves have different observers: " + a.observer + " and " + b.observer);
   Comparison comparison{.points = {}, .verdict = {}, .adequacy = Adequacy{}};
   bool same = true;
-  for (const TodPoint& point : a.points) {
+  const std::vector<ContrastScatter> contrasts =
+      options.b_shown_contrasts_of_a ? contrast_scatter(a) : std::vector<ContrastScatter>(a.points.size());
+  for (std::size_t i = 0; i < a.points.size(); ++i) {
+    const TodPoint& point = a.points[i];
     const TodPoint* other = partner(point, a, b);
     if (other == nullptr) continue;
     same = same && same_answers(point, *other);
     add_unfit(*comparison.adequacy, point, "first");
     add_unfit(*comparison.adequacy, *other, "second");
-    auto compared = compare_points(point, *other, options);
+    auto compared = compare_points(point, *other, contrasts[i], options);
     if (!compared) return fail("comparing at " + std::to_string(point.set_delta_t_k) + " K", compared.error());
     if (other_functions(point, *other) && compared->ratio) {
       const std::string sentence = fmt::format(

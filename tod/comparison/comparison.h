@@ -22,6 +22,9 @@ struct ComparisonOptions {
   /// Equivalence margin on the ratio of acuities, chosen beforehand: ratio within [1/(1+m), 1+m].
   double margin_percent = 10;
   FitOptions fit;  ///< form and lapse with which both curves were fitted
+  /// Curve B is of a simulation that was shown the contrasts that the camera of A measured: what is uncertain of them
+  /// by their scatter is uncertain of the ratio.
+  bool b_shown_contrasts_of_a = false;
 };
 
 /// The ratio of a camera to its twin by common phases (paired_ratio.h), at one contrast.

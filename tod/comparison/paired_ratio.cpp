@@ -55,7 +55,7 @@ Result<void> check_pairs(std::span<const PairedAnswer> answers, double margin_pe
 }  // namespace
 
 Result<RatioOfPairs> paired_ratio(std::span<const PairedAnswer> answers, const ProportionTable& table, bool with_slope,
-                                  int draws, double margin_percent) {
+                                  int draws, double margin_percent, const ContrastScatter& contrast) {
   if (auto fine = check_pairs(answers, margin_percent); !fine) return tl::unexpected(fine.error());
   std::vector<GradedAnswer> camera, twin;
   for (const PairedAnswer& answer : answers) {
@@ -86,10 +86,14 @@ Result<RatioOfPairs> paired_ratio(std::span<const PairedAnswer> answers, const P
   const ClusteredVariance found = clustered_variance(scores, 1, 0);
   if (!std::isfinite(found.variance) || !(found.variance > 0))
     return fail(ErrorCode::invalid_input, "paired answers: too few set-ups, presentations or places for a variance");
-  RatioOfPairs out = judged_pairs(of_twin->ln_threshold - of_camera->ln_threshold, std::sqrt(found.variance),
-                                  found.degrees_of_freedom, margin_percent);
+  const double of_contrast = found.kind == IntervalKind::set_ups ? 0 : std::pow(contrast.se_ln_acuity, 2);
+  const double variance = found.variance + of_contrast;
+  double rest = found.variance * found.variance / found.degrees_of_freedom;
+  if (contrast.degrees_of_freedom) rest += of_contrast * of_contrast / *contrast.degrees_of_freedom;
+  RatioOfPairs out = judged_pairs(of_twin->ln_threshold - of_camera->ln_threshold, std::sqrt(variance),
+                                  variance * variance / rest, margin_percent);
   out.interval = found.kind;
-  out.twin_share = std::min(1.0, variance_of_draws / found.variance);
+  out.twin_share = std::min(1.0, variance_of_draws / variance);
   out.draws = draws;
   out.answers = static_cast<int>(answers.size());
   return out;

@@ -7,14 +7,15 @@
 
 #include "acquisition/core/result.h"
 #include "tod/comparison/comparison.h"
+#include "tod/psychometric/contrast_slope.h"
 #include "tod/psychometric/psychometric_fit.h"
 
 namespace todbench {
 
 /// What is beside a paired ratio wherever people read it.
 inline constexpr std::string_view not_cancelled_by_pairs =
-    "Pairing cancels what both saw alike, the phases and the contrast that the camera measured. It does not cancel an "
-    "error of that contrast, of the distance or of the plate: those belong to the budget.";
+    "Pairing cancels what both saw alike, the phases. The scatter of the measured contrast is in the interval. What is "
+    "wrong with the contrast everywhere alike, with the distance or with the plate is not: that belongs to the budget.";
 
 /// One presentation of one triangle: what the camera's frames were answered with, and what the twin's were.
 struct PairedAnswer {
@@ -27,13 +28,18 @@ struct PairedAnswer {
 /// function `table` (twin_shape.h; with a slope of their own, both, where `with_slope`), their difference, and its
 /// variance from the differences of what each answer has in the two, over set-ups or over presentations and places
 /// (clustered_variance.h). To first order an error of the function is in neither, and what camera and twin have in
-/// common, phase and contrast of a presentation, is in neither the difference nor its interval. Noise that they share
+/// common, the phase of a presentation, is in neither the difference nor its interval. Noise that they share
 /// would cancel as well: the caller sees to it that they share none.
+///
+/// The twin is shown the contrast that the camera measured once in each set-up. Over set-ups its scatter is in the
+/// differences; presentations and places do not see it, and then `contrast`, what it leaves open of the acuity, is
+/// added.
 ///
 /// `draws` is kept for the record. Verdict as of compare(), with Student's t; equivalent wins. `invalid_input`: as
 /// twin_shape_estimate(), fewer than two clusters, a margin that is not positive, probabilities outside 0 to 1.
 [[nodiscard]] Result<RatioOfPairs> paired_ratio(std::span<const PairedAnswer> answers, const ProportionTable& table,
-                                                bool with_slope, int draws, double margin_percent);
+                                                bool with_slope, int draws, double margin_percent,
+                                                const ContrastScatter& contrast = {});
 
 /// The ratio A / B of two cameras from the ratios of both to the same twin, each with its own presentations, whose
 /// errors are independent: degrees of freedom of Welch and Satterthwaite. `draws` is the smaller one.

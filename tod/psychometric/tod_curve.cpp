@@ -88,6 +88,7 @@ void add_contrast(TodPoint& point, const TrialGroup& trials) {
     measurements.emplace(trial->plate, trial->mounting, trial->delta_t_k);
   }
   point.delta_t_k = sum / static_cast<double>(trials.size());
+  point.delta_t_measurements = static_cast<int>(measurements.size());
   const auto n = static_cast<double>(measurements.size());
   if (n < 2) return;
   double mean = 0, square = 0;

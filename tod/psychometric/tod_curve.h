@@ -49,8 +49,9 @@ struct TodPoint {
   double set_delta_t_k = 0;  ///< what the target was told: the name by which points are paired
   double delta_t_k = 0;      ///< effective contrast measured by the camera (mean over trials)
   double delta_t_se_k = 0;  ///< standard error of that mean, over the measurements of it (one per set-up and set-point)
-  std::vector<Level> levels;  ///< counts per size, one row per size and cluster: what the fit saw
-  PsychometricFit fit;        ///< in mrad
+  int delta_t_measurements = 0;  ///< how many those are; 0: not said
+  std::vector<Level> levels;     ///< counts per size, one row per size and cluster: what the fit saw
+  PsychometricFit fit;           ///< in mrad
   /// Why the fit is with a Weibull function or with that of the twin; nothing: not said.
   std::optional<EstimatorReason> estimator_reason;
   std::optional<AnswersTaken> answers;            ///< nothing: not said

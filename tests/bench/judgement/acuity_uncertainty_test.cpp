@@ -55,57 +55,6 @@ double half_of(const Interval& interval) {
   return 0.5 * std::log(*interval.high / *interval.low);
 }
 
-/// d ln acuity / d ln contrast of S^2 = a + b / C + d / C^2.
-double slope_of(double a, double b, double d, double contrast_k) {
-  const double z = 1 / contrast_k;
-  return z * (b + 2 * d * z) / (2 * (a + b * z + d * z * z));
-}
-
-TEST(ContrastSlope, IsThatOfTheCurve) {
-  constexpr double a = 4.2, b = 0.4, d = 0.3;
-  TodCurve power, resolved;
-  for (const double contrast_k : {10.0, 2.0, 0.5, 0.2}) {
-    power.points.push_back(point_of(contrast_k, 2 * std::pow(contrast_k, -0.5), 0.01));
-    resolved.points.push_back(
-        point_of(contrast_k, std::sqrt(a + b / contrast_k + d / (contrast_k * contrast_k)), 0.01));
-  }
-
-  EXPECT_THAT(contrast_slopes(power), ::testing::Each(::testing::DoubleNear(0.5, 1e-12)));
-  const auto slopes = contrast_slopes(resolved);
-  for (std::size_t i = 0; i < 4; ++i)
-    EXPECT_NEAR(slopes[i], slope_of(a, b, d, resolved.points[i].set_delta_t_k), 1e-12) << i;
-}
-
-TEST(ContrastSlope, OfTwoPointsIsNotTooSmall) {
-  for (const double d : {0.0, 0.1, 0.3}) {
-    const double b = 0.4, a = 4.2;
-    TodCurve curve;
-    for (const double contrast_k : {2.0, 0.23})
-      curve.points.push_back(point_of(contrast_k, std::sqrt(a + b / contrast_k + d / (contrast_k * contrast_k)), 0.01));
-    EXPECT_GE(contrast_slopes(curve)[1], slope_of(a, b, d, 0.23) - 1e-12) << d;
-  }
-}
-
-/// Direct estimates of the SC2000 with hvs-1 (standard error 0.1 %), whose slopes between contrasts 10 % to each side
-/// are 0.51 at 0.23 K and 0.04 at 1.93 K. A parabola over ln contrast has 0.33 and 0.12.
-TEST(ContrastSlope, OfASimulatedSensorIsItsOwn) {
-  TodCurve curve;
-  curve.points = {point_of(16.9, 2.0899, 0.01), point_of(1.93, 2.1373, 0.01), point_of(0.23, 3.4384, 0.01)};
-  const auto slopes = contrast_slopes(curve);
-  EXPECT_LT(slopes[0], 0.01);
-  EXPECT_NEAR(slopes[1], 0.04, 0.01);
-  EXPECT_GT(slopes[2], 0.48);
-  EXPECT_LT(slopes[2], 0.62);
-}
-
-TEST(ContrastSlope, IsOneWhereNothingTells) {
-  TodCurve curve;
-  curve.points = {point_of(2, 1, 0.01), point_of(-2, 1, 0.01), point_of(0.2, 1, 0.01)};
-  curve.points[2].fit.threshold.reset();
-
-  EXPECT_THAT(contrast_slopes(curve), ::testing::ElementsAre(1, 1, 1));
-}
-
 TEST(CurveUncertainty, AddsGeometryInSquares) {
   const Plan plan = plan_of({{.name = "distance", .value = 20, .unit = "mm"}});
 

@@ -110,6 +110,23 @@ TEST(PairedRatio, StatesTheTwinsShareOfTheVariance) {
   EXPECT_EQ(found->se_ln_ratio, without->se_ln_ratio) << "it is in the scatter already";
 }
 
+TEST(PairedRatio, HoldsTheScatterOfTheContrastOnceWhateverTheClusters) {
+  constexpr ContrastScatter contrast{.se_ln_acuity = 0.02, .degrees_of_freedom = 2.0};
+  const auto of_one_set_up = pairs_of(1, 3, 0.1, 3), of_many = pairs_of(1, 3);
+  const auto without = paired_ratio(of_one_set_up, table(), false, 24, 3);
+  const auto with = paired_ratio(of_one_set_up, table(), false, 24, 3, contrast);
+  ASSERT_TRUE(without && with);
+  EXPECT_NEAR(with->se_ln_ratio, std::hypot(without->se_ln_ratio, 0.02), 1e-12);
+  EXPECT_EQ(with->ratio, without->ratio);
+  EXPECT_LE(with->degrees_of_freedom, without->degrees_of_freedom + 2 + 1e-9) << "Welch and Satterthwaite";
+  EXPECT_GT(with->degrees_of_freedom, std::min(without->degrees_of_freedom, 2.0));
+
+  const auto over_set_ups = paired_ratio(of_many, table(), false, 24, 3, contrast);
+  ASSERT_TRUE(over_set_ups);
+  EXPECT_EQ(over_set_ups->interval, IntervalKind::set_ups);
+  EXPECT_EQ(over_set_ups->se_ln_ratio, paired_ratio(of_many, table(), false, 24, 3)->se_ln_ratio);
+}
+
 TEST(PairedRatio, RefusesWhatHasNoVariance) {
   const auto pairs = pairs_of(1, 3, 0.1, 3);  // one set-up
   const auto found = paired_ratio(pairs, table(), false, 24, 3);

@@ -1,0 +1,85 @@
+#include "tod/psychometric/contrast_slope.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace todbench {
+namespace {
+
+/// A point of a curve as its form has it: the square of the size over the inverse contrast.
+struct SlopePoint {
+  std::size_t index;
+  double z;       ///< 1 / contrast
+  double square;  ///< S75^2
+};
+
+/// d square / d z at p of the parabola through p, a and b.
+double parabola_slope(const SlopePoint& p, const SlopePoint& a, const SlopePoint& b) {
+  const double to_a = (a.square - p.square) / (a.z - p.z), to_b = (b.square - p.square) / (b.z - p.z);
+  return (to_a * (b.z - p.z) - to_b * (a.z - p.z)) / (b.z - a.z);
+}
+
+/// d ln acuity / d ln contrast = z / (2 S^2) dS^2/dz.
+double in_logarithms(const SlopePoint& p, double slope) {
+  return std::abs(0.5 * p.z * slope / p.square);
+}
+
+double slope_at(const std::vector<SlopePoint>& points, std::size_t i) {
+  const std::size_t last = points.size() - 1;
+  if (last == 0) return 1;
+  const SlopePoint& p = points[i];
+  if (last == 1) {
+    // Two points have one term: that which says more, 1 / C or 1 / C^2.
+    const SlopePoint& other = points[1 - i];
+    const double rise = p.square - other.square;
+    return std::max(in_logarithms(p, rise / (p.z - other.z)),
+                    in_logarithms(p, 2 * p.z * rise / (p.z * p.z - other.z * other.z)));
+  }
+  if (i > 0 && i < last) return in_logarithms(p, parabola_slope(p, points[i - 1], points[i + 1]));
+  return in_logarithms(p, parabola_slope(p, points[i == 0 ? 1 : last - 1], points[i == 0 ? 2 : last - 2]));
+}
+
+}  // namespace
+
+double contrast_seen_k(const TodPoint& point) {
+  const double seen = std::abs(point.delta_t_k);
+  return seen > 0 && std::isfinite(seen) ? seen : std::abs(point.set_delta_t_k);
+}
+
+std::optional<double> freedom_of_contrast(const TodPoint& point) {
+  return point.delta_t_measurements > 1 ? std::optional(point.delta_t_measurements - 1.0) : std::nullopt;
+}
+
+std::vector<double> contrast_slopes(const TodCurve& curve) {
+  std::vector<double> slopes(curve.points.size(), 1.0);
+  for (const bool positive : {false, true}) {
+    std::vector<SlopePoint> points;
+    for (std::size_t i = 0; i < curve.points.size(); ++i) {
+      const TodPoint& point = curve.points[i];
+      if ((point.set_delta_t_k > 0) != positive || !point.fit.threshold || !(*point.fit.threshold > 0)) continue;
+      if (!(contrast_seen_k(point) > 0)) continue;
+      points.push_back({i, 1 / contrast_seen_k(point), *point.fit.threshold * *point.fit.threshold});
+    }
+    std::sort(points.begin(), points.end(), [](const SlopePoint& a, const SlopePoint& b) { return a.z < b.z; });
+    // Contrasts that the camera saw as the same one have no slope between them.
+    points.erase(std::unique(points.begin(), points.end(),
+                             [](const SlopePoint& a, const SlopePoint& b) { return std::log(b.z / a.z) < 0.005; }),
+                 points.end());
+    for (std::size_t i = 0; i < points.size(); ++i) slopes[points[i].index] = slope_at(points, i);
+  }
+  return slopes;
+}
+
+std::vector<ContrastScatter> contrast_scatter(const TodCurve& curve) {
+  const std::vector<double> slopes = contrast_slopes(curve);
+  std::vector<ContrastScatter> scatter;
+  for (std::size_t i = 0; i < curve.points.size(); ++i) {
+    const TodPoint& point = curve.points[i];
+    const double relative = point.delta_t_se_k / contrast_seen_k(point);
+    scatter.push_back({.se_ln_acuity = std::isfinite(relative) ? slopes[i] * relative : 0,
+                       .degrees_of_freedom = freedom_of_contrast(point)});
+  }
+  return scatter;
+}
+
+}  // namespace todbench
