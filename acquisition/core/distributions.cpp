@@ -4,6 +4,7 @@
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
+#include <cmath>
 
 namespace todbench::distribution {
 namespace {
@@ -19,6 +20,10 @@ boost::math::chi_squared boost_law(const ChiSquared& law) {
 }
 boost::math::fisher_f boost_law(const FisherF& law) {
   return boost::math::fisher_f(law.numerator_freedom, law.denominator_freedom);
+}
+
+bool few(const std::optional<double>& degrees_of_freedom) {
+  return degrees_of_freedom && !std::isinf(*degrees_of_freedom);
 }
 
 }  // namespace
@@ -45,6 +50,15 @@ double quantile(const Complement<Law>& above) {
 
 double pdf(const Normal& law, double x) {
   return boost::math::pdf(boost_law(law), x);
+}
+
+double tail_above(double x, const std::optional<double>& degrees_of_freedom) {
+  return few(degrees_of_freedom) ? cdf(complement(StudentsT(*degrees_of_freedom), x)) : cdf(complement(Normal(), x));
+}
+
+double quantile_above(double probability, const std::optional<double>& degrees_of_freedom) {
+  return few(degrees_of_freedom) ? quantile(complement(StudentsT(*degrees_of_freedom), probability))
+                                 : quantile(complement(Normal(), probability));
 }
 
 template double cdf(const Normal&, double);

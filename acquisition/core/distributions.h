@@ -2,6 +2,8 @@
 // would compile them anew, for seconds.
 #pragma once
 
+#include <optional>
+
 namespace todbench::distribution {
 
 struct Normal {
@@ -48,5 +50,10 @@ template <class Law>
 template <class Law>
 [[nodiscard]] double quantile(const Complement<Law>& above);
 [[nodiscard]] double pdf(const Normal& law, double x);
+
+/// Probability above `x` of Student's t; of the standard normal where the degrees of freedom are not given or infinite.
+[[nodiscard]] double tail_above(double x, const std::optional<double>& degrees_of_freedom);
+/// Where tail_above() is `probability`.
+[[nodiscard]] double quantile_above(double probability, const std::optional<double>& degrees_of_freedom);
 
 }  // namespace todbench::distribution

@@ -105,16 +105,11 @@ std::optional<double> freedom_of(const PsychometricFit& fit) {
   return fit.clusters > 1 ? std::optional(std::max(1.0, fit.clusters - 1)) : std::nullopt;
 }
 
-double coverage_factor(const std::optional<double>& degrees_of_freedom) {
-  if (degrees_of_freedom) return quantile(complement(distribution::StudentsT(*degrees_of_freedom), upper_tail));
-  return quantile(complement(distribution::Normal(), upper_tail));
-}
-
 /// A half-width of ln S75 as the row of the finite trials.
 BudgetRow trials_row(double half, const PsychometricFit& fit) {
   const auto freedom = freedom_of(fit);
   return {.name = std::string(finite_trials_row),
-          .value = half / coverage_factor(freedom),
+          .value = half / distribution::quantile_above(upper_tail, freedom),
           .degrees_of_freedom = freedom,
           .sensitivity = 1,
           .unit = "1",

@@ -132,9 +132,7 @@ Result<Conformity> conformity(const MeasuredValue& measured, const ToleranceLimi
 
 double guard_band_for_risk(double risk, const MeasuredValue& measured) {
   if (risk == 0.5) return 0;
-  if (measured.degrees_of_freedom)
-    return measured.u * quantile(complement(distribution::StudentsT(*measured.degrees_of_freedom), risk));
-  return measured.u * quantile(complement(distribution::Normal(), risk));
+  return measured.u * distribution::quantile_above(risk, measured.degrees_of_freedom);
 }
 
 Result<GlobalRisks> global_risks(const Fleet& fleet, double u, const ToleranceLimits& tolerance,

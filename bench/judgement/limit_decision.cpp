@@ -9,9 +9,7 @@ namespace todbench {
 namespace {
 
 double upper_quantile(double tail, const std::optional<double>& degrees_of_freedom) {
-  if (tail == 0.5) return 0;
-  if (degrees_of_freedom) return quantile(complement(distribution::StudentsT(*degrees_of_freedom), tail));
-  return quantile(complement(distribution::Normal(), tail));
+  return tail == 0.5 ? 0 : distribution::quantile_above(tail, degrees_of_freedom);
 }
 
 double below(double z, const std::optional<double>& degrees_of_freedom) {

@@ -124,12 +124,8 @@ Result<CombinedUncertainty> combined(const UncertaintyBudget& budget, std::uint6
   for (auto& share : out.shares) share.share_percent = 100 * std::pow(share.contribution / largest, 2) / variance;
   out.u = largest * std::sqrt(variance);
   constexpr double upper = 0.025;
-  if (fourth > 0) {
-    out.nu_eff = variance * variance / fourth;
-    out.k = quantile(complement(distribution::StudentsT(*out.nu_eff), upper));
-  } else {
-    out.k = quantile(complement(distribution::Normal(), upper));
-  }
+  if (fourth > 0) out.nu_eff = variance * variance / fourth;
+  out.k = distribution::quantile_above(upper, out.nu_eff);
   out.expanded_gum = out.k * out.u;
   if (draws > 0) out.expanded_monte_carlo = monte_carlo_half_width(budget, out.shares, seed, draws);
   out.expanded = std::max(out.expanded_gum, out.expanded_monte_carlo);

@@ -14,8 +14,7 @@ void JoinedUncertainty::add(double standard, const std::optional<double>& degree
 double JoinedUncertainty::half_width(double upper_tail) const {
   const double nu = of_few_ > 0 ? std::pow(u_ * u_ / of_few_, 2) : 0;
   const bool few = nu > 0 && std::isfinite(nu);
-  return u_ * (few ? quantile(complement(distribution::StudentsT(nu), upper_tail))
-                   : quantile(complement(distribution::Normal(), upper_tail)));
+  return u_ * distribution::quantile_above(upper_tail, few ? std::optional(nu) : std::nullopt);
 }
 
 }  // namespace todbench

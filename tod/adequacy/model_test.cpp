@@ -11,9 +11,7 @@ namespace {
 
 // Exceeded with `probability` on one side, by a normal variable or Student's t of clusters.
 double limit_of(double probability, double clusters) {
-  if (clusters > 1)
-    return distribution::quantile(distribution::complement(distribution::StudentsT(clusters - 1), probability));
-  return distribution::quantile(distribution::complement(distribution::Normal(), probability));
+  return distribution::quantile_above(probability, clusters > 1 ? std::optional(clusters - 1) : std::nullopt);
 }
 
 // The member of another family nearest to the fitted function: fitted to the answers that the fit expects, so that it

@@ -15,23 +15,10 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-// Probability above `x` of the standard normal, or of Student's t where the degrees of freedom are finite.
-double upper_tail(double x, double degrees_of_freedom) {
-  if (!std::isfinite(degrees_of_freedom)) return distribution::cdf(distribution::complement(distribution::Normal(), x));
-  return distribution::cdf(distribution::complement(distribution::StudentsT(degrees_of_freedom), x));
-}
-
-// Where upper_tail() is `probability`.
-double upper_quantile(double probability, double degrees_of_freedom) {
-  if (!std::isfinite(degrees_of_freedom))
-    return distribution::quantile(distribution::complement(distribution::Normal(), probability));
-  return distribution::quantile(distribution::complement(distribution::StudentsT(degrees_of_freedom), probability));
-}
-
 // Largest of the two one-sided probabilities that a ratio at or beyond the margin gives this estimate (Schuirmann
 // 1987).
 double wald_equivalence_probability(double ln_ratio, double se, double margin_percent) {
-  return upper_tail((std::log1p(margin_percent / 100) - std::abs(ln_ratio)) / se, infinite);
+  return distribution::tail_above((std::log1p(margin_percent / 100) - std::abs(ln_ratio)) / se, infinite);
 }
 
 // A threshold that a ratio may be made of. A slope at its lower bound or a ridge has a number but not a meaning.
@@ -51,10 +38,6 @@ Interval ratio_interval(double ta, const Interval& a, double tb, const Interval&
   if (b.low && a.high) ratio.low = std::exp(d - std::hypot(tb - std::log(*b.low), std::log(*a.high) - ta, half));
   if (b.high && a.low) ratio.high = std::exp(d + std::hypot(std::log(*b.high) - tb, ta - std::log(*a.low), half));
   return ratio;
-}
-
-double freedom_of(const ContrastScatter& contrast) {
-  return contrast.degrees_of_freedom.value_or(infinite);
 }
 
 // What clustering and the scatter of the contrast do to the difference of two ln thresholds.
@@ -77,7 +60,8 @@ DifferenceSpread spread_of(const PsychometricFit& a, const PsychometricFit& b, c
   const double va = a.variance_inflation * plain_a, vb = b.variance_inflation * plain_b;
   const double vc = contrast.se_ln_acuity * contrast.se_ln_acuity, all = va + vb + vc;
   spread.inflation = all / (plain_a + plain_b);
-  const double rest = va * va / freedom(a) + vb * vb / freedom(b) + vc * vc / freedom_of(contrast);
+  const double rest =
+      va * va / freedom(a) + vb * vb / freedom(b) + vc * vc / contrast.degrees_of_freedom.value_or(infinite);
   if (rest > 0) spread.degrees_of_freedom = all * all / rest;
   return spread;
 }
@@ -90,9 +74,9 @@ std::optional<double> equivalence_probability(double ln_ratio, const Interval& c
   const double below = ln_ratio - std::log(*ci90.low), above = std::log(*ci90.high) - ln_ratio;
   if (!(below > 0 && above > 0)) return std::nullopt;
   const double margin = std::log1p(margin_percent / 100);
-  const double quantile = upper_quantile(0.05, degrees_of_freedom);
-  return std::max(upper_tail(quantile * (margin - ln_ratio) / above, degrees_of_freedom),
-                  upper_tail(quantile * (margin + ln_ratio) / below, degrees_of_freedom));
+  const double quantile = distribution::quantile_above(0.05, degrees_of_freedom);
+  return std::max(distribution::tail_above(quantile * (margin - ln_ratio) / above, degrees_of_freedom),
+                  distribution::tail_above(quantile * (margin + ln_ratio) / below, degrees_of_freedom));
 }
 
 ComparisonVerdict verdict_of(const ComparisonPoint& point) {
@@ -145,13 +129,14 @@ Result<double> difference_probability(const TodPoint& a, const TodPoint& b, cons
   if ((a.fit.twin_shape || b.fit.twin_shape) && a.fit.se_ln_threshold && b.fit.se_ln_threshold) {
     const double plain = std::hypot(*a.fit.se_ln_threshold, *b.fit.se_ln_threshold);
     const double distance = std::abs(std::log(*a.fit.threshold / *b.fit.threshold));
-    return std::min(1.0, 2 * upper_tail(distance / (plain * std::sqrt(spread.inflation)), spread.degrees_of_freedom));
+    return std::min(
+        1.0, 2 * distribution::tail_above(distance / (plain * std::sqrt(spread.inflation)), spread.degrees_of_freedom));
   }
   FitOptions fit = options.fit;
   fit.graded = is_quasi(a.fit.interval) || is_quasi(b.fit.interval);
   const auto test = test_thresholds(a.levels, b.levels, SlopeModel::separate, options.margin_percent, fit);
   if (!test) return tl::unexpected(test.error());
-  return std::min(1.0, 2 * upper_tail(std::sqrt(test->lr / spread.inflation), spread.degrees_of_freedom));
+  return std::min(1.0, 2 * distribution::tail_above(std::sqrt(test->lr / spread.inflation), spread.degrees_of_freedom));
 }
 
 Result<ComparisonPoint> compare_points(const TodPoint& a, const TodPoint& b, const ContrastScatter& contrast,
@@ -165,7 +150,9 @@ Result<ComparisonPoint> compare_points(const TodPoint& a, const TodPoint& b, con
   if (!ta || !tb) return point;
   point.ratio = std::exp(*tb - *ta);
   const auto of_contrast = [&](double tail) {
-    return contrast.se_ln_acuity > 0 ? contrast.se_ln_acuity * upper_quantile(tail, freedom_of(contrast)) : 0;
+    return contrast.se_ln_acuity > 0
+               ? contrast.se_ln_acuity * distribution::quantile_above(tail, contrast.degrees_of_freedom)
+               : 0;
   };
   point.ratio_ci95 = ratio_interval(*ta, a.fit.ci95, *tb, b.fit.ci95, of_contrast(0.025));
   point.ratio_ci90 = ratio_interval(*ta, a.fit.ci90, *tb, b.fit.ci90, of_contrast(0.05));
@@ -223,7 +210,7 @@ Result<ThresholdTest> test_thresholds(std::span<const Level> a, std::span<const 
   test.ll_separate = std::max(maxima.ll_separate, maxima.ll_common);
   test.ll_common = maxima.ll_common;
   test.lr = 2 * (test.ll_separate - test.ll_common);
-  test.p_difference = std::min(1.0, 2 * upper_tail(std::sqrt(test.lr), infinite));
+  test.p_difference = std::min(1.0, 2 * distribution::tail_above(std::sqrt(test.lr), infinite));
   test.ln_ratio = maxima.ln_ratio;
   test.se_ln_ratio = maxima.se_ln_ratio.value_or(0.0);
   if (maxima.se_ln_ratio)

@@ -11,18 +11,10 @@
 namespace todbench {
 namespace {
 
-double t_upper_tail(double x, double degrees_of_freedom) {
-  return distribution::cdf(distribution::complement(distribution::StudentsT(degrees_of_freedom), x));
-}
-
-double t_upper_quantile(double tail, double degrees_of_freedom) {
-  return distribution::quantile(distribution::complement(distribution::StudentsT(degrees_of_freedom), tail));
-}
-
 /// Everything that follows from the ratio and its standard error.
 RatioOfPairs judged_pairs(double ln_ratio, double se, double degrees_of_freedom, double margin_percent) {
   const auto interval = [&](double tail) {
-    const double half = t_upper_quantile(tail, degrees_of_freedom) * se;
+    const double half = distribution::quantile_above(tail, degrees_of_freedom) * se;
     return Interval{std::exp(ln_ratio - half), std::exp(ln_ratio + half)};
   };
   const double margin = std::log1p(margin_percent / 100);
@@ -31,8 +23,8 @@ RatioOfPairs judged_pairs(double ln_ratio, double se, double degrees_of_freedom,
                    .ci90 = interval(0.05),
                    .se_ln_ratio = se,
                    .degrees_of_freedom = degrees_of_freedom};
-  out.p_difference = std::min(1.0, 2 * t_upper_tail(std::abs(ln_ratio) / se, degrees_of_freedom));
-  out.p_equivalence = t_upper_tail((margin - std::abs(ln_ratio)) / se, degrees_of_freedom);
+  out.p_difference = std::min(1.0, 2 * distribution::tail_above(std::abs(ln_ratio) / se, degrees_of_freedom));
+  out.p_equivalence = distribution::tail_above((margin - std::abs(ln_ratio)) / se, degrees_of_freedom);
   if (*out.ci90.low >= std::exp(-margin) && *out.ci90.high <= std::exp(margin))
     out.verdict = ComparisonVerdict::equivalent;
   else

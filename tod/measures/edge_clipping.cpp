@@ -105,7 +105,13 @@ std::optional<std::string_view> clipped_side(const std::vector<EdgeSample>& samp
       std::max(0.1 + 6 * count, count > 0 ? 1.1 * rounded_corner(levels.width_pitch, count, stretch) : 0);
   const Side bright = side_of(samples, 1), dark = side_of(samples, -1);
   const Plateau of_bright = plateau_of(bright, from), of_dark = plateau_of(dark, from);
-  const auto cut = [&](const Side& side, const Plateau& own, const Plateau& other) {
+  // A detector of full fill makes a ramp 0.77 to 0.8 pitch wide from 10 to 90 %, whose ends coarse counts turn into
+  // corners. Without blur they are corners, the same at either end.
+  const double bright_corner = corner_slope(bright, stretch), dark_corner = corner_slope(dark, stretch);
+  const bool alike = std::abs(bright_corner - dark_corner) < 0.02 * std::max(bright_corner, dark_corner);
+  const bool detector =
+      levels.width_pitch <= 0.88 && (levels.count_step > 1e-3 * step || (alike && levels.width_pitch > 0.76));
+  const auto cut = [&](double corner, const Plateau& own, const Plateau& other) {
     // Values that scatter meet their largest once in a while, not in every tenth pixel.
     const double negligible = 1e-6 * step;
     // A level between two counts is rounded to either, half a count from their middle.
@@ -116,12 +122,10 @@ std::optional<std::string_view> clipped_side(const std::vector<EdgeSample>& samp
     if (own.count >= 20 && own.share_at_highest > 0.25 && own.sd < 0.2 * other.sd &&
         other.sd > std::max(negligible, rounding))
       return true;
-    // A detector of full fill makes a ramp 0.8 pitch wide from 10 to 90 %, whose ends coarse counts turn into corners.
-    const bool detector = levels.width_pitch <= 0.88 && levels.count_step > 1e-3 * step;
-    return !detector && own.share_at_highest > 0.25 && corner_slope(side, stretch) > cornered * levels.steepest;
+    return !detector && own.share_at_highest > 0.25 && corner > cornered * levels.steepest;
   };
-  if (cut(bright, of_bright, of_dark)) return "bright";
-  if (cut(dark, of_dark, of_bright)) return "dark";
+  if (cut(bright_corner, of_bright, of_dark)) return "bright";
+  if (cut(dark_corner, of_dark, of_bright)) return "dark";
   return std::nullopt;
 }
 

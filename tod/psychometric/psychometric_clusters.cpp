@@ -149,14 +149,9 @@ GradedEffect graded_effect(std::span<const GradedAnswer> answers, const PooledCo
 
 double confidence_drop(const ClusterEffect& effect, double confidence) {
   const double tail = (1 - confidence) / 2;
-  double z = 0;
-  if (effect.clusters == 0) {
-    z = distribution::quantile(distribution::complement(distribution::Normal(), tail));
-  } else if (effect.clusters < 2) {
-    return std::numeric_limits<double>::infinity();
-  } else {
-    z = distribution::quantile(distribution::complement(distribution::StudentsT(effect.clusters - 1), tail));
-  }
+  if (effect.clusters != 0 && effect.clusters < 2) return std::numeric_limits<double>::infinity();
+  const double z = distribution::quantile_above(
+      tail, effect.clusters == 0 ? std::nullopt : std::optional<double>(effect.clusters - 1));
   return effect.inflation * z * z;
 }
 

@@ -157,10 +157,6 @@ ClusteredVariance variance_of(const TwinShape& shape, const TwinMaximum& at, std
   return clustered_variance(scores, at.searched.size(), static_cast<std::size_t>(place), scatter_of(answers));
 }
 
-double t_quantile(double tail, double degrees_of_freedom) {
-  return distribution::quantile(distribution::complement(distribution::StudentsT(degrees_of_freedom), tail));
-}
-
 /// Probability at which a further parameter is taken in, or is a finding.
 constexpr double asked_for = 0.01;
 
@@ -179,7 +175,7 @@ std::optional<Further> further(const TwinShape& shape, const TwinMaximum& from, 
   const ClusteredVariance found = variance_of(shape, out.at, answers, parameter);
   if (!std::isfinite(found.variance) || !(found.variance > 0)) return std::nullopt;
   out.t = out.at.place[parameter] / std::sqrt(found.variance);
-  out.limit = t_quantile(asked_for / 2, found.degrees_of_freedom);
+  out.limit = distribution::quantile_above(asked_for / 2, found.degrees_of_freedom);
   return out;
 }
 
@@ -260,7 +256,7 @@ PsychometricFit fit_at(const TwinShape& shape, const TwinMaximum& at, TwinShapeU
   const double freedom = found.degrees_of_freedom * std::pow(variance / found.variance, 2);
   fit.clusters = freedom + 1;
   const auto interval = [&](double tail) {
-    const double half = t_quantile(tail, freedom) * std::sqrt(variance);
+    const double half = distribution::quantile_above(tail, freedom) * std::sqrt(variance);
     return Interval{std::exp(ln_threshold - half), std::exp(ln_threshold + half)};
   };
   fit.ci95 = interval(0.025);

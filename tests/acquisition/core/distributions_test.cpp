@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 namespace todbench::distribution {
@@ -20,6 +22,15 @@ TEST(Distributions, EqualTheirClosedForms) {
     EXPECT_NEAR(cdf(complement(FisherF(2, 7), x)), std::pow(1 + 2 * x / 7, -3.5), 1e-14);
     EXPECT_NEAR(cdf(complement(FisherF(1, 7), x * x)), 2 * cdf(complement(StudentsT(7), x)), 1e-14);
   }
+}
+
+TEST(Distributions, OfVeryManyObservationsStudentsTIsNormal) {
+  for (const auto& many : {std::optional<double>(), std::optional(std::numeric_limits<double>::infinity())}) {
+    EXPECT_EQ(tail_above(1.7, many), cdf(complement(Normal(), 1.7)));
+    EXPECT_EQ(quantile_above(0.025, many), quantile(complement(Normal(), 0.025)));
+  }
+  EXPECT_EQ(tail_above(1.7, 3.5), cdf(complement(StudentsT(3.5), 1.7)));
+  EXPECT_NEAR(quantile_above(0.025, 7), 2.364624, 1e-6);
 }
 
 template <class Law>

@@ -167,6 +167,18 @@ TEST(SlantedEdge, RefusesABentEdge) {
   EXPECT_THAT(refused(picture), HasSubstr("bent by 1.0"));
 }
 
+// A test picture, where each pixel is the mean over its area: the ends of its profile are corners that no clip made.
+TEST(SlantedEdge, OfADetectorWithoutBlurIsNoClippedOne) {
+  for (const double angle_deg : {2.0, 5.0, 12.0}) {
+    const EdgePicture made{1e-4, 1, angle_deg, 50.3, 120, 100};
+
+    const auto edge = slanted_edge(made.picture(), {});
+
+    ASSERT_TRUE(edge) << angle_deg << " " << edge.error().message;
+    EXPECT_LT(error_of(*edge, made, 0.5), 0.005) << angle_deg;
+  }
+}
+
 TEST(SlantedEdge, RefusesAClippedEdgeWithAndWithoutNoiseOnEitherSide) {
   for (const double blur : {0.3, 0.7, 1.5}) {
     const EdgePicture made{.blur_sigma_pitch = blur};
