@@ -82,8 +82,9 @@ Document picture_document(const ScenePicturesTask& task, const ScenePictures& pi
   const auto word = [](Decision decision) { return plain(decision == Decision::simulate ? "simulated" : "left out"); };
   for (const auto& d : pictures.air)
     effects.rows.push_back({plain("air: " + d.name), word(d.decision), plain(d.reason)});
-  for (const auto& d : pictures.effects.plan.decisions)
-    effects.rows.push_back({plain(to_string(d.effect)), word(d.decision), plain(d.reason)});
+  for (const auto& d : pictures.effects.plan.decisions) {
+    if (!is_of_air(d.effect)) effects.rows.push_back({plain(to_string(d.effect)), word(d.decision), plain(d.reason)});
+  }
   std::vector<Block> blocks{std::move(effects)};
   for (const auto& warning : pictures.effects.warnings) blocks.emplace_back(note(plain(warning)));
   const std::string title =

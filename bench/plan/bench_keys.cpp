@@ -194,6 +194,12 @@ PlanSection target_section() {
            .type = NumberKey{NumberRange::between(0.2, 5)},
            .sentence = "light of the screen is its level to this power; 1: in proportion",
            .place = of(&TargetPlan::display_gamma)},
+          {.name = "display_luminance",
+           .type = NumbersKey{NumberRange::between(0, 1e9), "luminance"},
+           .sentence =
+               "in place of display_gamma: luminance as measured, of equally spaced levels from black to white, rising",
+           .place = of(&TargetPlan::display_luminance),
+           .check = check_display_luminance},
           {.name = "display_settle_s",
            .type = NumberKey{NumberRange::between(0, 60)},
            .unit = "s",

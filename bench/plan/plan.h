@@ -58,6 +58,7 @@ struct TargetPlan {
   std::string display = "todbench-gui --pictures";
   int display_width_px = 1920, display_height_px = 1080;
   double display_pixel_mm = 0, display_span_k = 0, display_gamma = 1, display_settle_s = 0.2;
+  std::vector<double> display_luminance{0, 1};          ///< of equally spaced levels from black to white
   double distance_m = 2;                                ///< entrance pupil to plate; required in a file
   std::vector<std::string> plates{"tcat-a", "tcat-b"};  ///< names or files
   std::vector<Mounting> mountings{all_mountings.begin(), all_mountings.end()};

@@ -60,6 +60,20 @@ ValueMistakes check_display_span(const Plan& plan, std::size_t /*row*/) {
   return {};
 }
 
+ValueMistakes check_display_luminance(const Plan& plan, std::size_t /*row*/) {
+  const std::vector<double>& luminance = plan.target.display_luminance;
+  if (luminance.size() < 2) return {{std::nullopt, "expected two luminances or more, of black and of white"}};
+  for (std::size_t i = 1; i < luminance.size(); ++i) {
+    if (!(luminance[i] > luminance[i - 1])) {
+      return {{i, "a brighter level has more light: expected more than " + number_text(luminance[i - 1]) + ", found " +
+                      number_text(luminance[i])}};
+    }
+  }
+  if (luminance.size() > 2 && plan.target.display_gamma != 1)
+    return {{std::nullopt, "a table stands in place of display_gamma: expected one of them"}};
+  return {};
+}
+
 ValueMistakes check_contrast_unit(const Plan& plan, std::size_t /*row*/) {
   if (plan.camera.contrast == ContrastUnit::kelvin) return {};
   ValueMistakes mistakes;

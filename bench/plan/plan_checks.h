@@ -25,6 +25,7 @@ using ValueMistakes = std::vector<ValueMistake>;
 [[nodiscard]] ValueMistakes check_display_pixel(const Plan& plan, std::size_t row);
 /// Above 0 for kind display, and no contrast beyond it.
 [[nodiscard]] ValueMistakes check_display_span(const Plan& plan, std::size_t row);
+[[nodiscard]] ValueMistakes check_display_luminance(const Plan& plan, std::size_t row);
 /// None of 0 K, none twice.
 [[nodiscard]] ValueMistakes check_contrasts(const Plan& plan, std::size_t row);
 /// None that is also skipped.

@@ -84,7 +84,7 @@ Result<std::unique_ptr<Target>> open_target(const LoadedPlan& loaded, std::stop_
          .display = {.size_px = {plan.target.display_width_px, plan.target.display_height_px},
                      .pixel_mm = plan.target.display_pixel_mm},
          .span_k = plan.target.display_span_k,
-         .gamma = plan.target.display_gamma,
+         .tone = {.gamma = plan.target.display_gamma, .luminance = plan.target.display_luminance},
          .delta_t_k = plan.target.delta_t_k,
          .settle = std::chrono::milliseconds(static_cast<long>(1000 * plan.target.display_settle_s)),
          .description = "display: " + plan.target.display},

@@ -16,24 +16,16 @@ namespace {
 constexpr double screen_levels = 255;
 constexpr int least_levels = 16;
 
-double light_of(double level, double gamma) {
-  return gamma == 1 ? level : std::pow(level, gamma);
-}
-
-double level_of(double light, double gamma) {
-  return gamma == 1 ? light : std::pow(light, 1 / gamma);
-}
-
 /// Shares of the pattern to levels whose light is in proportion to them.
-cv::Mat1f drawn_levels(const cv::Mat1d& shares, const DisplayLevels& ends, double gamma) {
-  const double ground = light_of(ends.ground / screen_levels, gamma);
+cv::Mat1f drawn_levels(const cv::Mat1d& shares, const DisplayLevels& ends, const DisplayTone& tone) {
+  const double ground = tone.light_of(ends.ground / screen_levels);
   cv::Mat1f levels(shares.size());
   for (int row = 0; row < shares.rows; ++row) {
     for (int column = 0; column < shares.cols; ++column) {
       const double share = shares(row, column);
       // Most of a picture is ground: its level needs no power.
       const double level =
-          share == 0 ? ends.ground / screen_levels : level_of(ground + ends.light_difference * share, gamma);
+          share == 0 ? ends.ground / screen_levels : tone.level_of(ground + ends.light_difference * share);
       levels(row, column) = static_cast<float>(level);
     }
   }
@@ -42,7 +34,7 @@ cv::Mat1f drawn_levels(const cv::Mat1d& shares, const DisplayLevels& ends, doubl
 
 Result<DisplayLevels> levels_of_contrast(double delta_t_k, const DisplayTargetOptions& options) {
   const double contrast = delta_t_k / options.span_k;
-  const DisplayLevels ends = display_levels(std::clamp(contrast, -1.0, 1.0), options.gamma);
+  const DisplayLevels ends = display_levels(std::clamp(contrast, -1.0, 1.0), options.tone);
   const int steps = ends.pattern - ends.ground;
   if (std::abs(contrast) <= 1 && std::abs(steps) >= least_levels) return ends;
   return fail(ErrorCode::invalid_input,
@@ -71,7 +63,7 @@ class DisplayTarget final : public Target {
     const DisplayLevels ends = *shown_levels;
     const auto shares = plate_picture(mounted(*plate, state.mounting), state.shift_mm, options_.display, 0, 1);
     if (!shares) return tl::unexpected(shares.error());
-    const cv::Mat1f levels = drawn_levels(*shares, ends, options_.gamma);
+    const cv::Mat1f levels = drawn_levels(*shares, ends, options_.tone);
     const auto shown = show_(levels);
     if (!shown) return fail("the display", shown.error());
     if (auto same = is_shown(levels, *shown); !same) return tl::unexpected(same.error());
@@ -113,15 +105,32 @@ class DisplayTarget final : public Target {
 
 }  // namespace
 
-DisplayLevels display_levels(double contrast, double gamma) {
+double DisplayTone::light_of(double level) const {
+  if (luminance.size() < 3) return gamma == 1 ? level : std::pow(level, gamma);
+  const double at = std::clamp(level, 0.0, 1.0) * static_cast<double>(luminance.size() - 1);
+  const auto below = std::min(static_cast<std::size_t>(at), luminance.size() - 2);
+  const double seen = luminance[below] + (at - static_cast<double>(below)) * (luminance[below + 1] - luminance[below]);
+  return (seen - luminance.front()) / (luminance.back() - luminance.front());
+}
+
+double DisplayTone::level_of(double light) const {
+  if (luminance.size() < 3) return gamma == 1 ? light : std::pow(light, 1 / gamma);
+  const double wanted = luminance.front() + light * (luminance.back() - luminance.front());
+  const auto above = std::upper_bound(luminance.begin() + 1, luminance.end() - 1, wanted);
+  const auto below = above - 1;
+  const double at = static_cast<double>(below - luminance.begin()) + (wanted - *below) / (*above - *below);
+  return std::clamp(at / static_cast<double>(luminance.size() - 1), 0.0, 1.0);
+}
+
+DisplayLevels display_levels(double contrast, const DisplayTone& tone) {
   const auto nearest = [&](double light) {
-    return static_cast<int>(std::lround(screen_levels * level_of(std::clamp(light, 0.0, 1.0), gamma)));
+    return static_cast<int>(std::lround(screen_levels * tone.level_of(std::clamp(light, 0.0, 1.0))));
   };
   DisplayLevels out{.ground = nearest((1 - contrast) / 2)};
-  const double ground_light = light_of(out.ground / screen_levels, gamma);
+  const double ground_light = tone.light_of(out.ground / screen_levels);
   out.pattern = nearest(ground_light + contrast);
-  out.light_difference = gamma == 1 ? (out.pattern - out.ground) / screen_levels
-                                    : light_of(out.pattern / screen_levels, gamma) - ground_light;
+  out.light_difference = tone.in_proportion() ? (out.pattern - out.ground) / screen_levels
+                                              : tone.light_of(out.pattern / screen_levels) - ground_light;
   return out;
 }
 
@@ -156,7 +165,7 @@ Result<std::unique_ptr<Target>> open_display_target(DisplayTargetOptions options
   }
   auto show = shown_by_program(command);
   if (!show) return tl::unexpected(show.error());
-  const auto first = (*show)(cv::Mat1f(options.display.size_px, static_cast<float>(level_of(0.5, options.gamma))));
+  const auto first = (*show)(cv::Mat1f(options.display.size_px, static_cast<float>(options.tone.level_of(0.5))));
   if (!first) {
     // It never showed anything: what is missing is a screen, not a device that was lost.
     const ErrorCode code = first.error().code;

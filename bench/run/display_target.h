@@ -17,11 +17,22 @@ namespace todbench {
 /// Shows levels from 0 to 1 and answers with what is on the screen, as large and in the same levels.
 using ShowLevels = std::function<Result<cv::Mat1f>(const cv::Mat1f& levels)>;
 
+/// The light that a monitor makes of its levels, both from 0 to 1, of black to that of white.
+struct DisplayTone {
+  double gamma = 1;  ///< light is level^gamma, > 0
+  /// As measured, of equally spaced levels from black to white, rising, in any unit; straight lines between them. More
+  /// than two stand in place of gamma.
+  std::vector<double> luminance{0, 1};
+  [[nodiscard]] bool in_proportion() const { return luminance.size() < 3 && gamma == 1; }
+  [[nodiscard]] double light_of(double level) const;
+  [[nodiscard]] double level_of(double light) const;
+};
+
 struct DisplayTargetOptions {
   std::vector<TargetPlate> plates;  ///< in identity mounting
   DisplayGeometry display{};
-  double span_k = 1;                      ///< contrast that the camera shows of black beside white, > 0
-  double gamma = 1;                       ///< light of a level from 0 to 1 is level^gamma, > 0
+  double span_k = 1;  ///< contrast that the camera shows of black beside white, > 0
+  DisplayTone tone{};
   std::vector<double> delta_t_k{};        ///< that will be asked for, checked when the target is opened
   std::chrono::milliseconds settle{200};  ///< until the panel has changed
   std::string description = "display";    ///< for the report
@@ -42,7 +53,7 @@ struct DisplayLevels {
   double light_difference = 0;  ///< of pattern and ground, as a part of that of white and black; signed
 };
 /// `contrast`: the part of the span, from -1 to 1.
-[[nodiscard]] DisplayLevels display_levels(double contrast, double gamma);
+[[nodiscard]] DisplayLevels display_levels(double contrast, const DisplayTone& tone);
 
 /// The target with the program that shows its pictures. Shows a flat picture of half the light first. Errors, before a
 /// plate is drawn: `invalid_input` where a plate leaves the display in the middle of it, a contrast cannot be shown or

@@ -8,6 +8,7 @@
 
 #include "sim_devices/atmosphere/radiative_path.h"
 #include "sim_devices/sensor/effect_distortion.h"
+#include "sim_devices/sensor/effect_image_dance.h"
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/effect_turbulence.h"
 #include "sim_devices/sensor/sensor_model.h"
@@ -92,6 +93,22 @@ EffectPlan planned(const ScenePicturesTask& task, double contrast_k) {
   return all;
 }
 
+/// What the samples see, exposure by exposure where the air lets them dance.
+Result<cv::Mat1d> danced_signal_k(const SceneImager& imager, const SensorSpec& spec, const ScenePicturesTask& task,
+                                  const RadianceScale& scale, SceneView view, cv::Size size,
+                                  const std::vector<cv::Point2d>& displacements_pitch) {
+  if (dance_sd_pitch(spec) == 0) return scene_signal_k(imager, spec, task.scene, scale, view, size);
+  cv::Mat1d sum(size, 0.0);
+  const cv::Point2d still = view.centre_pitch;
+  for (const cv::Point2d& displacement : displacements_pitch) {
+    view.centre_pitch = still + displacement;
+    const auto signal = scene_signal_k(imager, spec, task.scene, scale, view, size);
+    if (!signal) return signal;
+    sum += *signal / static_cast<double>(displacements_pitch.size());
+  }
+  return sum;
+}
+
 std::vector<AirDecision> air_decisions(const ScenePicturesTask& task, const ScenePictures& out, double level_shift_k) {
   std::vector<AirDecision> decisions;
   const double lost_percent = 100 * (1 - out.transmittance);
@@ -108,7 +125,7 @@ std::vector<AirDecision> air_decisions(const ScenePicturesTask& task, const Scen
                          level_shift_k, clipped ? "; the contrast reaches an end of them" : "")
            : "the path adds what it takes of the background: it drops out of the contrast"});
   for (const auto& d : out.effects.plan.decisions) {
-    if (d.effect == Effect::turbulence) decisions.push_back({"turbulence", d.decision, d.reason});
+    if (is_of_air(d.effect)) decisions.push_back({std::string(to_string(d.effect)), d.decision, d.reason});
   }
   return decisions;
 }
@@ -163,7 +180,9 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   const SensorSpec& spec = model.spec();
 
   const SceneImager imager(spec, plan, task.accuracy);
-  auto signal = scene_signal_k(imager, spec, task.scene, scale, task.view, model.size());
+  std::vector<cv::Point2d> displacements_pitch = model.displacements_px(0);
+  for (cv::Point2d& displacement : displacements_pitch) displacement /= spec.samples_per_pitch();
+  const auto signal = danced_signal_k(imager, spec, task, scale, task.view, model.size(), displacements_pitch);
   if (!signal) return tl::unexpected(signal.error());
   const cv::Mat1f unit = as_float(*signal, *tau);
 
@@ -180,7 +199,8 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   // The middle of the shown field against that of the frame.
   fine_view.centre_pitch += cv::Point2d((spec.width - field) % 2, (spec.height - field) % 2) / 2;
   const auto filtered_scene = [&](const SensorPlan& filters) {
-    return scene_signal_k(SceneImager(fine, filters, task.accuracy), fine, task.scene, scale, fine_view, fine_size);
+    return danced_signal_k(SceneImager(fine, filters, task.accuracy), fine, task, scale, fine_view, fine_size,
+                           displacements_pitch);
   };
   const auto behind_optics = filtered_scene(with_decision(plan, Effect::detector, Decision::skip));
   if (!behind_optics) return tl::unexpected(behind_optics.error());

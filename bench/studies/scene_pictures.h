@@ -43,6 +43,11 @@ struct AirDecision {
   std::string reason;
 };
 
+/// Effects that are the air's: their decisions stand among those of the air.
+[[nodiscard]] constexpr bool is_of_air(Effect effect) {
+  return effect == Effect::turbulence || effect == Effect::image_dance;
+}
+
 /// What turbulence does before this camera.
 struct TurbulenceSeen {
   TurbulentPath path{};

@@ -57,6 +57,9 @@ class IdentificationBank {
   [[nodiscard]] std::size_t scores() const { return aspects_.size() * static_cast<std::size_t>(places_ * places_); }
   /// Scores of all templates for a patch of window_samples()^2 values whose mean is 0.
   [[nodiscard]] std::vector<float> project(const cv::Mat1f& patch) const;
+  /// project() of each, the same bits. Faster than one by one: the templates of large targets, hundreds of megabytes,
+  /// are read once for all of them.
+  [[nodiscard]] std::vector<std::vector<float>> project_all(std::span<const cv::Mat1f> patches) const;
   /// The alternative with the largest of signal + first_scale * first + second_scale * second, element by element.
   [[nodiscard]] std::size_t best(std::span<const float> signal, std::span<const float> first, float first_scale,
                                  std::span<const float> second, float second_scale) const;

@@ -15,11 +15,13 @@ namespace {
 
 constexpr int wavelengths = 16;
 
-/// Along one axis, in cycles per detector pitch.
+/// Along one axis, in cycles per detector pitch. Of the mean of frames: dance is blur to an eye that adds them up.
 class AxisMtf {
  public:
   explicit AxisMtf(const SensorSpec& spec)
-      : plan_(full_plan(spec, {}, {})), optics_(spec, plan_, wavelengths), footprint_({.spec = spec, .plan = plan_}) {}
+      : plan_(full_plan(spec, {Effect::image_dance}, {})),
+        optics_(spec, plan_, wavelengths),
+        footprint_({.spec = spec, .plan = plan_}) {}
   [[nodiscard]] double operator()(double f_per_pitch) const { return optics_(f_per_pitch) * footprint_(f_per_pitch); }
 
  private:

@@ -107,6 +107,11 @@ cv::Point2d view_offset(std::size_t phase) {
   return {offset(phase % phases_on_axis), offset(phase / phases_on_axis)};
 }
 
+/// A number of its own for every picture without noise, for the dance of the air.
+std::uint64_t presentation_of(std::size_t phase, std::size_t target, std::size_t aspect) {
+  return phase + phases * (aspect + 8 * target);
+}
+
 double samples_per_metre(const SensorSpec& spec, const IdentificationRange& range) {
   return 1e3 / (range.range_m * spec.ifov_mrad()) * spec.samples_per_pitch();
 }
@@ -147,9 +152,12 @@ class RangeTrial {
     for (std::size_t t = 0; t < targets.size(); ++t) {
       for (std::size_t a = 0; a < targets[t].size(); ++a) {
         const double contrast_k = targets[t][a].dt_rss_k * range_.transmittance;
+        if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+        std::vector<cv::Mat1f> patches;
+        for (std::size_t phase = 0; phase < phases; ++phase) patches.push_back(patch(t, a, phase));
+        const auto signals = bank_->project_all(patches);
         for (std::size_t phase = 0; phase < phases; ++phase) {
-          if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-          const auto signal = bank_->project(patch(alternatives_[t][a], phase));
+          const auto& signal = signals[phase];
           for (std::size_t d = first_draw_of(phase, t, a); d < draws; d += phases) {
             const std::size_t answer = bank_->best(signal, sensor_noise_[d], 1.0F, white_[d], own_noise(contrast_k));
             ++point.answers[t][answer];
@@ -189,8 +197,9 @@ class RangeTrial {
     return window;
   }
 
-  [[nodiscard]] cv::Mat1f patch(const std::vector<StepEdge>& edges, std::size_t phase) const {
-    return centred(window_.picture(edges, bank_->window_samples(), view_offset(phase), range_.transmittance));
+  [[nodiscard]] cv::Mat1f patch(std::size_t target, std::size_t aspect, std::size_t phase) const {
+    return centred(window_.picture(alternatives_[target][aspect], bank_->window_samples(), view_offset(phase),
+                                   range_.transmittance, presentation_of(phase, target, aspect)));
   }
 
   /// Of the observer, in kelvin per sample: its own, and what it sees of the sensor's beyond what there is.
@@ -203,10 +212,16 @@ class RangeTrial {
   /// The same numbers for every range but for the size of the window.
   Result<void> draw_noise(std::size_t draws) {
     const WindowNoise noise(spec_, task_.plan, task_.accuracy, bank_->window_samples(), task_.seed);
-    for (std::size_t d = 0; d < draws; ++d) {
+    constexpr std::size_t at_once = 32;
+    for (std::size_t first = 0; first < draws; first += at_once) {
       if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-      sensor_noise_.push_back(bank_->project(centred(noise.sensor_k(d))));
-      white_.push_back(bank_->project(centred(noise.white(d))));
+      std::vector<cv::Mat1f> sensor, white;
+      for (std::size_t d = first; d < std::min(draws, first + at_once); ++d) {
+        sensor.push_back(centred(noise.sensor_k(d)));
+        white.push_back(centred(noise.white(d)));
+      }
+      for (auto& projected : bank_->project_all(sensor)) sensor_noise_.push_back(std::move(projected));
+      for (auto& projected : bank_->project_all(white)) white_.push_back(std::move(projected));
     }
     return {};
   }
@@ -353,7 +368,8 @@ cv::Mat1f IdentificationFrames::frame_k(std::size_t range, std::size_t target, s
   const Range& at = *ranges_[range];
   std::size_t phase = 0;
   while (first_draw_of(phase, target, aspect) != draw % phases) ++phase;
-  return at.window.picture(at.alternatives[target][aspect], at.side, view_offset(phase), at.transmittance) +
+  return at.window.picture(at.alternatives[target][aspect], at.side, view_offset(phase), at.transmittance,
+                           presentation_of(phase, target, aspect)) +
          at.noise.sensor_k(draw);
 }
 

@@ -10,6 +10,7 @@
 #include "hvs/observer/score_maxima.h"
 #include "sim_devices/sensor/effect_dead_pixels.h"
 #include "sim_devices/sensor/effect_display.h"
+#include "sim_devices/sensor/effect_image_dance.h"
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "tod/plate/test_pattern.h"
 
@@ -75,13 +76,14 @@ SizeTrial::SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank
   const int per_pitch = chain.points_per_pitch() * (conditions_.by_pixels ? 2 : 1);
   // Pitches from the middle within which samples of the window and of the display's filter lie.
   const int margin = static_cast<int>(display_taps_.size()) / 2;
-  const int reach = (bank_->window_samples() / 2 + margin) / conditions_.samples_per_pitch + 2;
+  const int reach = (bank_->window_samples() / 2 + margin) / conditions_.samples_per_pitch + 2 +
+                    static_cast<int>(std::ceil(4 * dance_sd_pitch(sensor)));
   for (int truth = 0; truth < (alike ? 1 : bank_->alternatives()); ++truth) {
     const cv::Mat1d fine =
         chain.image(triangle(size_pitch, all_apexes[static_cast<std::size_t>(truth)])).fine_image(per_pitch, reach);
     for (int j = 0; j < per_axis; ++j) {
       for (int i = 0; i < per_axis; ++i) {
-        responses_.push_back(response(fine, per_pitch, {i, j}, per_axis));
+        responses_.push_back(response(fine, per_pitch, {i, j}, per_axis, static_cast<std::uint64_t>(j * per_axis + i)));
         responses_.back().truth = truth;
       }
     }
@@ -140,19 +142,29 @@ int SizeTrial::phases_per_sample() const {
   return std::max(1, conditions_.phases_per_axis / conditions_.samples_per_pitch) * (conditions_.by_pixels ? 2 : 1);
 }
 
-SizeTrial::Response SizeTrial::response(const cv::Mat1d& fine, int per_pitch, cv::Point phase, int per_axis) const {
+SizeTrial::Response SizeTrial::response(const cv::Mat1d& fine, int per_pitch, cv::Point phase, int per_axis,
+                                        std::uint64_t number) const {
   const int window = bank_->window_samples();
   const int stride = per_pitch / conditions_.samples_per_pitch;
   const int n = fine.rows;
   const int margin = static_cast<int>(display_taps_.size()) / 2;
   // Window centre relative to the centroid: -1/2 + (i + 1/2) / per_axis samples; samples at k + 1/2 from it.
   const auto first = [&](int p) { return (2 * p + 1) * stride / (2 * per_axis) - (window / 2 + margin) * stride; };
-  cv::Mat1f samples(window + 2 * margin, window + 2 * margin);
-  for (int row = 0; row < samples.rows; ++row) {
-    const int y = ((first(phase.y) + row * stride) % n + n) % n;
-    for (int column = 0; column < samples.cols; ++column) {
-      const int x = ((first(phase.x) + column * stride) % n + n) % n;
-      samples(row, column) = static_cast<float>(fine(y, x));
+  cv::Mat1f samples(window + 2 * margin, window + 2 * margin, 0.0F);
+  std::vector<cv::Point2d> exposures = spread_dance_pitch(conditions_.sensor, number);
+  if (exposures.empty()) exposures.emplace_back(0, 0);
+  const auto weight = 1 / static_cast<float>(exposures.size());
+  cv::Point2d displaced{0, 0};  // samples, of the mean
+  for (const cv::Point2d& displacement : exposures) {
+    const cv::Point moved(static_cast<int>(std::lround(displacement.x * per_pitch)),
+                          static_cast<int>(std::lround(displacement.y * per_pitch)));
+    displaced += static_cast<double>(weight) / stride * cv::Point2d(moved);
+    for (int row = 0; row < samples.rows; ++row) {
+      const int y = ((first(phase.y) + row * stride - moved.y) % n + n) % n;
+      for (int column = 0; column < samples.cols; ++column) {
+        const int x = ((first(phase.x) + column * stride - moved.x) % n + n) % n;
+        samples(row, column) += weight * static_cast<float>(fine(y, x));
+      }
     }
   }
   Response out;
@@ -160,11 +172,11 @@ SizeTrial::Response SizeTrial::response(const cv::Mat1d& fine, int per_pitch, cv
   if (margin > 0) samples = filtered(samples, display_taps_)(cv::Rect(margin, margin, window, window)).clone();
   out.scores = projected(samples);
   const int side = static_cast<int>(std::lround(std::sqrt(bank_->places())));
-  const auto step = [&](int p) {
-    const double offset = 0.5 - (p + 0.5) / per_axis;  // centroid from the window's centre, in samples
+  const auto step = [&](int p, double moved) {
+    const double offset = 0.5 - (p + 0.5) / per_axis + moved;  // centroid from the window's centre, in samples
     return std::clamp(static_cast<int>(std::lround(offset / conditions_.search_step_samples)), -(side / 2), side / 2);
   };
-  out.place = (step(phase.y) + side / 2) * side + step(phase.x) + side / 2;
+  out.place = (step(phase.y, displaced.y) + side / 2) * side + step(phase.x, displaced.x) + side / 2;
   if (conditions_.sensor.dead_pixel_share > 0) out.patch.assign(samples.begin(), samples.end());
   return out;
 }

@@ -86,7 +86,8 @@ class SizeTrial {
   };
   /// What one trial of pixel_proportion() comes to: 1, 0, or the fair part of a tie.
   [[nodiscard]] double pixel_trial(const Response& response, const PixelContrast& contrast, std::uint64_t index) const;
-  [[nodiscard]] Response response(const cv::Mat1d& fine, int per_pitch, cv::Point phase, int per_axis) const;
+  [[nodiscard]] Response response(const cv::Mat1d& fine, int per_pitch, cv::Point phase, int per_axis,
+                                  std::uint64_t number) const;
   [[nodiscard]] int phases_per_sample() const;  ///< per axis
   void draw(std::uint64_t index);
   [[nodiscard]] cv::Mat1f coloured(std::uint64_t index, int window) const;

@@ -216,7 +216,7 @@ class BarTrial {
 
   [[nodiscard]] Seen seen(const SceneImager& imager, BarPattern pattern, std::size_t phase) const {
     const SeenWindow window(spec_, imager);
-    return of(window.picture(edges(pattern), bank_->window_samples(), bar_offset(phase, task_.axis), 1));
+    return of(window.picture(edges(pattern), bank_->window_samples(), bar_offset(phase, task_.axis), 1, phase));
   }
 
   Result<void> draw_noise() {
@@ -403,7 +403,7 @@ cv::Mat1f BarFrames::frame_k(std::size_t frequency, BarPattern pattern, double c
                              std::uint64_t draw) const {
   const Frequency& at = *frequencies_[frequency];
   return at.window.picture(bar_edges_in_samples(at.spec, pattern, at.frequency_per_pitch, at.axis), at.side,
-                           bar_offset(phase % bar_phases, at.axis), contrast_k) +
+                           bar_offset(phase % bar_phases, at.axis), contrast_k, phase % bar_phases) +
          at.noise.sensor_k(draw);
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim_devices/sensor/effect_image_dance.h"
 #include "sim_devices/sensor/effect_motion.h"
 #include "sim_devices/sensor/effect_row.h"
 
@@ -41,7 +42,9 @@ EffectRow effect_rows::exposure() {
     if (spec.exposure_ms * spec.frame_rate_hz <= 1000 * (1 + 1e-9)) return "";
     return "exposure_ms must not be longer than a frame";
   };
-  row.is_neutral = [](const SensorSpec& spec, SceneMotion motion) { return spec.exposure_ms == 0 || !motion.moving(); };
+  row.is_neutral = [](const SensorSpec& spec, SceneMotion motion) {
+    return spec.exposure_ms == 0 || (!motion.moving() && !lets_dance(spec));
+  };
   row.neutralise = [](SensorSpec& spec) { spec.exposure_ms = 0; };
   row.neutral = "exposure_ms is 0 or nothing moves";
   row.directions = Directions::different;
@@ -58,7 +61,10 @@ EffectRow effect_rows::exposure() {
   row.bound = [](const ExpectedScene& scene) -> std::optional<double> {
     const double way = exposure_way_length(scene.spec, scene.motion);
     if (way >= longest_way) return std::nullopt;
-    return way * way / 2 / (scene.s75_pitch * scene.s75_pitch);
+    SensorSpec instant = scene.spec;
+    instant.exposure_ms = 0;
+    return way * way / 2 / (scene.s75_pitch * scene.s75_pitch) +
+           averaged_dance_bound(scene.spec, instant, scene.s75_pitch);
   };
   row.always = "always simulated: a pitch and more per exposure is beyond the criterion";
   return row;

@@ -8,6 +8,7 @@
 // NOLINTBEGIN(cppcoreguidelines-macro-usage)
 #define TODBENCH_EFFECTS(EFFECT) \
   EFFECT(turbulence)             \
+  EFFECT(image_dance)            \
   EFFECT(diffraction)            \
   EFFECT(spectral_band)          \
   EFFECT(aberration)             \

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim_devices/sensor/effect_image_dance.h"
 #include "sim_devices/sensor/effect_row.h"
 
 namespace todbench {
@@ -33,7 +34,7 @@ EffectRow effect_rows::motion() {
   row.keys = {{"time_constant_ms", &SensorSpec::time_constant_ms, NumberRange::between(0, 1000), KeyPresence::optional,
                "of the bolometer; 0 for a detector without memory"}};
   row.is_neutral = [](const SensorSpec& spec, SceneMotion motion) {
-    return spec.time_constant_ms == 0 || !motion.moving();
+    return spec.time_constant_ms == 0 || (!motion.moving() && !lets_dance(spec));
   };
   row.neutralise = [](SensorSpec& spec) { spec.time_constant_ms = 0; };
   row.neutral = "time_constant_ms is 0 or nothing moves";
@@ -51,7 +52,10 @@ EffectRow effect_rows::motion() {
   row.bound = [](const ExpectedScene& scene) -> std::optional<double> {
     const double v_tau = length_of(scene.spec, scene.motion);
     if (v_tau >= strongest_motion) return std::nullopt;
-    return 12 * v_tau * v_tau / 2 / (scene.s75_pitch * scene.s75_pitch);
+    SensorSpec instant = scene.spec;
+    instant.time_constant_ms = 0;
+    return 12 * v_tau * v_tau / 2 / (scene.s75_pitch * scene.s75_pitch) +
+           averaged_dance_bound(scene.spec, instant, scene.s75_pitch);
   };
   row.always = "always simulated: half a pitch and more per time constant is beyond the criterion";
   return row;

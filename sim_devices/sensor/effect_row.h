@@ -57,6 +57,8 @@ struct Readout {
 };
 /// Moves the places of all that is seen, whatever moves (effect_distortion.h).
 struct Lens {};
+/// Moves all that an exposure sees (effect_image_dance.h).
+struct Dance {};
 /// Says how often or at which wavelengths others act, through the parameters that they read.
 struct Parameter {};
 
@@ -84,7 +86,7 @@ struct Counts {};
 }  // namespace stage
 
 using EffectStage = std::variant<stage::Optics, stage::Footprint, stage::Transfer, stage::Readout, stage::Lens,
-                                 stage::Parameter, stage::Noise, stage::Picture, stage::Counts>;
+                                 stage::Dance, stage::Parameter, stage::Noise, stage::Picture, stage::Counts>;
 
 /// How far a stage of image formation spreads the picture of a point, in pitches.
 struct Spread {

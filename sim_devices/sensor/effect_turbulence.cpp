@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "sim_devices/sensor/effect_diffraction.h"
+#include "sim_devices/sensor/effect_image_dance.h"
 #include "sim_devices/sensor/effect_row.h"
 
 namespace todbench {
@@ -58,8 +59,14 @@ EffectRow effect_rows::turbulence() {
   row.neutralise = [](SensorSpec& spec) { spec.turbulence_cn2_m_minus_2_3 = 0; };
   row.neutral = "turbulence_cn2_m_minus_2_3 or turbulence_path_m is 0";
   row.stage = stage::Optics{[](const ChainScope& scope) -> std::function<double(double)> {
-    return [strength = turbulence_strength(scope.spec)](double rho) {
-      return std::exp(-strength * std::pow(rho, 5.0 / 3));
+    const double strength = turbulence_strength(scope.spec);
+    // What exposure and time constant average of the dance is theirs: without them it is that of an instant.
+    const double left_out = dance_weight(scope.spec) * dance_share(as_planned(scope.spec, scope.plan));
+    if (left_out == 0) return [strength](double rho) { return std::exp(-strength * std::pow(rho, 5.0 / 3)); };
+    // Fried's short exposure; beyond the end of the lens, where no wavelength of the mean passes, as at it.
+    return [strength, left_out, cut_off = dance_cut_off(scope.spec)](double rho) {
+      const double f = std::min(rho, cut_off);
+      return std::exp(-strength * std::pow(f, 5.0 / 3) * (1 - left_out * std::cbrt(f / cut_off)));
     };
   }};
   // The tail of -c rho^(5/3) is c pi^(-8/3) Gamma(11/6) / -Gamma(-5/6) r^(-11/3) = 0.00665 c r^(-11/3), faster than
@@ -73,7 +80,8 @@ EffectRow effect_rows::turbulence() {
   };
   row.band = [](const SensorSpec& spec, const Accuracy& accuracy) {
     const double strength = turbulence_strength(spec);
-    if (strength == 0) return std::numeric_limits<double>::infinity();
+    // Short frames may show what the long exposure takes away.
+    if (strength == 0 || spec.turbulence_correlation_ms > 0) return std::numeric_limits<double>::infinity();
     return std::max(std::pow(-std::log(accuracy.band_tolerance) / strength, 0.6), 0.5);
   };
   row.bound = [](const ExpectedScene& scene) -> std::optional<double> {

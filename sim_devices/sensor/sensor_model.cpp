@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sim_devices/sensor/effect_distortion.h"
+#include "sim_devices/sensor/effect_image_dance.h"
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/effect_readout.h"
 #include "sim_devices/sensor/effect_row.h"
@@ -53,6 +54,7 @@ struct SensorModel::State {
   std::uint64_t seed;
   std::vector<const stage::Noise*> noises;  ///< new in every exposure
   cv::Mat1f fixed_noise;                    ///< of all that is the same in every frame, kelvin; empty: none
+  ImageDance dance;
   std::vector<PixelFault> faults;
   std::vector<PictureStage> picture_stages;
   mutable std::mutex mutex;
@@ -62,7 +64,7 @@ struct SensorModel::State {
   mutable std::map<std::pair<double, double>, std::unique_ptr<const SceneImager>> imagers;  ///< by motion
 
   State(SensorSpec s, SensorPlan p, Accuracy a, std::uint64_t seed_of_all)
-      : spec(as_planned(std::move(s), p)), plan(std::move(p)), accuracy(a), seed(seed_of_all) {
+      : spec(as_planned(std::move(s), p)), plan(std::move(p)), accuracy(a), seed(seed_of_all), dance(spec) {
     faults = pixel_faults(spec);
     const NoiseStreams streams = [this](std::string_view name, std::uint64_t) { return stream(name); };
     for (const Effect effect : all_effects) {
@@ -105,6 +107,31 @@ struct SensorModel::State {
     };
     const PolygonImage& upright = image_of(Apex::up);
     return own_chain.turns_alike(upright) ? upright.turned(static_cast<int>(apex)) : image_of(apex);
+  }
+
+  /// The picture before noise that exposures `index` show of the scene, each where the air has it.
+  [[nodiscard]] cv::Mat1f danced_signal(const PlateScene& scene, std::uint64_t index) const {
+    const std::vector<cv::Point2d> displacements = displacements_px(index);
+    cv::Mat1f sum(size(), 0.0F);
+    for (const cv::Point2d& displacement : displacements) {
+      PlateScene moved = scene;
+      moved.centre_px += displacement;
+      const std::scoped_lock lock(mutex);
+      forget_shapes();
+      sum += draw(moved, size());
+    }
+    if (displacements.size() > 1) sum /= static_cast<double>(displacements.size());
+    return sum;
+  }
+  [[nodiscard]] std::vector<cv::Point2d> displacements_px(std::uint64_t index) const {
+    const auto exposures = static_cast<std::uint64_t>(spec.exposures_per_sample());
+    std::vector<cv::Point2d> out;
+    for (std::uint64_t k = 0; k < exposures; ++k)
+      out.push_back(spec.samples_per_pitch() * dance.displacement_pitch(stream("dance"), index * exposures + k));
+    return out;
+  }
+  void forget_shapes() const {
+    if (shapes.size() > cached_shapes) shapes.clear();
   }
 
   /// Picture `index` before quantisation.
@@ -203,7 +230,7 @@ std::shared_ptr<const cv::Mat1f> SensorModel::unit_signal(const PlateScene& scen
   for (const auto& [cached, picture] : state_->scenes) {
     if (same_geometry(cached, scene)) return picture;
   }
-  if (state_->shapes.size() > cached_shapes) state_->shapes.clear();
+  state_->forget_shapes();
   auto picture = std::make_shared<const cv::Mat1f>(state_->draw(scene, size()));
   state_->scenes.emplace_back(scene, picture);
   if (state_->scenes.size() > cached_scenes) state_->scenes.pop_front();
@@ -237,7 +264,13 @@ cv::Mat1f SensorModel::State::analog(const cv::Mat1f& unit, double delta_t_k, st
   return out;
 }
 
+std::vector<cv::Point2d> SensorModel::displacements_px(std::uint64_t index) const {
+  return state_->displacements_px(index);
+}
+
 cv::Mat1f SensorModel::picture(const PlateScene& scene, std::uint64_t index) const {
+  if (!state_->dance.still())
+    return picture(state_->danced_signal(scene, index), scene.delta_t_k, scene.background_k, index);
   return picture(*unit_signal(scene), scene.delta_t_k, scene.background_k, index);
 }
 
@@ -251,6 +284,8 @@ cv::Mat1f SensorModel::picture(const cv::Mat1f& unit_signal, double delta_t_k, d
 }
 
 cv::Mat1w SensorModel::expose(const PlateScene& scene, std::uint64_t index) const {
+  if (!state_->dance.still())
+    return expose(state_->danced_signal(scene, index), scene.delta_t_k, scene.background_k, index);
   return expose(*unit_signal(scene), scene.delta_t_k, scene.background_k, index);
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <vector>
 
 #include "acquisition/core/accuracy.h"
 #include "acquisition/core/rng.h"
@@ -31,13 +32,16 @@ class SensorModel {
 
   /// Picture elements: detectors times samples per pitch.
   [[nodiscard]] cv::Size size() const;
-  /// The picture before noise at a contrast of 1 K, above the surround. The last few geometries are cached.
+  /// The picture before noise at a contrast of 1 K, above the surround, where it is in the mean of pictures. The last
+  /// few geometries are cached.
   [[nodiscard]] std::shared_ptr<const cv::Mat1f> unit_signal(const PlateScene& scene) const;
+  /// By how much the dance of the air displaces each of the exposures of picture `index`, in samples; 0 in the mean.
+  [[nodiscard]] std::vector<cv::Point2d> displacements_px(std::uint64_t index) const;
   /// Picture `index` in kelvin above the surround: signal, temporal and line noise, fixed pattern, dead
   /// pixels, display, quantisation; each as planned.
   [[nodiscard]] cv::Mat1f picture(const PlateScene& scene, std::uint64_t index) const;
   /// The same for a signal that comes from elsewhere: size() kelvin per kelvin of contrast, before a surround of
-  /// `background_k`.
+  /// `background_k`. It is taken as displaced already.
   [[nodiscard]] cv::Mat1f picture(const cv::Mat1f& unit_signal, double delta_t_k, double background_k,
                                   std::uint64_t index) const;
   /// Frame `index` as the camera delivers it: the picture in counts, rounded and clipped to the significant bits.

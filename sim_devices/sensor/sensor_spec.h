@@ -30,6 +30,7 @@ struct SensorSpec {
   double wavelength_min_um = 7.5, wavelength_max_um = 13;
   double turbulence_cn2_m_minus_2_3 = 0;  ///< structure parameter of the air before the lens; 0: none
   double turbulence_path_m = 1000;        ///< along which it acts
+  double turbulence_correlation_ms = 0;   ///< of the dance of short frames; 0: every frame is the mean of many
   double optics_transmission = 0.8;       ///< normalised out of the signal: NETD is referred to the scene
   double aberration_sigma_pitch = 0;  ///< Gaussian blur of the lens beyond diffraction, per axis, in detector pitches
   double distortion_percent = 0;      ///< radial, at the corner of the picture: third power; positive: pincushion

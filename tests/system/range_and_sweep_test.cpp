@@ -18,6 +18,12 @@ std::string content(const std::filesystem::path& file) {
   return text.str();
 }
 
+int occurrences(const std::string& text, const std::string& of) {
+  int count = 0;
+  for (auto at = text.find(of); at != std::string::npos; at = text.find(of, at + 1)) ++count;
+  return count;
+}
+
 TEST(RangeCommand, FindsTheClosedFormsOfAcquireAndTtpOnGivenCurves) {
   const TemporaryFolder folder;
   std::ostringstream mrtd, ctf;
@@ -212,7 +218,18 @@ TEST(PictureCommand, WritesEveryStageOnOneGreyScale) {
   const Json blurred = one_object(todbench(turbulent, {.folder = folder.path()}));
   EXPECT_TRUE(json["turbulence"].is_null());
   EXPECT_EQ(blurred["turbulence"]["path_m"], 300.0);
-  EXPECT_EQ(blurred["atmosphere"]["decisions"].back()["name"], "turbulence");
+  const Json decisions = blurred["atmosphere"]["decisions"];
+  ASSERT_EQ(decisions.size(), 4);
+  EXPECT_EQ(decisions[2]["name"], "turbulence");
+  EXPECT_EQ(decisions[3]["name"], "image_dance");
+  // The page says each once, as what the air does.
+  const std::string page = content(folder.path() / "p/pictures.html");
+  const auto rows = [&](const std::string& name) { return occurrences(page, "<th scope=\"row\">" + name + "</th>"); };
+  EXPECT_EQ(rows("air: turbulence"), 1);
+  EXPECT_EQ(rows("air: image_dance"), 1);
+  EXPECT_EQ(rows("turbulence"), 1) << "its numbers";
+  EXPECT_EQ(rows("image_dance"), 0);
+  EXPECT_EQ(rows("diffraction"), 1);
   turbulent.back() = "1e-3";
   expect_refused(todbench(turbulent, {.folder = folder.path()}), 2, "--cn2");
 }

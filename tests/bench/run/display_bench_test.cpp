@@ -119,7 +119,7 @@ TEST(DisplayBench, SaysAtOnceWhatCannotBeShown) {
   const DisplayTargetOptions fits{.plates = {*load_plate("tcat-a")},
                                   .display = {.size_px = {780, 780}, .pixel_mm = pixel_mm},
                                   .span_k = span_k,
-                                  .gamma = monitor_gamma,
+                                  .tone = {.gamma = monitor_gamma},
                                   .delta_t_k = {16.9}};
   EXPECT_EQ(code_of(fits, command), std::nullopt);
   DisplayTargetOptions large = fits;

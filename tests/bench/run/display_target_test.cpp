@@ -80,7 +80,7 @@ TEST(DisplayTarget, SaysTheContrastOfTheLevelsThatItShows) {
 TEST(DisplayTarget, DrawsLightByAreaOnAMonitorWithGamma) {
   cv::Mat1f last;
   auto options = options_of(0.2);
-  options.gamma = 2.2;
+  options.tone.gamma = 2.2;
   const auto target = display_target(options, [&](const cv::Mat1f& levels) -> Result<cv::Mat1f> {
     last = levels.clone();
     return last;
@@ -95,9 +95,42 @@ TEST(DisplayTarget, DrawsLightByAreaOnAMonitorWithGamma) {
     // Half a level of light at the bright end, 2.2 / 255 / 2 of the span.
     EXPECT_NEAR(said->state.delta_t_k, contrast_k, 10 * 2.2 / 255 / 2);
   }
-  const DisplayLevels all = display_levels(1, 2.2);
+  const DisplayLevels all = display_levels(1, {.gamma = 2.2});
   EXPECT_EQ(all.ground, 0);
   EXPECT_EQ(all.pattern, 255);
+}
+
+// A measured table, of no power: the light that its straight lines give has the area of the triangles, too.
+TEST(DisplayTarget, DrawsLightByAreaOnAMonitorWithAMeasuredTable) {
+  const std::vector<double> table{0.5, 2.5, 12, 34, 90, 130};  // cd/m2 at 0, 51, ... 255: steep in the middle
+  const auto light_of = [&](double level) {
+    for (std::size_t i = 1; i < table.size(); ++i) {
+      if (level <= 51.0 * static_cast<double>(i) + 1e-9)
+        return table[i] - (51.0 * static_cast<double>(i) - level) / 51 * (table[i] - table[i - 1]);
+    }
+    return table.back();
+  };
+  cv::Mat1f last;
+  auto options = options_of(0.2);
+  options.tone.luminance = table;
+  const auto target = display_target(options, [&](const cv::Mat1f& levels) -> Result<cv::Mat1f> {
+    last = levels.clone();
+    return last;
+  });
+  for (const double contrast_k : {10.0, 5.0, -2.5}) {
+    const auto said = target->present({.plate = "two", .delta_t_k = contrast_k, .shift_mm = {0.07, -0.03}}, {});
+    ASSERT_TRUE(said) << said.error().message;
+    cv::Mat1d light(last.size());
+    for (int row = 0; row < last.rows; ++row)
+      for (int column = 0; column < last.cols; ++column) light(row, column) = light_of(255 * last(row, column));
+    const double of_white = (table.back() - table.front()) / 10;  // a kelvin
+    const double area = cv::sum(light - light(0, 0))[0] * 0.2 * 0.2 / of_white / said->state.delta_t_k;
+    EXPECT_NEAR(area, 100 + 25, 2e-3) << contrast_k << ": single precision";
+    // Half a level of light where the table is steepest.
+    EXPECT_NEAR(said->state.delta_t_k, contrast_k, 56.0 / 51 / of_white / 2);
+  }
+  const DisplayTone tone{.luminance = table};
+  for (const double light : {0.0, 0.01, 0.3, 0.77, 1.0}) EXPECT_NEAR(tone.light_of(tone.level_of(light)), light, 1e-14);
 }
 
 // What docs/instruments.md says of a gamma that nobody stated: at gamma 2 the contrast c stays, and the edges of the

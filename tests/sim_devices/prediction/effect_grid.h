@@ -11,6 +11,7 @@
 
 #include "sim_devices/prediction/direct_estimate.h"
 #include "sim_devices/prediction/effect_planner.h"
+#include "sim_devices/sensor/effect_image_dance.h"
 #include "sim_devices/sensor/effect_turbulence.h"
 #include "tests/sim_devices/reference.h"
 #include "tod/plate/test_pattern.h"
@@ -154,6 +155,21 @@ inline GridScene random_air_scene(std::uint64_t set, std::uint64_t number) {
   char name[120];
   std::snprintf(name, sizeof name, ", tau %.2f, Cn2 %.1e over %.0f m, strength %.2g", transmittance,
                 s.turbulence_cn2_m_minus_2_3, s.turbulence_path_m, turbulence_strength(s));
+  scene.name += name;
+  return scene;
+}
+
+/// A scene of random_air_scene() whose frames dance, by half a pitch per axis at most, from much faster than a frame to
+/// slower than a presentation.
+inline GridScene random_dance_scene(std::uint64_t set, std::uint64_t number) {
+  GridScene scene = random_air_scene(set, number);
+  const RandomStream random = RandomStream(set, "effect_planner.dance").sub(number);
+  SensorSpec& s = scene.sensor;
+  s.turbulence_correlation_ms = std::pow(1000.0, random.uniform(0));
+  if (random.uniform(1) < 0.5) s.exposure_ms = 1000 / s.frame_rate_hz * random.uniform(2);
+  while (dance_sd_pitch(s) > 0.5) s.turbulence_cn2_m_minus_2_3 /= 2;
+  char name[80];
+  std::snprintf(name, sizeof name, ", dance of %.2g pitches, %.3g ms", dance_sd_pitch(s), s.turbulence_correlation_ms);
   scene.name += name;
   return scene;
 }

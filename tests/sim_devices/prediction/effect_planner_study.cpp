@@ -10,7 +10,9 @@
 namespace todbench {
 namespace {
 
-constexpr int seeds = 2, draws = 200;
+struct StudyDraws {
+  int seeds = 2, draws = 200;
+};
 
 struct Summary {
   double largest_share = 0;  ///< of true change over tolerance
@@ -29,9 +31,9 @@ int skipped_effects(const EffectPlan& plan, const test::GridScene& scene) {
 }
 
 void hold_against_brute_force(const test::GridScene& scene, test::Observers& observers,
-                              std::map<double, Summary>& summaries) {
+                              std::map<double, Summary>& summaries, const StudyDraws& noise = {}) {
   TemplateObserver& observer = observers.of(scene.observer);
-  test::BruteForce brute(scene, observer, seeds, draws);
+  test::BruteForce brute(scene, observer, noise.seeds, noise.draws);
   for (const double tolerance : {1.0, 2.0, 5.0}) {
     const std::clock_t begin = std::clock();
     const auto plan = test::planned(scene, observer, tolerance);
@@ -100,6 +102,21 @@ TEST_P(EffectPlannerAirStudy, TheTrueChangeStaysWithinTheToleranceInEverySceneBe
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EffectPlannerAirStudy, ::testing::Values(0, 10, 20, 30, 40, 50),
+                         ::testing::PrintToStringParamName());
+
+/// With and without the dance all draws are the same, so fewer of them do; frames that dance cost four times as much.
+class EffectPlannerDanceStudy : public ::testing::TestWithParam<std::uint64_t> {};
+
+TEST_P(EffectPlannerDanceStudy, TheTrueChangeStaysWithinTheToleranceInEverySceneWhoseFramesDance) {
+  constexpr std::uint64_t set = 3, scenes = 5;
+  test::Observers observers;
+  std::map<double, Summary> summaries;
+  for (std::uint64_t k = GetParam(); k < GetParam() + scenes; ++k)
+    hold_against_brute_force(test::random_dance_scene(set, k), observers, summaries, {.seeds = 1, .draws = 60});
+  print("dance", summaries);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, EffectPlannerDanceStudy, ::testing::Values(0, 5, 10, 15, 20, 25),
                          ::testing::PrintToStringParamName());
 
 }  // namespace

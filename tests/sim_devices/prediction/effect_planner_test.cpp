@@ -4,6 +4,7 @@
 
 #include "sim_devices/prediction/cued_estimate.h"
 #include "sim_devices/prediction/direct_estimate.h"
+#include "sim_devices/sensor/effect_image_dance.h"
 #include "tests/sim_devices/prediction/effect_grid.h"
 
 namespace todbench {
@@ -287,6 +288,55 @@ TEST(EffectPlannerProof, ExposureAndReadoutChangeNoMoreThanTheirBounds) {
       expect_bounded(Effect::readout, sensor, {.x_mrad_s = 0.6 * speed, .y_mrad_s = -0.8 * speed}, delta_t_k);
     }
   }
+}
+
+/// A field of 0.047 mrad a pixel whose short frames dance by `sd_pitch` per axis.
+SensorSpec dancing(double sd_pitch) {
+  SensorSpec sensor = test::sc2000();
+  sensor.focal_length_mm = 1000;
+  sensor.f_number = 4;
+  sensor.turbulence_path_m = 2000;
+  sensor.turbulence_cn2_m_minus_2_3 = 1e-13;
+  sensor.turbulence_correlation_ms = 12;
+  sensor.turbulence_cn2_m_minus_2_3 *= std::pow(sd_pitch / dance_sd_pitch(sensor), 2);
+  return sensor;
+}
+
+TEST(EffectPlannerProof, TheDanceChangesNoMoreThanItsBound) {
+  for (const double delta_t_k : {0.23, 16.9}) {
+    for (const double sd_pitch : {0.08, 0.3}) {
+      SensorSpec sensor = dancing(sd_pitch);
+      expect_bounded(Effect::image_dance, sensor, {}, delta_t_k);
+      sensor.time_constant_ms = 10;
+      expect_bounded(Effect::motion, sensor, {}, delta_t_k);
+      sensor.time_constant_ms = 0;
+      sensor.exposure_ms = 10;
+      expect_bounded(Effect::exposure, sensor, {}, delta_t_k);
+    }
+  }
+}
+
+TEST(EffectPlanner, SimulatesTheDanceOnlyWhereItMatters) {
+  const auto skipped = plan_of(dancing(0.01), {1.93}), simulated = plan_of(dancing(0.5), {1.93});
+
+  ASSERT_TRUE(skipped && simulated);
+  const auto little = decision_of(*skipped, Effect::image_dance), much = decision_of(*simulated, Effect::image_dance);
+  EXPECT_EQ(little.decision, Decision::skip);
+  EXPECT_GT(little.predicted_change_percent.value(), 0);
+  EXPECT_EQ(much.decision, Decision::simulate);
+  EXPECT_THAT(much.reason, ::testing::HasSubstr("may change the acuity by"));
+}
+
+TEST(EffectPlannerProof, TheTrueChangeStaysWithinTheToleranceBehindAirThatDances) {
+  test::Observers observers;
+  const test::GridScene scene = test::random_dance_scene(9, 1);
+  TemplateObserver& observer = observers.of(scene.observer);
+  test::BruteForce brute(scene, observer, 1, 50);
+
+  const auto plan = test::planned(scene, observer, 5);
+
+  ASSERT_TRUE(plan.has_value()) << plan.error().message;
+  EXPECT_LE(std::abs(brute.change(plan->plan, 5).percent), 5) << scene.name;
 }
 
 TEST(EffectPlanner, HasNoCriterionForLongExposuresAndSteepReadout) {
