@@ -10,21 +10,11 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "bench/text/terminal_lines.h"
 #include "bench/text/text.h"
 
 namespace todbench {
 namespace {
-
-/// Characters on screen of a UTF-8 text (no combining characters are used here).
-std::size_t width(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
-std::string padded(std::string_view text, std::size_t columns, bool left) {
-  const std::string blanks(columns > width(text) ? columns - width(text) : 0, ' ');
-  return left ? std::string(text) + blanks : blanks + std::string(text);
-}
 
 /// Cells of a table at most: names come from cameras and files.
 constexpr std::size_t longest_cell = 300;
@@ -35,9 +25,11 @@ TableRow shown(const TableRow& row) {
   return cells;
 }
 
-/// A number, an interval, or the dash of a missing one.
-bool is_numeric(const std::string& cell) {
-  return cell.empty() || cell.starts_with("–") || cell.find_first_of("0123456789") <= (cell.starts_with('-') ? 1U : 0U);
+/// Letters of a line where that is a terminal that says.
+std::optional<std::size_t> columns_of_terminal(int descriptor) {
+  winsize size{};
+  if (isatty(descriptor) != 1 || ioctl(descriptor, TIOCGWINSZ, &size) != 0 || size.ws_col <= 1) return std::nullopt;
+  return size.ws_col;
 }
 
 std::string duration(double seconds) {
@@ -64,6 +56,18 @@ bool paged(const std::vector<std::string>& lines) {
 
 }  // namespace
 
+std::string broken_for(int descriptor, std::string_view text) {
+  const auto columns = columns_of_terminal(descriptor);
+  if (!columns) return std::string(text) + "\n";
+  std::string out;
+  while (true) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    for (const std::string& line : broken_line(text.substr(0, end), *columns)) out += line + "\n";
+    if (end == text.size()) return out;
+    text.remove_prefix(end + 1);
+  }
+}
+
 Console::Console(ConsoleOptions options) : options_(options) {
   terminal_ = isatty(STDERR_FILENO) == 1;
   const char* no_colour = std::getenv("NO_COLOR");
@@ -77,35 +81,19 @@ void Console::object(const Json& json) const {
 
 void Console::text(std::string_view line) const {
   if (options_.json) return;
-  std::fputs((valid_text(line) + "\n").c_str(), stdout);
+  std::fputs(broken_for(STDOUT_FILENO, valid_text(line)).c_str(), stdout);
   std::fflush(stdout);
 }
 
 void Console::table(const TableRow& header, const std::vector<TableRow>& given) const {
   std::vector<TableRow> rows;
   for (const TableRow& row : given) rows.push_back(shown(row));
-  std::vector<std::size_t> widths;
-  for (const auto& cell : header) widths.push_back(width(cell));
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width(row[i]));
-  }
-  std::vector<bool> left(header.size(), true);
-  for (std::size_t i = 1; i < header.size(); ++i) {
-    left[i] = std::any_of(rows.begin(), rows.end(), [&](const TableRow& row) { return !is_numeric(row[i]); });
-  }
-  const auto line = [&](const TableRow& row) {
-    std::string out;
-    for (std::size_t i = 0; i < row.size(); ++i) out += (i == 0 ? "" : "   ") + padded(row[i], widths[i], left[i]);
-    while (!out.empty() && out.back() == ' ') out.pop_back();
-    return out;
-  };
-  std::string rule;
-  for (std::size_t i = 0; i < widths.size(); ++i)
-    rule += std::string(i == 0 ? 0 : 3, ' ') + std::string(widths[i], '-');
-  std::vector<std::string> lines{valid_text(line(header)), rule};
-  for (const auto& row : rows) lines.push_back(valid_text(line(row)));
+  TableRow heads;
+  for (const std::string& cell : header) heads.push_back(valid_text(cell));
+  const std::vector<std::string> lines = table_lines(heads, rows, columns_of_terminal(STDOUT_FILENO));
   if (options_.json || paged(lines)) return;
-  for (const auto& one : lines) text(one);
+  for (const auto& one : lines) std::fputs((one + "\n").c_str(), stdout);
+  std::fflush(stdout);
 }
 
 void Console::waiting(std::string_view sentence) {
@@ -151,20 +139,20 @@ void Console::note(std::string_view sentence) {
   if (options_.quiet) return;
   end_progress();
   picture_lines_ = 0;
-  std::fputs((one_line(sentence) + "\n").c_str(), stderr);
+  std::fputs(broken_for(STDERR_FILENO, one_line(sentence)).c_str(), stderr);
 }
 
 void Console::warning(std::string_view sentence) {
   end_progress();
   picture_lines_ = 0;
-  std::fputs((one_line(sentence) + "\n").c_str(), stderr);
+  std::fputs(broken_for(STDERR_FILENO, one_line(sentence)).c_str(), stderr);
 }
 
 void Console::error(std::string_view sentence) {
   end_progress();
   picture_lines_ = 0;
-  const std::string text = "todbench: " + one_line(sentence);
-  std::fputs(((colour_ ? "\033[31m" + text + "\033[0m" : text) + "\n").c_str(), stderr);
+  const std::string text = broken_for(STDERR_FILENO, "todbench: " + one_line(sentence));
+  std::fputs((colour_ ? "\033[31m" + text + "\033[0m" : text).c_str(), stderr);
 }
 
 void Console::phase(std::string_view name) {
@@ -179,7 +167,7 @@ void Console::phase(std::string_view name) {
     return;
   }
   // The first step may take seconds; the name alone says that the program is at work.
-  std::fputs((phase_ + " ...").c_str(), stderr);
+  std::fputs(one_line(phase_ + " ...", columns() - 1).c_str(), stderr);
   std::fflush(stderr);
   bar_shown_ = true;
 }
@@ -192,11 +180,19 @@ void Console::progress(std::size_t done, std::size_t planned) {
   last_draw_ = now;
   const double share = static_cast<double>(done) / static_cast<double>(planned);
   const double elapsed = std::chrono::duration<double>(now - phase_start_).count();
-  const auto filled = static_cast<std::size_t>(share * 30);
-  std::string bar;
-  for (std::size_t i = 0; i < 30; ++i) bar += i < filled ? "█" : "░";
   const std::string left = done > 0 ? duration(elapsed / share - elapsed) + " left" : "";
-  std::fprintf(stderr, "\r\033[K%s  %s %3.0f %%  %s", phase_.c_str(), bar.c_str(), 100 * share, left.c_str());
+  // A line that is longer than the terminal would not be drawn over: the bar gives way, then the name.
+  constexpr std::size_t longest_bar = 30, shortest_bar = 5;
+  const std::string figures = fmt::format(" {:3.0f} %  {}", 100 * share, left);
+  const std::size_t room = columns() - 1;
+  const std::size_t others = columns_of(phase_) + 2 + columns_of(figures);
+  const std::size_t length = others + shortest_bar <= room ? std::min(longest_bar, room - others) : 0;
+  const auto filled = static_cast<std::size_t>(share * static_cast<double>(length));
+  std::string bar;
+  for (std::size_t i = 0; i < length; ++i) bar += i < filled ? "█" : "░";
+  const std::string text =
+      length > 0 ? phase_ + "  " + bar + figures : one_line(figures.substr(1) + "  " + phase_, room);
+  std::fputs(("\r\033[K" + text).c_str(), stderr);
   std::fflush(stderr);
   bar_shown_ = true;
 }

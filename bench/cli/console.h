@@ -29,10 +29,10 @@ class Console {
   [[nodiscard]] bool json() const { return options_.json; }
   /// The one JSON object of the run.
   void object(const Json& json) const;
-  /// Text for people on standard output; nothing with --json.
+  /// Text for people on standard output, broken at words where that is a terminal; nothing with --json.
   void text(std::string_view line) const;
-  /// A header and rows; columns of numbers are right-aligned, those of words left-aligned. A table longer than the
-  /// terminal goes through $PAGER (less).
+  /// A header and rows, as table_lines() lays them out for the terminal. A table longer than it goes through $PAGER
+  /// (less).
   void table(const TableRow& header, const std::vector<TableRow>& rows) const;
   /// A sentence on standard error; nothing with --quiet.
   void note(std::string_view sentence);
@@ -66,6 +66,10 @@ class Console {
   std::chrono::steady_clock::time_point phase_start_;
   std::chrono::steady_clock::time_point last_draw_;
 };
+
+/// The lines of a text with their ends, for standard output or standard error: broken at words where that is a
+/// terminal, which would break them anywhere.
+[[nodiscard]] std::string broken_for(int descriptor, std::string_view text);
 
 /// What was written to standard output reached it: `io` when it is full or closed.
 [[nodiscard]] Result<void> finish_output();

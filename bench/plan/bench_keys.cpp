@@ -372,6 +372,7 @@ PlanSection report_section() {
                     .type = ResourceKey{ResourceKind::letterhead},
                     .sentence = "logo and texts of the laboratory: a TOML file, which the session keeps",
                     .place = in(&Plan::report, &ReportPlan::letterhead),
+                    .form = {"Letterhead", "planLetterhead"},
                     .option = {"--letterhead", OptionOf::measurements},
                     .written_at_default = false}}};
 }

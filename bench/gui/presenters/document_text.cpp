@@ -1,11 +1,14 @@
 #include "bench/gui/presenters/document_text.h"
 
 #include <QByteArray>
+#include <QFontMetricsF>
 #include <QImage>
 #include <QTextCursor>
 #include <QTextTable>
 #include <QUrl>
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "acquisition/core/safe_text.h"
@@ -88,6 +91,40 @@ QTextTableCellFormat cell_format(const QTextCharFormat& base, CellKind kind) {
   return format;
 }
 
+/// Parts of the width in per cent. Columns whose texts fit into an even share are as wide as these, the narrowest
+/// first; the others share what is left by the square roots of their lengths. Left to itself Qt breaks words of narrow
+/// columns. Empty where everything fits.
+std::vector<double> widths_of(const Table& table) {
+  constexpr double text_width_px = 673, longest_px = 400, slack_px = 2;
+  QFont font("DejaVu Sans");
+  font.setPixelSize(text_px);
+  font.setBold(true);
+  const QFontMetricsF metrics(font);
+  std::vector<double> widths;
+  for (std::size_t column = 0; column < table.header.size(); ++column) {
+    double widest = metrics.horizontalAdvance(qt(table.header[column]));
+    for (const auto& row : table.rows) {
+      QString text;
+      if (column < row.size())
+        for (const Phrase& phrase : row[column].phrases) text += qt(phrase.text);
+      widest = std::max(widest, metrics.horizontalAdvance(text));
+    }
+    widths.push_back(std::min(std::ceil(widest) + 2 * (cell_padding + 1) + slack_px, longest_px));
+  }
+  std::vector<std::size_t> order(widths.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) { return widths[x] < widths[y]; });
+  double left_px = text_width_px, roots = 0;
+  std::size_t fitting = 0;
+  while (fitting < order.size() && widths[order[fitting]] <= left_px / static_cast<double>(order.size() - fitting))
+    left_px -= widths[order[fitting++]];
+  if (fitting == order.size()) return {};
+  for (std::size_t i = fitting; i < order.size(); ++i) roots += std::sqrt(widths[order[i]]);
+  for (std::size_t i = fitting; i < order.size(); ++i) widths[order[i]] = left_px * std::sqrt(widths[order[i]]) / roots;
+  for (double& width : widths) width *= 100 / text_width_px;
+  return widths;
+}
+
 /// Appends block after block. A block of text is begun where none waits; behind a table Qt leaves an empty one, which
 /// the next paragraph takes.
 class TextWriter {
@@ -123,7 +160,11 @@ class TextWriter {
 
   void operator()(const Table& table) {
     caption(table.caption);
-    QTextTable* cells = begin_table(static_cast<int>(table.rows.size()) + 1, static_cast<int>(table.header.size()));
+    QTextTableFormat format = ruled(widths_of(table));
+    // Again at the head of every page that the table goes over.
+    format.setHeaderRowCount(1);
+    QTextTable* cells =
+        begin_table(static_cast<int>(table.rows.size()) + 1, static_cast<int>(table.header.size()), format);
     for (std::size_t i = 0; i < table.header.size(); ++i)
       fill(cells->cellAt(0, static_cast<int>(i)), plain(table.header[i]), CellKind::header);
     for (std::size_t r = 0; r < table.rows.size(); ++r)

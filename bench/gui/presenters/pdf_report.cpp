@@ -40,24 +40,37 @@ QTextBlock content_after(QTextBlock block) {
   return block;
 }
 
+/// The block of a row that reaches lowest, whichever cell it is in.
+QTextBlock lowest_of(const QTextDocument& document, const QTextTable& table, int row) {
+  QTextBlock lowest = table.cellAt(row, 0).lastCursorPosition().block();
+  for (int column = 1; column < table.columns(); ++column) {
+    const QTextBlock last = table.cellAt(row, column).lastCursorPosition().block();
+    const auto bottom = [&](const QTextBlock& block) {
+      return document.documentLayout()->blockBoundingRect(block).bottom();
+    };
+    if (bottom(last) > bottom(lowest)) lowest = last;
+  }
+  return lowest;
+}
+
 /// The block that has to be on the page of a heading or of a caption: the first line of what is below, the end of a
-/// table of a few rows.
-QTextBlock belongs_to(const QTextBlock& block) {
+/// table of a few rows, the first row of a longer one.
+QTextBlock belongs_to(const QTextDocument& document, const QTextBlock& block) {
   constexpr int few_rows = 6;
   QTextBlock content = content_after(block);
   if (!content.isValid()) return content;
   const QTextBlock below = content_after(content);
   const bool caption = table_at(content) == nullptr && below.isValid() && table_at(below) != nullptr;
   if (caption) content = below;
-  if (const QTextTable* table = table_at(content); table != nullptr && table->rows() <= few_rows)
-    return table->lastCursorPosition().block();
+  if (const QTextTable* table = table_at(content); table != nullptr)
+    return lowest_of(document, *table, table->rows() <= few_rows ? table->rows() - 1 : 1);
   return content;
 }
 
 /// A table of one row, which holds figures side by side or the verdict, begins a page where it would go over two.
 void keep_row_together(QTextDocument& document, QTextTable& table) {
   const QTextBlock first = table.firstCursorPosition().block();
-  if (table.rows() > 1 || page_of(document, first) == page_of(document, table.lastCursorPosition().block())) return;
+  if (table.rows() > 1 || page_of(document, first) == page_of(document, lowest_of(document, table, 0))) return;
   QTextTableFormat format = table.format();
   format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
   table.setFormat(format);
@@ -86,7 +99,7 @@ void keep_together(QTextDocument& document) {
     const bool stands_over_a_table = next.isValid() && table_at(next) != nullptr;
     const bool figure = block.text().contains(QChar::ObjectReplacementCharacter);
     if (block.blockFormat().headingLevel() == 0 && !stands_over_a_table && !figure) continue;
-    const QTextBlock content = belongs_to(block);
+    const QTextBlock content = belongs_to(document, block);
     if (!content.isValid() || page_of(document, content) == page_of(document, block)) continue;
     const QTextBlock moved = with_headings(block);
     QTextBlockFormat format = moved.blockFormat();

@@ -82,8 +82,9 @@ struct AskFor {
     field.words = list_of(type.words);
   }
   void operator()(const ResourceKey& type) const {
-    field.kind = FieldKind::name;
     field.words = list_of(resource_names(type.kind));
+    field.kind = field.words.isEmpty() ? FieldKind::file : FieldKind::name;
+    if (field.words.isEmpty()) field.when_empty = "none";
   }
   void operator()(const ResourcesKey& type) const {
     field.kind = FieldKind::rows;

@@ -19,6 +19,7 @@ enum class FieldKind {
   yes_no,  ///< "yes" or "no"
   choice,  ///< one of `words`
   name,    ///< one of `words`, or a file
+  file,    ///< the name of a file
   boxes,   ///< any of `words`, with commas
   rows,    ///< rows with commas, their values with colons; empty values where a column is not needed. A value with one
            ///< of these in it stands in double quotes, its own quotes doubled; not in rows of one column

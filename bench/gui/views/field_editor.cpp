@@ -124,6 +124,9 @@ FieldEditor::FieldEditor(const PlanField& field, QWidget* parent) : QWidget(pare
     case FieldKind::number:
       make_line(field);
       break;
+    case FieldKind::file:
+      make_file(field);
+      break;
     case FieldKind::whole:
       make_whole(field);
       break;
@@ -178,6 +181,22 @@ void FieldEditor::make_line(const PlanField& field) {
   connect(edit, &QLineEdit::editingFinished, this, [this, edit] {
     if (!edit->isModified()) return;
     edit->setModified(false);
+    emit edited();
+  });
+}
+
+void FieldEditor::make_file(const PlanField& field) {
+  make_line(field);
+  QPushButton* choose = plain_button("From a file…", field.object_name + "File");
+  choose->setAccessibleName("File of " + field.label);
+  auto* buttons = new QHBoxLayout;  // NOLINT
+  buttons->addWidget(choose);
+  buttons->addStretch();
+  static_cast<QVBoxLayout*>(layout())->addLayout(buttons);
+  connect(choose, &QPushButton::clicked, this, [this] {
+    const QString file = QFileDialog::getOpenFileName(this, "Choose a file", {}, "Descriptions (*.toml)");
+    if (file.isEmpty()) return;
+    set_text_(file);
     emit edited();
   });
 }

@@ -29,6 +29,7 @@ class FieldEditor final : public QWidget {
 
  private:
   void make_line(const PlanField& field);
+  void make_file(const PlanField& field);
   void make_whole(const PlanField& field);
   void make_check(const PlanField& field);
   void make_combo(const PlanField& field);

@@ -4,6 +4,7 @@
 #include <QDesktopServices>
 #include <QHBoxLayout>
 #include <QLineEdit>
+#include <QPixmap>
 #include <QSplitter>
 #include <QUrl>
 
@@ -21,6 +22,7 @@ QString text_of(std::string_view text) {
 }
 
 constexpr int most_ratios = 5;  // in view at once
+constexpr int logo_px = 40;
 
 QString verdict_text(ReportVerdict verdict) {
   switch (verdict) {
@@ -119,6 +121,7 @@ QWidget* ReportView::session_panel() {
   auto* panel = new QWidget;
   auto* layout = new QVBoxLayout(panel);
   layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(letterhead_line());
   title_ = title_label("No session is open");
   title_->setObjectName("sessionTitle");
   title_->setTextInteractionFlags(Qt::TextSelectableByMouse);
@@ -180,6 +183,40 @@ QWidget* ReportView::session_panel() {
   return panel;
 }
 
+QWidget* ReportView::letterhead_line() {
+  letterhead_ = new QWidget;
+  letterhead_->setObjectName("sessionLetterhead");
+  auto* line = new QHBoxLayout(letterhead_);
+  line->setContentsMargins(0, 0, 0, 0);
+  logo_ = new QLabel;
+  laboratory_ = new QLabel;
+  laboratory_->setObjectName("sessionLaboratory");
+  laboratory_->setTextFormat(Qt::PlainText);
+  laboratory_->setWordWrap(true);
+  line->addWidget(logo_);
+  line->addWidget(laboratory_, 1);
+  letterhead_->hide();
+  return letterhead_;
+}
+
+void ReportView::show_letterhead(const std::optional<Letterhead>& letterhead) {
+  letterhead_->setVisible(letterhead.has_value());
+  if (!letterhead) return;
+  QPixmap logo;
+  if (logo.loadFromData(reinterpret_cast<const uchar*>(letterhead->logo_png.data()),
+                        static_cast<uint>(letterhead->logo_png.size())))
+    logo_->setPixmap(logo.scaledToHeight(logo_px, Qt::SmoothTransformation));
+  else
+    logo_->clear();
+  logo_->setVisible(!logo.isNull());
+  logo_->setAccessibleName(QString::fromStdString(letterhead->logo_text));
+  QStringList lines;
+  for (const std::string& line : letterhead->lines) lines << QString::fromStdString(line);
+  QStringList words{QString::fromStdString(letterhead->title), lines.join(" · ")};
+  words.removeAll(QString());
+  laboratory_->setText(words.join('\n'));
+}
+
 void ReportView::showEvent(QShowEvent* event) {
   QWidget::showEvent(event);
   presenter_.refresh();
@@ -204,6 +241,7 @@ void ReportView::list_sessions() {
 
 void ReportView::show_session() {
   const OpenedSession& opened = *presenter_.current();
+  show_letterhead(opened.report.letterhead);
   title_->setText(opened.name + (opened.report.camera
                                      ? ", serial number " + QString::fromStdString(opened.report.camera->serial)
                                      : QString()));
@@ -238,6 +276,7 @@ void ReportView::show_session() {
 void ReportView::show_comparison() {
   const ComparedSessions& compared = *presenter_.compared_sessions();
   const std::string reasons = reasons_unfit(compared.comparison.adequacy.value_or(Adequacy{}));
+  show_letterhead(std::nullopt);
   title_->setText(compared.a + " against " + compared.b);
   verdict_->setText("Acuity ratio " + compared.a + " / " + compared.b + ": " +
                     text_of(to_string(compared.comparison.verdict)) +

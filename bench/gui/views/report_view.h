@@ -37,10 +37,13 @@ class ReportView final : public QWidget {
  private:
   [[nodiscard]] QWidget* browser();
   [[nodiscard]] QWidget* session_panel();
+  [[nodiscard]] QWidget* letterhead_line();
   /// The session of the row that is chosen; nothing: none is.
   [[nodiscard]] std::optional<std::filesystem::path> chosen() const;
   void list_sessions();
   void show_session();
+  /// That of the laboratory, over the session that keeps one.
+  void show_letterhead(const std::optional<Letterhead>& letterhead);
   void show_comparison();
   void show_ratios(const std::optional<Comparison>& comparison);
   void show_plot();
@@ -50,6 +53,8 @@ class ReportView final : public QWidget {
   QLineEdit* filter_;
   QTableWidget *sessions_, *ratios_, *limits_;
   QLabel *title_, *verdict_, *frames_, *files_;
+  QWidget* letterhead_;
+  QLabel *logo_, *laboratory_;
   QPushButton *compare_, *export_, *replay_, *again_, *page_;
   QCheckBox* log_log_;
   PlotView* plot_;

@@ -70,6 +70,7 @@ TEST(PlanFields, HaveTheKindThatTheValueAsksFor) {
                                                   {"planMeasureLimits", FieldKind::rows},
                                                   {"planZoneLimits", FieldKind::rows},
                                                   {"planFleets", FieldKind::rows},
+                                                  {"planLetterhead", FieldKind::file},
                                                   {"planContrasts", FieldKind::rows}})
     EXPECT_EQ(field(fields, name).kind, kind) << name.toStdString();
   EXPECT_EQ(field(fields, "planContrasts").columns.size(), 2u) << "contrasts and limits are one table";

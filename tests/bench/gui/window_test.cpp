@@ -410,6 +410,40 @@ TEST(Window, ReplaysASessionFromItsFramesByteForByte) {
   EXPECT_EQ(*one, *two);
 }
 
+TEST(Window, TakesALetterheadInThePlanAndShowsItOverTheSession) {
+  ShownWindow window("sim:sc2000", 1);
+  const auto file = window.sessions() / "lab.toml";
+  ASSERT_TRUE(write_file_atomically(
+      file, "title = \"Acceptance\"\nlines = [\"Example Laboratory <b>\", \"Bench 2\"]\nfoot = \"Example\"\n"));
+  window->show_view(View::plan);
+  auto& line = window.part<QLineEdit>("planLetterhead");
+  const auto enter = [&](const QString& text) {
+    line.setFocus();
+    line.selectAll();
+    QTest::keyClicks(&line, text);
+    QTest::keyClick(&line, Qt::Key_Return);
+  };
+  const auto& problem = window.part<QLabel>("planLetterheadProblem");
+  enter("no-such-file.toml");
+  EXPECT_FALSE(problem.isHidden());
+  EXPECT_THAT(problem.text().toStdString(), HasSubstr("no-such-file.toml"));
+  enter(QString::fromStdString(file.string()));
+  EXPECT_TRUE(problem.isHidden()) << problem.text().toStdString();
+  EXPECT_EQ(window->bench().plan().report.letterhead, file.string());
+
+  window.measure();
+  ASSERT_TRUE(wait_until([&] { return window->sessions().current().has_value(); }));
+  window->show_view(View::report);
+  EXPECT_TRUE(window.part<QWidget>("sessionLetterhead").isVisible());
+  EXPECT_EQ(window.part<QLabel>("sessionLaboratory").text().toStdString(),
+            "Acceptance\nExample Laboratory <b> · Bench 2");
+  window.click("exportReports");
+  ASSERT_TRUE(wait_until([&] { return !window.part<QLabel>("exportedFiles").text().isEmpty(); }));
+  const auto page = read_text_file(window->measure().folder() / "report.html");
+  ASSERT_TRUE(page);
+  EXPECT_THAT(*page, HasSubstr("Example Laboratory &lt;b&gt;"));
+}
+
 TEST(Window, SaysThatASessionWithoutFramesCannotBeReplayed) {
   ShownWindow window("sim:sc2000", 1);
 
