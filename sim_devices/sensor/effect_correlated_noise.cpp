@@ -4,30 +4,14 @@
 #include <vector>
 
 #include "sim_devices/sensor/effect_row.h"
+#include "sim_devices/sensor/memory_weights.h"
 
 namespace todbench {
 namespace {
 
-/// Memory below this is cut off. Every correlation is right to it, that of successive exposures to its square.
-constexpr double shortest_memory = 0.01;
-
-/// What the white numbers of this exposure and of those before it add up to: x(t) = sum over j of w(j) z(t - j), with
-/// w(j) proportional to rho^j and squares that sum to 1. So an exposure takes bounded work wherever it is in the
-/// sequence.
-std::vector<double> weights(double rho) {
-  std::vector<double> out;
-  double squares = 0;
-  for (double power = 1; power >= shortest_memory; power *= rho) {
-    out.push_back(power);
-    squares += power * power;
-  }
-  for (double& weight : out) weight /= std::sqrt(squares);
-  return out;
-}
-
 /// The picture has its white noise already: what is added turns that into noise that remembers.
 void add_correlated_noise(cv::Mat1f& picture, const SensorSpec& spec, const NoiseStreams& streams, double weight) {
-  std::vector<double> terms = weights(spec.noise_correlation);
+  std::vector<double> terms = memory_weights(spec.noise_correlation);
   terms[0] -= 1;
   constexpr std::size_t strip = 4096;  // stays in the first-level cache
   float noise[strip];

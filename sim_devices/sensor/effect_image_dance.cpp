@@ -7,11 +7,10 @@
 
 #include "sim_devices/sensor/effect_row.h"
 #include "sim_devices/sensor/effect_turbulence.h"
+#include "sim_devices/sensor/memory_weights.h"
 
 namespace todbench {
 namespace {
-
-constexpr double shortest_memory = 0.01;  ///< what is left of it where it is cut off
 
 double aperture_m(const SensorSpec& spec) {
   return spec.focal_length_mm / spec.f_number / 1000;
@@ -74,14 +73,7 @@ double averaged_dance_bound(const SensorSpec& spec, const SensorSpec& instant, d
 }
 
 ImageDance::ImageDance(const SensorSpec& spec) : sd_pitch_(dance_sd_pitch(spec)) {
-  if (still()) return;
-  const double memory = dance_correlation(spec);
-  double squares = 0;
-  for (double power = 1; power >= shortest_memory; power *= memory) {
-    weights_.push_back(power);
-    squares += power * power;
-  }
-  for (double& weight : weights_) weight /= std::sqrt(squares);
+  if (!still()) weights_ = memory_weights(dance_correlation(spec));
 }
 
 cv::Point2d ImageDance::displacement_pitch(const RandomStream& stream, std::uint64_t exposure) const {
