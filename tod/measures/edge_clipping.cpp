@@ -108,7 +108,7 @@ std::optional<std::string_view> clipped_side(const std::vector<EdgeSample>& samp
   // A detector of full fill makes a ramp 0.77 to 0.8 pitch wide from 10 to 90 %, whose ends coarse counts turn into
   // corners. Without blur they are corners, the same at either end.
   const double bright_corner = corner_slope(bright, stretch), dark_corner = corner_slope(dark, stretch);
-  const bool alike = std::abs(bright_corner - dark_corner) < 0.02 * std::max(bright_corner, dark_corner);
+  const bool alike = std::abs(bright_corner - dark_corner) < 0.1 * std::max(bright_corner, dark_corner);
   const bool detector =
       levels.width_pitch <= 0.88 && (levels.count_step > 1e-3 * step || (alike && levels.width_pitch > 0.76));
   const auto cut = [&](double corner, const Plateau& own, const Plateau& other) {
