@@ -8,19 +8,6 @@
 namespace todbench {
 namespace {
 
-/// The list of a constant schedule. An adaptive one stays in a set-up for a visit, whatever a change takes.
-std::vector<TargetState> listed_states(const Plan& plan, const std::vector<TargetPlate>& plates) {
-  ConstantStimuliOptions stimuli = stimuli_options(plan, plates, plan.camera.ifov_mrad, Side::measured);
-  // Shifts are counted, not measured: a plan without a camera has them too.
-  stimuli.pixel_mm = 1;
-  stimuli.drawings.clear();
-  if (plan.schedule.kind == ScheduleKind::adaptive) {
-    const double visit_order[] = {3, 2, 1, 0};
-    std::copy(std::begin(visit_order), std::end(visit_order), std::begin(stimuli.change_cost_s));
-  }
-  return constant_stimuli(stimuli, RandomStream(plan.seed, "schedule"));
-}
-
 /// One presentation after another, as measure() goes through them.
 class Walk {
  public:
@@ -110,9 +97,25 @@ class Walk {
 
 }  // namespace
 
+std::vector<TargetState> listed_presentations(const Plan& plan, const std::vector<TargetPlate>& plates) {
+  ConstantStimuliOptions stimuli = stimuli_options(plan, plates, plan.camera.ifov_mrad, Side::measured);
+  // Shifts are counted, not measured: a plan without a camera has them too.
+  stimuli.pixel_mm = 1;
+  stimuli.drawings.clear();
+  if (plan.schedule.kind == ScheduleKind::adaptive) {
+    const double visit_order[] = {3, 2, 1, 0};
+    std::copy(std::begin(visit_order), std::end(visit_order), std::begin(stimuli.change_cost_s));
+  }
+  return constant_stimuli(stimuli, RandomStream(plan.seed, "schedule"));
+}
+
 BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates, double frame_rate_hz,
                      std::optional<double> presentations) {
-  const std::vector<TargetState> states = listed_states(plan, plates);
+  return bench_time(plan, plates, listed_presentations(plan, plates), frame_rate_hz, presentations);
+}
+
+BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates, const std::vector<TargetState>& states,
+                     double frame_rate_hz, std::optional<double> presentations) {
   Walk walk(plan);
   if (states.empty()) return walk.finished(frame_rate_hz);
   std::uint64_t count = states.size();

@@ -31,5 +31,14 @@ struct BenchTime {
 /// processor: counts, and no time.
 [[nodiscard]] BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates, double frame_rate_hz,
                                    std::optional<double> presentations);
+/// The same where the presentations are listed already.
+[[nodiscard]] BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates,
+                                   const std::vector<TargetState>& listed, double frame_rate_hz,
+                                   std::optional<double> presentations);
+
+/// The presentations of a constant schedule, for bench_time(): of an adaptive one those of its visits, for it stays in
+/// a set-up for a visit, whatever a change takes. They do not depend on the frames of a presentation. Choosing their
+/// phases takes 20 ms for the demonstration.
+[[nodiscard]] std::vector<TargetState> listed_presentations(const Plan& plan, const std::vector<TargetPlate>& plates);
 
 }  // namespace todbench

@@ -128,7 +128,8 @@ PlanOutlook outlook(const Plan& plan, const std::vector<TargetPlate>& plates, co
   Plan timed = plan;
   if (seen != nullptr && plan.schedule == seen->plan.schedule && plan.target.delta_t_k == seen->plan.target.delta_t_k)
     timed.schedule.frames_per_presentation = seen->frames;
-  const BenchTime bench = bench_time(timed, plates, frame_rate_hz, expected);
+  const std::vector<TargetState> listed = listed_presentations(timed, plates);
+  const BenchTime bench = bench_time(timed, plates, listed, frame_rate_hz, expected);
   out.presentations = bench.presentations;
   out.bench_s = bench.total_s();
   const double per_presentation = plates.empty() ? 0 : triangles_of(plates) / static_cast<double>(plates.size());
@@ -152,7 +153,7 @@ PlanOutlook outlook(const Plan& plan, const std::vector<TargetPlate>& plates, co
     for (const auto& [frames, percent] : seen->by_frames) {
       timed.schedule.frames_per_presentation = {frames};
       const auto here = rescaled_percent(percent, seen->plan.target.phases, plan.target.phases);
-      const double seconds = bench_time(timed, plates, frame_rate_hz, expected).total_s();
+      const double seconds = bench_time(timed, plates, listed, frame_rate_hz, expected).total_s();
       if (here) out.by_frames.emplace_back(seconds, *here);
     }
   }
