@@ -9,9 +9,11 @@
 
 #include "bench/cli/scene_files.h"
 #include "bench/cli/session_argument.h"
+#include "bench/cli/shown_run.h"
 #include "bench/enhance/enhancement_page.h"
 #include "bench/judgement/verdict.h"
 #include "bench/report/html.h"
+#include "bench/run/experiment.h"
 #include "bench/session/json_output.h"
 #include "bench/session/trials_csv.h"
 #include "bench/text/files.h"
@@ -24,7 +26,7 @@ namespace {
 struct EnhanceArguments {
   std::string plan, out = "enhancement";
   std::vector<std::string> packages;
-  bool overwrite = false;
+  bool overwrite = false, live = false;
   int dither = 1;
   Opening opening{};
 };
@@ -106,6 +108,34 @@ void say_enhancement(Console& console, const Enhancement& enhancement) {
   console.table({"package", "contrast (K)", "acuity (1/mrad)", "ratio", "95 %", "ms a frame"}, rows);
 }
 
+/// The plan as its camera is measured for packages: every frame is kept, answers are right or wrong, and after a change
+/// of the target as many frames are left out as any package remembers.
+Result<LoadedPlan> live_plan(const EnhanceArguments& a, const std::vector<EnhancementPackage>& packages,
+                             const Program& program) {
+  auto loaded = read_camera_plan(a.plan);
+  if (!loaded) return loaded;
+  if (auto paired = check_paired_plan(loaded->plan()); !paired) return tl::unexpected(paired.error());
+  Plan plan = loaded->plan();
+  if (program.common.seed_given) plan.seed = program.common.seed;
+  plan.measurement.record_frames = true;
+  plan.schedule.answers = AnswersChoice::binary;
+  plan.schedule.frames_per_presentation = SchedulePlan{}.frames_per_presentation;
+  for (const auto& package : packages)
+    plan.measurement.frames_after_change = std::max(plan.measurement.frames_after_change, memory_frames({}, package));
+  return loaded->with(std::move(plan));
+}
+
+/// Where the session is that the camera of the plan was measured into.
+Result<std::filesystem::path> measured_session(Console& console, const LoadedPlan& loaded,
+                                               const std::filesystem::path& folder, const std::stop_token& stop) {
+  ShownRun shown(console, loaded.plan());
+  const auto outcome = measure_plan(loaded, {.folder = folder / "session"}, shown.listener(), stop);
+  console.end_progress();
+  if (!outcome) return tl::unexpected(outcome.error());
+  if (outcome->ended_by) return tl::unexpected(*outcome->ended_by);
+  return outcome->folder;
+}
+
 int run_enhance(Console& console, const EnhanceArguments& a, const Program& program) {
   std::vector<EnhancementPackage> packages;
   for (const auto& file : a.packages) {
@@ -114,21 +144,34 @@ int run_enhance(Console& console, const EnhanceArguments& a, const Program& prog
     packages.push_back(*std::move(package));
   }
   std::error_code problem;
-  const bool recorded = std::filesystem::is_directory(a.plan, problem);
-  const auto loaded = recorded ? recorded_plan(a.plan, a.opening) : read_plan(a.plan);
-  if (!loaded) return report_error(console, loaded.error());
+  const bool folder_given = std::filesystem::is_directory(a.plan, problem);
+  if (a.live && folder_given)
+    return report_error(console, {ErrorCode::invalid_input, "--live measures the camera of a plan, this is a folder"});
+  const bool recorded = folder_given || a.live;
   if (recorded && a.dither > 1)
-    return report_error(console, {ErrorCode::invalid_input, "--dither is for simulated frames, these are recorded"});
+    return report_error(console, {ErrorCode::invalid_input, "--dither is for the frames of a simulated sensor"});
+  auto loaded = a.live     ? live_plan(a, packages, program)
+                : recorded ? recorded_plan(a.plan, a.opening)
+                           : read_plan(a.plan);
+  if (!loaded) return report_error(console, loaded.error());
   const std::filesystem::path folder = a.out;
   const auto existing = a.overwrite ? ExistingResults::overwritten : ExistingResults::refused;
   if (auto made = make_result_folder(folder, existing); !made) return report_error(console, made.error());
+  const auto stop = program.stop->token();
+  std::filesystem::path session = a.plan;
+  if (a.live) {
+    const auto measured = measured_session(console, *loaded, folder, stop);
+    if (!measured) return report_error(console, measured.error());
+    session = *measured;
+    loaded = recorded_plan(session, a.opening);
+    if (!loaded) return report_error(console, loaded.error());
+  }
   const EnhancementOptions options{
       .on_package =
           [&](const std::string& name) { console.phase((recorded ? "measuring with " : "simulating with ") + name); },
       .on_progress = [&](std::size_t done, std::size_t planned) { console.progress(done, planned); },
       .dither = a.dither};
-  const auto stop = program.stop->token();
-  const auto found = recorded ? compare_packages_recorded(a.plan, *loaded, packages, options, stop)
+  const auto found = recorded ? compare_packages_recorded(session, *loaded, packages, options, stop)
                               : compare_packages(*loaded, packages, options, stop);
   console.end_progress();
   if (!found) return report_error(console, found.error());
@@ -155,13 +198,18 @@ void add_enhance_command(CLI::App& app, Program& program) {
   auto a = std::make_shared<EnhanceArguments>();
   command
       ->add_option("PLAN", a->plan,
-                   "plan whose simulated sensor is before the packages, or session folder with recorded frames")
+                   "plan whose simulated sensor is before the packages (with --live its camera), or session folder "
+                   "with recorded frames")
       ->required();
   command->add_option("--packages", a->packages, "files of packages")->required()->expected(1, 16);
   command->add_option("--out", a->out, "folder for page, numbers and pictures")->capture_default_str();
   command->add_option("--dither", a->dither, "n: the simulated sensor looks at n x n places of a pixel in turn")
       ->capture_default_str()
       ->check(whole_number(1, 4));
+  command->add_flag(
+      "--live", a->live,
+      "measures the camera of the plan first, once, into the folder 'session' of --out: its frames go through "
+      "the packages");
   command->add_flag("--force", a->overwrite, "overwrite what is in the folder");
   add_accept_changed(*command, a->opening.accept_changed);
   finish_command(*command, program, [a, &program](Console& console) { return run_enhance(console, *a, program); });

@@ -4,8 +4,11 @@
 
 #include <memory>
 
+#include "bench/plan/descriptions.h"
 #include "sim_devices/module/module_check.h"
+#include "sim_devices/module/module_observer_check.h"
 #include "sim_devices/sensor/module_sensor_check.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {
@@ -15,7 +18,7 @@ struct ModuleArguments {
   int limit_ms = 5000;
   std::size_t memory_mib = 0;
   bool network = false;
-  std::string place = "picture";
+  std::string place = "picture", observer = "hvs-1";
 };
 
 Json report_json(const ModuleReport& report) {
@@ -44,15 +47,60 @@ int refuse_module(Console& console, const Error& error) {
   return report_error(console, error);
 }
 
+ModulePlan planned(const ModuleArguments& a, ModulePlace place) {
+  return {.place = place,
+          .command = a.command,
+          .version = {},
+          .parameters = {},
+          .limit_ms = a.limit_ms,
+          .memory_mib = static_cast<int>(a.memory_mib),
+          .network = a.network};
+}
+
+std::string said_of_network(bool cut) {
+  return cut ? "it had no network" : "it had the network of this host";
+}
+
+int run_observer_check(Console& console, const ModuleArguments& a) {
+  const auto spec = load_observer(a.observer);
+  if (!spec) return report_error(console, spec.error());
+  const auto report = check_observer(*spec, triangle_alternatives(), planned(a, ModulePlace::observer));
+  if (!report) return refuse_module(console, report.error());
+  if (console.json()) {
+    Json sizes = Json::array();
+    for (const JudgedSize& size : report->sizes) {
+      sizes.push_back({{"size_samples", size.size_samples},
+                       {"samples_per_pitch", size.samples_per_pitch},
+                       {"window_samples", size.window_samples},
+                       {"asked", size.asked},
+                       {"right", size.right}});
+    }
+    console.object({{"ok", true},
+                    {"deterministic", true},
+                    {"sizes", sizes},
+                    {"order_matters", report->order_matters},
+                    {"network_cut", report->network_cut},
+                    {"latency_ms", json_number(report->latency_ms)},
+                    {"reason", nullptr}});
+    return 0;
+  }
+  console.text("keeps the contract of an observer: one score for each alternative, two processes agree bit for bit");
+  console.text(said_of_network(report->network_cut));
+  console.text(fmt::format("{:.3f} ms a target of 5 samples", report->latency_ms));
+  std::vector<TableRow> rows;
+  for (const JudgedSize& size : report->sizes) {
+    rows.push_back({fmt::format("{:g}", size.size_samples), std::to_string(size.samples_per_pitch),
+                    fmt::format("{} x {}", size.window_samples, size.window_samples),
+                    fmt::format("{} of {}", size.right, size.asked)});
+  }
+  console.table({"size (samples)", "samples/pitch", "patch", "right without sensor noise"}, rows);
+  if (report->order_matters) console.note("its scores of a patch depend on the patches before it");
+  return 0;
+}
+
 int run_sensor_check(Console& console, const ModuleArguments& a) {
   SensorSpec spec;
-  spec.modules = {{.place = ModulePlace::sensor,
-                   .command = a.command,
-                   .version = {},
-                   .parameters = {},
-                   .limit_ms = a.limit_ms,
-                   .memory_mib = static_cast<int>(a.memory_mib),
-                   .network = a.network}};
+  spec.modules = {planned(a, ModulePlace::sensor)};
   const auto report = check_sensor(spec);
   if (!report) return refuse_module(console, report.error());
   if (console.json()) {
@@ -72,7 +120,7 @@ int run_sensor_check(Console& console, const ModuleArguments& a) {
   }
   console.text(fmt::format("keeps the contract of a sensor: frames of {} sizes, two processes agree bit for bit",
                            report->shapes.size()));
-  console.text(report->network_cut ? "it had no network" : "it had the network of this host");
+  console.text(said_of_network(report->network_cut));
   console.text(fmt::format("{:.3f} ms a frame of 320 x 240 pixels", report->latency_ms));
   console.text(fmt::format(
       "{}, deviation {:.2g}; a scene of 1 K is answered with {:.4g} K, noise {:.3g} K from frame "
@@ -83,6 +131,7 @@ int run_sensor_check(Console& console, const ModuleArguments& a) {
 
 int run_check(Console& console, const ModuleArguments& a) {
   if (a.place == to_string(ModulePlace::sensor)) return run_sensor_check(console, a);
+  if (a.place == to_string(ModulePlace::observer)) return run_observer_check(console, a);
   const auto report =
       check_module({.command = a.command,
                     .header = R"({"protocol": "todbench-module", "version": 1, "place": "picture", "parameters": {}})",
@@ -96,7 +145,7 @@ int run_check(Console& console, const ModuleArguments& a) {
   }
   console.text(
       fmt::format("keeps the contract: {} shapes answered, two processes agree bit for bit", report->shapes.size()));
-  console.text(report->network_cut ? "it had no network" : "it had the network of this host");
+  console.text(said_of_network(report->network_cut));
   console.text(fmt::format("{:.3f} ms an exchange of 320 x 240 numbers", report->latency_ms));
   console.text(fmt::format("{}, deviation {:.2g}; response to an impulse: sum {:.4g}, middle {:.4g}",
                            report->linear ? "linear" : "not linear", report->linearity_deviation, report->impulse_sum,
@@ -116,9 +165,11 @@ void add_module_command(CLI::App& app, Program& program) {
   check->add_option("--memory-mib", a->memory_mib, "address space that each of its processes may have; 0: no limit")
       ->check(whole_number(0, 1 << 20))
       ->capture_default_str();
-  check->add_option("--place", a->place, "in the chain: picture to picture, or scene to frame")
-      ->check(
-          CLI::IsMember({std::string(to_string(ModulePlace::picture)), std::string(to_string(ModulePlace::sensor))}))
+  check->add_option("--place", a->place, "in the chain: picture to picture, scene to frame, or patch to scores")
+      ->check(CLI::IsMember({std::string(to_string(ModulePlace::picture)), std::string(to_string(ModulePlace::sensor)),
+                             std::string(to_string(ModulePlace::observer))}))
+      ->capture_default_str();
+  check->add_option("--observer", a->observer, "of place observer: whose window and internal noise the patches have")
       ->capture_default_str();
   check->add_flag("--network", a->network, "leaves it the network of this host");
   finish_command(*check, program, [a](Console& console) { return run_check(console, *a); });

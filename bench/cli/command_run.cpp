@@ -237,13 +237,8 @@ Result<ExperimentOutcome> measure_shown(Console& console, const Plan& plan, Expe
 
 int run_measure(Console& console, const MeasureArguments& asked, const Program& program) {
   const RunArguments& arguments = asked.run;
-  auto loaded = read_plan(arguments.plan);
+  auto loaded = read_camera_plan(arguments.plan);
   if (!loaded) return report_error(console, loaded.error());
-  if (loaded->plan().camera.id.empty()) {
-    return report_error(console, {ErrorCode::invalid_input,
-                                  arguments.plan + ": names no camera, expected key 'id' in [camera] (todbench devices "
-                                                   "lists them)"});
-  }
   const auto plan = with_options(loaded->plan(), arguments, program);
   if (!plan) return report_error(console, plan.error());
   loaded = loaded->with(*plan);

@@ -74,7 +74,7 @@ void run_one(SimulatedSetUp set_up, const Plan& plan, const ExperimentInputs& in
   result.samples_per_pixel = set_up.options.judged_samples_per_pixel = samples_per_pixel(stages);
   const auto camera =
       processed_source(std::move(set_up.bench.camera), std::move(stages), ProcessedAs::judged, picture_frame, record);
-  TemplateObserver observer(inputs.observer, triangle_alternatives());
+  const auto observer = observer_of(plan, inputs, on_error_line);
   MeasurementListener listener;
   listener.on_progress = options.on_progress;
   listener.on_trial = [&, simulated = set_up.bench.simulated](Trial trial) {
@@ -84,7 +84,7 @@ void run_one(SimulatedSetUp set_up, const Plan& plan, const ExperimentInputs& in
     trial.frames = 1;
     result.trials.push_back(std::move(trial));
   };
-  const auto measured = measure(*camera, *set_up.bench.target, observer, *set_up.schedule, set_up.options,
+  const auto measured = measure(*camera, *set_up.bench.target, *observer, *set_up.schedule, set_up.options,
                                 *set_up.bench.host, listener, std::move(stop));
   if (!measured)
     result.error = measured.error();
@@ -98,7 +98,7 @@ void run_one(SimulatedSetUp set_up, const Plan& plan, const ExperimentInputs& in
   if (auto curve = tod_curve(result.trials, fit_options(plan))) {
     result.curve = std::move(*curve);
     result.curve.sensor = inputs.sensor.name;
-    result.curve.observer = inputs.observer.name;
+    result.curve.observer = observer_name(plan, inputs);
     for (TodPoint& point : result.curve.points) {
       point.estimator_reason =
           plan.fit.estimator == EstimatorChoice::automatic ? EstimatorReason::package : EstimatorReason::plan;

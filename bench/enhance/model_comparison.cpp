@@ -29,10 +29,11 @@ constexpr int transfer_points = 41;
 Result<ComparedModel> described(ComparedModel model, const Resource& resource) {
   model.sha256 = sha256_of(resource.text);
   if (model.kind == ModelKind::observer) {
-    auto observer = parse_observer(resource);
+    auto observer = parse_observer_with_module(resource);
     if (!observer) return tl::unexpected(observer.error());
     model.observer = *std::move(observer);
-    model.name = model.observer.name;
+    model.name = model.observer.spec.name;
+    if (model.observer.module) model.provenance.push_back(text_of(module_record(*model.observer.module)));
     return model;
   }
   auto sensor = parse_sensor(resource);
@@ -82,7 +83,12 @@ std::vector<KeyDifference> key_differences(const ComparedModel& a, const Compare
         {"search_step_samples", &TemplateObserverSpec::search_step_samples},
         {"window_size_factor", &TemplateObserverSpec::window_size_factor},
         {"window_margin_pitch", &TemplateObserverSpec::window_margin_pitch}};
-    for (const auto& [key, member] : members) add(key, number(a.observer.*member), number(b.observer.*member));
+    for (const auto& [key, member] : members)
+      add(key, number(a.observer.spec.*member), number(b.observer.spec.*member));
+    const auto command = [](const ComparedModel& model) {
+      return model.observer.module ? model.observer.module->command : std::string();
+    };
+    add("module", command(a), command(b));
   }
   return keys;
 }
@@ -95,7 +101,8 @@ Result<LoadedPlan> plan_with(const LoadedPlan& base, const ComparedModel& model)
     parts.sensor = model.sensor;
     plan.simulation.microscan = model.sensor.microscan;
   } else if (model.kind == ModelKind::observer) {
-    parts.observer = model.observer;
+    parts.observer = model.observer.spec;
+    if (model.observer.module) plan.modules = {*model.observer.module};
   }
   return LoadedPlan::of(std::move(plan), std::move(parts));
 }
@@ -222,7 +229,7 @@ Result<std::vector<double>> moduli_of(const ComparedModel& model, Chain& chain, 
   std::vector<double> moduli, cycles;
   for (const double f : frequencies_per_mrad) cycles.push_back(f / chain.samples_per_mrad());
   if (model.kind == ModelKind::observer) {
-    const double sigma = model.observer.blur_sigma_samples;
+    const double sigma = model.observer.spec.blur_sigma_samples;
     for (const double f : cycles)
       moduli.push_back(std::exp(-2 * std::numbers::pi * std::numbers::pi * sigma * sigma * f * f));
     return moduli;
@@ -276,6 +283,11 @@ Result<void> compare_pictures(ModelComparison& comparison, const LoadedPlan& pla
     if (!frame_a) return tl::unexpected(frame_a.error());
     if (!frame_b) return tl::unexpected(frame_b.error());
     comparison.pixels.push_back(difference_of("frame with noise", *frame_a, *frame_b));
+  }
+  if (comparison.a.observer.module || comparison.b.observer.module) {
+    comparison.notes.emplace_back(
+        "no transfer functions: an observer that is a program says scores, nothing of a blur");
+    return {};
   }
   const double highest = std::max(a.samples_per_mrad(), b.samples_per_mrad());
   std::vector<double> frequencies;
@@ -365,7 +377,7 @@ Result<ModelComparison> compare_models(const LoadedPlan& plan, ComparedModel a, 
     *result = simulate_package(*loaded, package ? &model->package : nullptr, settle, options, stop);
     result->name = model->name;
     if (stop.stop_requested()) return fail(ErrorCode::interrupted, "interrupted");
-    const bool programs = package || !loaded->sensor().modules.empty();
+    const bool programs = package || has_modules(loaded->plan(), loaded->sensor());
     if (result->error && !programs) return fail(model->name, *result->error);
   }
   comparison.ratios = paired_ratios(comparison.result_b.trials, comparison.result_a.trials, fit_options(plan.plan()));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bench/enhance/enhancement.h"
+#include "bench/plan/descriptions.h"
 
 namespace todbench {
 
@@ -17,8 +18,8 @@ enum class ModelKind { sensor, observer, package };
 struct ComparedModel {
   ModelKind kind = ModelKind::sensor;
   std::string name, reference, sha256;
-  SensorSpec sensor{};  ///< with its modules
-  TemplateObserverSpec observer{};
+  SensorSpec sensor{};           ///< with its modules
+  DescribedObserver observer{};  ///< with its module
   EnhancementPackage package{};  ///< without stages: none
   std::vector<std::string> provenance{};
 };
@@ -37,7 +38,7 @@ struct PixelDifference {
   cv::Point largest_at{};
   std::string reason;
 };
-/// Modulus along x. Nothing: there is none for this kind.
+/// Modulus along x. Of observers it is that of their blur; there is none where one of them is a program.
 struct TransferPoint {
   double frequency_per_mrad = 0;
   double a = 0, b = 0;

@@ -52,7 +52,6 @@ Section acuity_comparison(const ModelComparison& comparison) {
 
 Section transfer_section(const ModelComparison& comparison) {
   Section section{"Transfer along x", {}};
-  if (comparison.transfer.empty()) return section;
   Plot plot;
   plot.id = "models-mtf";
   plot.title = "Transfer functions";
@@ -139,8 +138,10 @@ Document model_comparison_page(const LoadedPlan& plan, const ModelComparison& co
   document.opening.emplace_back(Paragraph{plain(
       "Both saw the same plates, contrasts and sub-pixel phases with the same random numbers, and every effect was "
       "simulated. They part where the paired interval of the ratio leaves out 1.")});
-  document.sections = {acuity_comparison(comparison), transfer_section(comparison), differences_section(comparison),
-                       models_record(plan, comparison)};
+  document.sections = {acuity_comparison(comparison)};
+  if (!comparison.transfer.empty()) document.sections.push_back(transfer_section(comparison));
+  document.sections.push_back(differences_section(comparison));
+  document.sections.push_back(models_record(plan, comparison));
   return document;
 }
 

@@ -166,7 +166,7 @@ Result<SensorSpec> parse_sensor(const Resource& resource) {
   return checked(*reader, resource, std::move(spec));
 }
 
-Result<TemplateObserverSpec> parse_observer(const Resource& resource) {
+Result<DescribedObserver> parse_observer_with_module(const Resource& resource) {
   Result<TomlReader> reader = TomlReader::parse(resource.text, resource.origin);
   if (!reader) return tl::unexpected(reader.error());
   TemplateObserverSpec spec;
@@ -184,7 +184,29 @@ Result<TemplateObserverSpec> parse_observer(const Resource& resource) {
   spec.window_margin_pitch =
       reader->number("window_margin_pitch", NumberRange::between(0, 100), spec.window_margin_pitch);
   read_fit(reader->section("fit"));
-  return checked(*reader, resource, std::move(spec));
+  DescribedObserver described;
+  auto modules = reader->sections("module");
+  for (TomlReader& table : modules) {
+    const std::vector<std::string> places{std::string(to_string(ModulePlace::observer))};
+    (void)table.choice("place", places, places.front());
+    if (described.module) table.reject("command", "one observer is one program");
+    described.module = read_module(table);
+    described.module->place = ModulePlace::observer;
+  }
+  auto possible = checked(*reader, resource, std::move(spec));
+  if (!possible) return tl::unexpected(possible.error());
+  described.spec = *std::move(possible);
+  return described;
+}
+
+Result<TemplateObserverSpec> parse_observer(const Resource& resource) {
+  auto described = parse_observer_with_module(resource);
+  if (!described) return tl::unexpected(described.error());
+  if (described->module) {
+    return fail_at(ErrorCode::invalid_input, resource.origin,
+                   "its [[module]] is run by compare-models; a plan has one of its own with place = \"observer\"");
+  }
+  return std::move(described->spec);
 }
 
 Result<TargetPlate> parse_plate(const Resource& resource) {

@@ -225,6 +225,15 @@ Result<LoadedPlan> read_plan(std::string_view reference, const ResourceFinder& f
   return read_plan(*resource, is_file_reference(reference) ? std::filesystem::path(reference).parent_path() : "", find);
 }
 
+Result<LoadedPlan> read_camera_plan(std::string_view reference) {
+  auto loaded = read_plan(reference);
+  if (loaded && loaded->plan().camera.id.empty())
+    return fail(
+        ErrorCode::invalid_input,
+        std::string(reference) + ": names no camera, expected key 'id' in [camera] (todbench devices lists them)");
+  return loaded;
+}
+
 Result<Plan> load_plan(std::string_view reference) {
   const Result<LoadedPlan> loaded = read_plan(reference);
   if (!loaded) return tl::unexpected(loaded.error());

@@ -69,6 +69,9 @@ class LoadedPlan {
 [[nodiscard]] Result<LoadedPlan> read_plan(const Resource& resource, const std::filesystem::path& folder,
                                            const ResourceFinder& find = find_resource);
 
+/// A plan that names a camera; `invalid_input` for one that does not.
+[[nodiscard]] Result<LoadedPlan> read_camera_plan(std::string_view reference);
+
 /// The plan with the files that it names as absolute paths; relative ones are relative to `folder`.
 [[nodiscard]] Plan with_absolute_references(Plan plan, const std::filesystem::path& folder);
 

@@ -75,6 +75,24 @@ TEST_F(Modules, AndPackagesAreComparedOnTheRecordedFramesOfASession) {
   expect_refused(run({"enhance", ".", "--packages", "same.toml", "--out", "no"}), 2, "");
 }
 
+TEST_F(Modules, AndPackagesAreComparedOnTheFramesOfACameraThatIsMeasuredForThem) {
+  folder_.write("plan.toml", small_measurement(4));
+  folder_.write("slow.toml", "[[stage]]\nkind = \"recursive\"\nshare = 0.25\n");
+
+  const Ended ended = run({"enhance", "./plan.toml", "--live", "--packages", "slow.toml", "--out", "e", "--json"});
+
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Json json = one_object(ended);
+  EXPECT_TRUE(same_content(at("e") / "session" / "trials.csv", at("e") / "trials-0.csv"));
+  EXPECT_EQ(json["results"][1]["trials"], json["results"][0]["trials"]);
+  EXPECT_TRUE(json["warnings"].empty()) << "the camera was given the time that the filter needs to forget";
+  EXPECT_FALSE(std::filesystem::is_empty(at("e") / "session" / "frames"));
+  expect_refused(run({"enhance", "e/session", "--live", "--packages", "slow.toml", "--out", "no"}), 2, "--live");
+  folder_.write("simulated.toml",
+                "name = \"simulated\"\n[target]\nkind = \"scene\"\ndistance_m = 2\nplates = [\"tcat-a\"]\n");
+  expect_refused(run({"enhance", "./simulated.toml", "--live", "--packages", "slow.toml", "--out", "no"}), 2, "camera");
+}
+
 TEST_F(Modules, ThatAreTheObserverGiveTheAnswersOfTheBuiltInOne) {
   const Ended built_in = simulate("built-in", module_section("identity"));
   const Ended module = simulate("module", module_section("hvs", "place = \"observer\"\nversion = \"echo 1.5\"\n"));

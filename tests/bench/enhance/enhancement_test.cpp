@@ -16,6 +16,7 @@
 #include "bench/plan/plan.h"
 #include "bench/plan/plan_options.h"
 #include "bench/report/html.h"
+#include "bench/text/files.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "sim_devices/sensor/super_resolution.h"
 #include "tests/bench/enhance/paired_ratio_coverage.h"
@@ -27,6 +28,7 @@ namespace todbench {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::TemporaryFolder;
 
 LoadedPlan small_plan(const std::string& contrasts, int phases, const std::string& more = "") {
@@ -341,6 +343,31 @@ TEST(ModelComparison, KnowsTheTransferOfALinearPackageAndThatEqualisationHasNone
   EXPECT_TRUE(found->notes.empty());
   ASSERT_TRUE(other) << other.error().message;
   EXPECT_FALSE(other->notes.empty()) << "equalisation depends on content";
+}
+
+TEST(ModelComparison, OfAnObserverWithTheSameTemplatesAsAProgramFindsNothing) {
+  const auto plan = small_plan("16.9", 4);
+  const TemporaryFolder folder;
+  const auto file = (folder.path() / "program.toml").string();
+  ASSERT_TRUE(write_file_atomically(file,
+                                    "name = \"program\"\nblur_sigma_samples = 0.6\ninternal_noise = 0.07\n[[module]]\n"
+                                    "command = \"" TODBENCH_MODULE_EXAMPLE " hvs identity\"\nlimit_ms = 60000\n"));
+  const auto built_in = read_compared_model("hvs-1"), program = read_compared_model(file);
+  ASSERT_TRUE(built_in && program) << program.error().message;
+
+  const auto found = compare_models(plan, *built_in, *program, {}, {});
+
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_FALSE(found->result_b.error);
+  ASSERT_EQ(found->keys.size(), 1u);
+  EXPECT_EQ(found->keys[0].key, "module");
+  ASSERT_EQ(found->result_a.trials.size(), found->result_b.trials.size());
+  for (std::size_t i = 0; i < found->result_a.trials.size(); ++i)
+    EXPECT_EQ(found->result_a.trials[i].answer, found->result_b.trials[i].answer) << i;
+  EXPECT_TRUE(found->transfer.empty());
+  EXPECT_FALSE(found->notes.empty()) << "says why there is no transfer";
+  EXPECT_THAT(render_html(model_comparison_page(plan, *found)), Not(HasSubstr("Transfer along x")));
+  EXPECT_FALSE(load_observer(file)) << "elsewhere the program would be left out";
 }
 
 TEST(ModelComparison, IsRefusedBetweenKinds) {

@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include "sim_devices/module/module_check.h"
+#include "sim_devices/module/module_observer_check.h"
 #include "sim_devices/module/npy_message.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {
@@ -91,6 +93,52 @@ TEST(ModuleCheck, NamesEveryWayToBreakTheContract) {
   EXPECT_EQ(refused("endless").code, ErrorCode::integrity);
   EXPECT_EQ(check_module({.command = "/no/such/program", .limit = std::chrono::seconds(60)}).error().code,
             ErrorCode::disconnected);
+}
+
+Result<ObserverModuleReport> checked_observer(const std::string& mode) {
+  ::signal(SIGPIPE, SIG_IGN);
+  ModulePlan module;
+  module.place = ModulePlace::observer;
+  module.command = std::string(TODBENCH_MODULE_EXAMPLE) + " hvs " + mode;
+  module.limit_ms = 60000;
+  return check_observer({}, triangle_alternatives(), module);
+}
+
+TEST(ObserverModuleCheck, CountsWhatAModuleWithTheTemplatesOfTheObserverFinds) {
+  const auto report = checked_observer("identity");
+
+  ASSERT_TRUE(report) << report.error().message;
+  ASSERT_EQ(report->sizes.size(), 4u);
+  TemplateObserver built_in({}, triangle_alternatives());
+  for (const JudgedSize& size : report->sizes) {
+    EXPECT_EQ(size.window_samples, (*built_in.prepare(size.size_samples, size.samples_per_pitch))->window_samples());
+    EXPECT_EQ(size.asked, 36);
+  }
+  EXPECT_GE(report->sizes.front().right, 24) << "a guess is right in a quarter of them";
+  EXPECT_EQ(report->sizes[2].right, 36);
+  EXPECT_EQ(report->sizes[3].right, 36);
+  EXPECT_FALSE(report->order_matters);
+}
+
+TEST(ObserverModuleCheck, NamesEveryWayToBreakTheContract) {
+  const auto refused = [](const std::string& mode) {
+    const auto report = checked_observer(mode);
+    EXPECT_FALSE(report) << mode;
+    return report ? Error{} : report.error();
+  };
+
+  EXPECT_THAT(refused("crash").message, HasSubstr("the licence has expired"));
+  EXPECT_THAT(refused("nan").message, HasSubstr("not finite"));
+  EXPECT_THAT(refused("shape").message, HasSubstr("shape"));
+  EXPECT_THAT(refused("text").message, HasSubstr("no .npy array"));
+  EXPECT_THAT(refused("random").message, HasSubstr("differently"));
+}
+
+TEST(ObserverModuleCheck, SaysThatAModuleRemembers) {
+  const auto report = checked_observer("remembers");
+
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_TRUE(report->order_matters);
 }
 
 #if !defined(__SANITIZE_ADDRESS__)
