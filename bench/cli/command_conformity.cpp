@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "acquisition/core/distributions.h"
 #include "bench/cli/commands.h"
 #include "bench/judgement/conformity.h"
 #include "bench/judgement/uncertainty_budget.h"
@@ -17,8 +18,7 @@ struct ConformityArguments {
   MeasuredValue measured;
   ToleranceLimits tolerance;
   std::string rule{to_string(ConformityRule::guarded_acceptance_and_rejection)};
-  double coverage_factor = 2;
-  std::optional<double> guard_band, risk, fleet_mean, fleet_sd;
+  std::optional<double> coverage_factor, guard_band, risk, fleet_mean, fleet_sd;
 };
 
 /// Other names under which the rules are known.
@@ -35,7 +35,10 @@ ConformityRule rule_of(const std::string& name) {
 double guard_band_of(const ConformityArguments& a) {
   if (a.guard_band) return *a.guard_band;
   if (a.risk) return guard_band_for_risk(*a.risk, a.measured);
-  return a.coverage_factor * a.measured.u;
+  if (a.coverage_factor) return *a.coverage_factor * a.measured.u;
+  // 95.45 %: a factor of 2 where u is known well, that of Student's t where it is not.
+  if (a.measured.degrees_of_freedom) return guard_band_for_risk(distribution::tail_above(2, std::nullopt), a.measured);
+  return 2 * a.measured.u;
 }
 
 int exit_code_of(ConformityDecision decision) {
@@ -193,11 +196,13 @@ void add_conformity_command(CLI::App& app, Program& program) {
   auto* risk = command->add_option("--guard-band-risk", a->risk, "of a wrong acceptance at the acceptance limit")
                    ->check(number_in(1e-9, 0.5))
                    ->excludes(band);
-  command->add_option("--coverage-factor", a->coverage_factor, "the guard band is so many standard uncertainties")
+  command
+      ->add_option("--coverage-factor", a->coverage_factor,
+                   "the guard band is so many standard uncertainties; default: 2, with --nu as many of Student's t "
+                   "leave as little")
       ->check(number_in(0, 1e6))
       ->excludes(band)
-      ->excludes(risk)
-      ->capture_default_str();
+      ->excludes(risk);
   command->add_option("--fleet-mean", a->fleet_mean, "of true values over the fleet: global risks too")
       ->check(number_in(-most, most));
   command->add_option("--fleet-sd", a->fleet_sd, "their standard deviation")->check(number_in(0, most));

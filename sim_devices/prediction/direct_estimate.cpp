@@ -13,6 +13,7 @@
 #include "sim_devices/prediction/local_crossing.h"
 #include "sim_devices/prediction/size_trial.h"
 #include "sim_devices/sensor/effect_display.h"
+#include "sim_devices/sensor/effect_image_dance.h"
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "tod/plate/test_pattern.h"
@@ -330,7 +331,7 @@ double predicted_direct_seconds(const TemplateObserverSpec& observer, const Sens
   const double n = sensor.samples_per_pitch();
   const double half = std::ceil(observer.window_size_factor * s75_pitch + observer.window_margin_pitch);
   const double samples = std::pow(2 * half * n, 2);
-  const double phases = std::pow(phases_per_axis / n, 2);
+  const double phases = std::pow(phases_per_axis / n, 2) * dances_per_phase(sensor, phases_per_axis);
   // Building a bank costs as much as sixty of its projections. A draw is projected, and compared at every phase; where
   // every pixel is rounded it is projected at as many phases as an axis has.
   const double projections = rounds_coarsely(sensor) ? 2 * phases_per_axis / n : 1;

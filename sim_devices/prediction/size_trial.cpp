@@ -72,7 +72,7 @@ SizeTrial::SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank
   if (has_display(sensor)) display_taps_ = taps_of([&](double f) { return display_response(sensor, f); });
   // The sampling grid and most effects look the same from all four sides.
   const bool alike = conditions_.orientations == ShownOrientations::as_needed && turns_alike;
-  const int per_axis = phases_per_sample();
+  const int per_axis = phases_per_sample(), dances = dances_per_phase(sensor, conditions_.phases_per_axis);
   const int per_pitch = chain.points_per_pitch() * (conditions_.by_pixels ? 2 : 1);
   // Pitches from the middle within which samples of the window and of the display's filter lie.
   const int margin = static_cast<int>(display_taps_.size()) / 2;
@@ -81,11 +81,10 @@ SizeTrial::SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank
   for (int truth = 0; truth < (alike ? 1 : bank_->alternatives()); ++truth) {
     const cv::Mat1d fine =
         chain.image(triangle(size_pitch, all_apexes[static_cast<std::size_t>(truth)])).fine_image(per_pitch, reach);
-    for (int j = 0; j < per_axis; ++j) {
-      for (int i = 0; i < per_axis; ++i) {
-        responses_.push_back(response(fine, per_pitch, {i, j}, per_axis, static_cast<std::uint64_t>(j * per_axis + i)));
-        responses_.back().truth = truth;
-      }
+    for (int number = 0; number < per_axis * per_axis * dances; ++number) {
+      const cv::Point phase(number % per_axis, number / per_axis % per_axis);
+      responses_.push_back(response(fine, per_pitch, phase, per_axis, static_cast<std::uint64_t>(number)));
+      responses_.back().truth = truth;
     }
   }
   int groups_per_axis = std::min(per_axis, 4);

@@ -184,6 +184,11 @@ TEST(ConformityCommand, DecidesAndEndsWithTheFittingCode) {
   EXPECT_EQ(run("0.41", "guarded_acceptance_and_rejection").code, 3);
   EXPECT_EQ(run("0.3", "non_binary").code, 1);
   EXPECT_EQ(one_object(run("0.398", "non_binary"))["decision"], "conditional fail");
+  // GUM, table G.2: 95.45 % of Student's t with two degrees of freedom are within 4.53.
+  const Json few =
+      one_object(todbench({"conformity", "--value", "2", "--u", "0.1", "--nu", "2", "--at-least", "1.8", "--json"}));
+  EXPECT_NEAR(few["guard_band"].get<double>(), 0.453, 0.0005);
+  EXPECT_EQ(few["decision"], "inconclusive");
   expect_refused(todbench({"conformity", "--value", "1", "--u", "0", "--at-least", "0"}), 2, "above 0");
   expect_refused(todbench({"conformity", "--value", "nan", "--u", "1", "--at-least", "0"}), 2, "--value");
   expect_refused(todbench({"conformity", "--value", "1", "--u", "1"}), 2, "no limit");

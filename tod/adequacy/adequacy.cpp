@@ -46,7 +46,9 @@ Consequence consequence(const PsychometricFit& fit, double ln_shift, const std::
   const std::string moved = fmt::format("{} puts the threshold {} {}", description,
                                         percent(std::abs(std::expm1(ln_shift))), ln_shift < 0 ? "lower" : "higher");
   if (!half) return {moved + ", where the interval is open", false};
-  return {moved + (unfit ? ", more than " : ", within ") + percent(allowed) + ", which the interval allows for", unfit};
+  if (unfit) return {moved + ", more than the " + percent(allowed) + " that are allowed", true};
+  if (std::abs(ln_shift) <= *half) return {moved + ", within the 95 % interval", false};
+  return {moved + ", outside the 95 % interval but within the " + percent(allowed) + " that a form may cost", false};
 }
 
 class Examination {

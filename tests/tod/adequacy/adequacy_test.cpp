@@ -75,6 +75,16 @@ TEST(Adequacy, AMisfitThatDoesNotMoveTheThresholdIsFoundAndDoesNotWithholdIt) {
   EXPECT_TRUE(found.adequate()) << reasons_unfit(found);
 }
 
+TEST(Adequacy, AShiftThatTheIntervalDoesNotHoldIsNotSaidToBeAllowedForByIt) {
+  // Two million answers a size: an interval of 0.04 %, from which a curve of free shape departs by half a per cent.
+  const std::vector<Level> levels{{1, 5e5, 2e6}, {1.5, 9e5, 2e6}, {2, 1.5e6, 2e6}, {3, 2e6, 2e6}};
+
+  const Adequacy found = adequacy_of(levels, {PsychometricForm::size, 0.0, false});
+
+  ASSERT_THAT(found.findings, of_kind(FindingKind::deviance));
+  EXPECT_THAT(found.findings.front().sentence, ::testing::HasSubstr("outside the 95 % interval"));
+}
+
 TEST(Adequacy, ScatterBetweenClustersIsAllowedForWhereClustersAreNamed) {
   // Each presentation shifts its threshold by 30 %.
   std::vector<Level> levels =
