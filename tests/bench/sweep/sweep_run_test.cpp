@@ -1,0 +1,200 @@
+// Tasks of sweeps as they run: where results go, what comes back, processes.
+#include "bench/sweep/task_plan.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <stop_token>
+#include <thread>
+
+#include "bench/sweep/processes.h"
+#include "bench/sweep/result_store.h"
+#include "bench/sweep/sweep_table.h"
+#include "bench/text/files.h"
+#include "tests/support/source_file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace todbench {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::TemporaryFolder;
+
+/// A sweep whose tasks take milliseconds: draft estimates of one contrast.
+RunnableSweep quick_sweep(const TemporaryFolder& folder, const std::string& more = "") {
+  folder.write("s.toml", "kind = \"estimate\"\nwhere = \"detector_um <= pitch_um\"\n" + more +
+                             "[base]\naccuracy = \"draft\"\ndelta_t_k = [16.9]\n[grid]\nnetd_k = [0.07, 0.4]\n"
+                             "detector_um = [30, 42.5]\n[repeat]\nseeds = 2\n");
+  auto sweep = load_sweep(folder.path() / "s.toml");
+  EXPECT_TRUE(sweep) << sweep.error().message;
+  return *sweep;
+}
+
+TEST(SweepRun, IsIdempotentAndTheTableIsTheSameInAnyOrder) {
+  const TemporaryFolder one, two;
+  const RunnableSweep forwards = quick_sweep(one), backwards = quick_sweep(two);
+  ASSERT_EQ(forwards.sweep.count(), 8u);
+
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(run_and_store(forwards, i, {}).kind, TaskOutcome::Kind::done);
+  for (std::size_t i = 8; i-- > 0;) EXPECT_EQ(run_and_store(backwards, i, {}).kind, TaskOutcome::Kind::done);
+
+  EXPECT_EQ(run_and_store(forwards, 3, {}).kind, TaskOutcome::Kind::already_done);
+  const auto a = collected(forwards.sweep, MissingTasks::refused),
+             b = collected(backwards.sweep, MissingTasks::refused);
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(to_csv(*a), to_csv(*b));
+  EXPECT_EQ(a->rows.size(), 8u);
+  ASSERT_TRUE(write_sqlite(*a, one.path() / "t.sqlite"));
+  EXPECT_TRUE(std::filesystem::exists(one.path() / "t.sqlite"));
+  const auto effects = sweep_effects(forwards.sweep, *a, "acuity_per_mrad");
+  ASSERT_EQ(effects.size(), 1u);
+  // More noise costs acuity.
+  const auto& netd = effects[0].parameters[0];
+  EXPECT_GT(netd.levels[0].mean, netd.levels[1].mean);
+  EXPECT_TRUE(netd.first_order && netd.total && netd.first_order_ci95.low);
+}
+
+TEST(SweepStatus, TellsWhatIsDoneMissingStaleAndForeign) {
+  const TemporaryFolder folder;
+  const RunnableSweep runnable = quick_sweep(folder);
+  ASSERT_EQ(run_and_store(runnable, 2, {}).kind, TaskOutcome::Kind::done);
+  const auto place = [&](std::size_t i, const char* ending) {
+    return result_file(runnable.sweep, runnable.sweep.task(i)).replace_extension(ending);
+  };
+  std::ofstream(place(4, ".lock")) << "a-host-that-is-not-this-one\n1\n";
+  std::ofstream(place(5, ".failed")) << "no such sensor\n";
+  // No process has this number: it is above the largest that the kernel gives.
+  std::array<char, 256> host{};
+  ASSERT_EQ(::gethostname(host.data(), host.size() - 1), 0);
+  std::ofstream(place(6, ".lock")) << host.data() << "\n99999999\n";
+
+  const SweepStatus status = sweep_status(runnable.sweep);
+
+  EXPECT_EQ(status.count(TaskState::done), 1u);
+  EXPECT_EQ(status.states[4], TaskState::running);
+  EXPECT_EQ(status.states[5], TaskState::failed);
+  EXPECT_EQ(status.states[6], TaskState::stale);
+  EXPECT_EQ(status.open_list(), "0-1,3-7");
+  EXPECT_EQ(failure_of(runnable.sweep, 5), "no such sensor");
+  EXPECT_EQ(run_and_store(runnable, 4, {}).kind, TaskOutcome::Kind::locked);
+  EXPECT_EQ(run_and_store(runnable, 6, {}).kind, TaskOutcome::Kind::done) << "a stale lock is no lock";
+  const auto refused = collected(runnable.sweep, MissingTasks::refused);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::not_identifiable);
+  EXPECT_EQ(collected(runnable.sweep, MissingTasks::left_out)->rows.size(), 2u);
+
+  const RunnableSweep other = quick_sweep(folder, "seed = 7\n");
+  EXPECT_EQ(sweep_status(other.sweep).states[2], TaskState::foreign);
+  EXPECT_EQ(run_and_store(other, 2, {}).kind, TaskOutcome::Kind::failed);
+  EXPECT_FALSE(collected(other.sweep, MissingTasks::left_out));
+}
+
+TEST(SweepRun, OfAnElementThatSlurmStartedAgainTakesOverTheLockOfItsLostNode) {
+  const TemporaryFolder folder;
+  const RunnableSweep runnable = quick_sweep(folder);
+  ASSERT_EQ(run_and_store(runnable, 0, {}).kind, TaskOutcome::Kind::done);
+  const auto leave_lock = [&](std::size_t i) {
+    std::ofstream(result_file(runnable.sweep, runnable.sweep.task(i)).replace_extension(".lock"))
+        << "a-node-that-was-lost\n1\n12_3\n1\n";
+  };
+  leave_lock(1);
+  leave_lock(2);
+  ::setenv("SLURM_ARRAY_JOB_ID", "12", 1);
+  ::setenv("SLURM_ARRAY_TASK_ID", "3", 1);
+  ::setenv("SLURM_RESTART_COUNT", "1", 1);
+
+  const auto same_start = run_and_store(runnable, 1, {}).kind;
+  ::setenv("SLURM_RESTART_COUNT", "2", 1);
+  const auto later_start = run_and_store(runnable, 1, {}).kind;
+  ::setenv("SLURM_ARRAY_TASK_ID", "4", 1);
+  const auto another_element = run_and_store(runnable, 2, {}).kind;
+  for (const char* name : {"SLURM_ARRAY_JOB_ID", "SLURM_ARRAY_TASK_ID", "SLURM_RESTART_COUNT"}) ::unsetenv(name);
+
+  EXPECT_EQ(same_start, TaskOutcome::Kind::locked);
+  EXPECT_EQ(later_start, TaskOutcome::Kind::done);
+  EXPECT_EQ(another_element, TaskOutcome::Kind::locked);
+}
+
+TEST(SweepCollect, RefusesResultsOfSeveralVersions) {
+  const TemporaryFolder folder;
+  const RunnableSweep runnable = quick_sweep(folder);
+  for (std::size_t i = 0; i < 2; ++i) ASSERT_EQ(run_and_store(runnable, i, {}).kind, TaskOutcome::Kind::done);
+  const auto file = result_file(runnable.sweep, runnable.sweep.task(1));
+  std::string text = *read_text_file(file);
+  const auto place = text.find("\"version\": \"");
+  ASSERT_NE(place, std::string::npos);
+  text.insert(place + 12, "9");
+  ASSERT_TRUE(write_file_atomically(file, text));
+
+  const auto table = collected(runnable.sweep, MissingTasks::left_out);
+
+  ASSERT_FALSE(table);
+  EXPECT_THAT(table.error().message, HasSubstr("several versions"));
+}
+
+TEST(ShippedSweeps, GiveATableInTheirShortForm) {
+  const TemporaryFolder folder;
+  for (const char* name : {"sc2000-sensitivity", "observer-and-sensor", "budget-tolerance"}) {
+    const std::string text = *read_text_file(source_file(std::string("bench/sweeps/") + name + ".toml"));
+    folder.write(std::string(name) + ".toml", text);
+    const auto runnable = load_sweep(folder.path() / (std::string(name) + ".toml"));
+    ASSERT_TRUE(runnable) << runnable.error().message;
+    EXPECT_EQ(runnable->sweep.refused(), 0u) << name;
+    // The first task and the last stand for the others.
+    for (const std::size_t i : {std::size_t{0}, runnable->sweep.count() - 1})
+      EXPECT_EQ(run_and_store(*runnable, i, {}).kind, TaskOutcome::Kind::done) << name;
+    EXPECT_EQ(collected(runnable->sweep, MissingTasks::left_out)->rows.size(), 4u) << name;
+  }
+}
+
+/// Chunks of two tasks of five, each a shell that says how it ended.
+ProcessPool pool_of(const std::string& script, std::size_t jobs) {
+  return {.tasks = 5, .jobs = jobs, .chunk = 2, .command = [script](std::size_t first, std::size_t last) {
+            return std::vector<std::string>{"/bin/sh", "-c", script, "sh", std::to_string(first), std::to_string(last)};
+          }};
+}
+
+TEST(ProcessPool, RunsEveryChunkAndSaysTheWorstExitCode) {
+  const TemporaryFolder folder;
+  for (const std::size_t jobs : {1u, 2u, 9u}) {
+    const auto name = folder.path() / std::to_string(jobs);
+    ProcessPool pool = pool_of("echo $1-$2 >> " + name.string() + "; exit $1", jobs);
+    std::vector<std::size_t> progress;
+    pool.on_progress = [&](std::size_t done) { progress.push_back(done); };
+
+    EXPECT_EQ(run_pool(pool, {}).value(), 4);
+
+    const std::string text = *read_text_file(name);
+    for (const char* chunk : {"0-1\n", "2-3\n", "4-4\n"}) EXPECT_THAT(text, HasSubstr(chunk));
+    EXPECT_EQ(text.size(), 12u);
+    EXPECT_EQ(progress.size(), 3u);
+    EXPECT_EQ(progress.back(), 5u);
+  }
+  ProcessPool pool = pool_of("", 2);
+  pool.command = [](std::size_t, std::size_t) { return std::vector<std::string>{"/no/such/program"}; };
+  EXPECT_EQ(run_pool(pool, {}).error().code, ErrorCode::not_found);
+}
+
+TEST(ProcessPool, EndsItsChildrenWhenAskedToStop) {
+  // Every child would run for an hour; the first that is there asks for the end of all.
+  const TemporaryFolder folder;
+  const auto pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::stop_source stop;
+  const std::jthread asks([&] {
+    std::ifstream reads(pipe);
+    reads.get();
+    stop.request_stop();
+  });
+
+  EXPECT_EQ(run_pool(pool_of("echo > " + pipe.string() + "; exec sleep 3600", 1), stop.get_token()).value(), 130);
+  EXPECT_EQ(run_pool(pool_of("exec sleep 3600", 2), stop.get_token()).value(), 130) << "nothing is started any more";
+}
+
+}  // namespace
+}  // namespace todbench
