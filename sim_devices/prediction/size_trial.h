@@ -89,6 +89,7 @@ class SizeTrial {
   [[nodiscard]] Response response(const cv::Mat1d& fine, int per_pitch, cv::Point phase, int per_axis,
                                   std::uint64_t number) const;
   [[nodiscard]] int phases_per_sample() const;  ///< per axis
+  [[nodiscard]] int places_of_dance() const;    ///< at every phase
   void draw(std::uint64_t index);
   [[nodiscard]] cv::Mat1f coloured(std::uint64_t index, int window) const;
   [[nodiscard]] cv::Mat1b dead(std::uint64_t index, int window) const;
@@ -109,9 +110,10 @@ class SizeTrial {
   RandomStream stream_;
   std::vector<const stage::Noise*> coloured_stages_;  ///< what this sensor has of noise that is not white
   std::vector<double> display_taps_;                  ///< empty for sample and hold
-  std::vector<double> white_taps_;                 ///< of sensor's and internal noise together; empty without display
-  double white_ratio_ = -1;                        ///< for which white_taps_ are
-  std::vector<Response> responses_;                ///< per orientation that counts and phase
+  std::vector<double> white_taps_;  ///< of sensor's and internal noise together; empty without display
+  double white_ratio_ = -1;         ///< for which white_taps_ are
+  int places_of_dance_ = 1;
+  std::vector<Response> responses_;                ///< per orientation that counts, place of the dance and phase
   std::vector<std::vector<std::uint32_t>> turns_;  ///< which template's score each template gets; the identity first
   std::vector<std::size_t> phase_group_;           ///< per response: phases of one group lie evenly in the pixel
   std::size_t phase_groups_ = 1;
