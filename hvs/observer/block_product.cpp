@@ -1,7 +1,5 @@
 #include "hvs/observer/block_product.h"
 
-#include <algorithm>
-
 #include "acquisition/core/multiversion.h"
 #include "hvs/observer/template_bank.h"
 
@@ -20,11 +18,17 @@ void product(const float* values, const float* factors, std::size_t count, float
 }
 
 TODBENCH_MULTIVERSION
-void products(const float* values, const float* first, const float* second, const float* third, const float* fourth,
-              std::size_t count, float* out) {
+void add_products(const float* values, const float* const* factors, std::size_t count, float* const* sums) {
   constexpr std::size_t lanes = 32;  // as many sums as registers hold
+  const float *first = factors[0], *second = factors[1], *third = factors[2], *fourth = factors[3];
   for (std::size_t half = 0; half < TemplateBank::block; half += lanes) {
-    float a[lanes] = {}, b[lanes] = {}, c[lanes] = {}, d[lanes] = {};
+    float a[lanes], b[lanes], c[lanes], d[lanes];
+    for (std::size_t t = 0; t < lanes; ++t) {
+      a[t] = sums[0][half + t];
+      b[t] = sums[1][half + t];
+      c[t] = sums[2][half + t];
+      d[t] = sums[3][half + t];
+    }
     for (std::size_t s = 0; s < count; ++s) {
       const float* column = values + s * TemplateBank::block + half;
       for (std::size_t t = 0; t < lanes; ++t) {
@@ -35,22 +39,19 @@ void products(const float* values, const float* first, const float* second, cons
       }
     }
     for (std::size_t t = 0; t < lanes; ++t) {
-      out[half + t] = a[t];
-      out[TemplateBank::block + half + t] = b[t];
-      out[2 * TemplateBank::block + half + t] = c[t];
-      out[3 * TemplateBank::block + half + t] = d[t];
+      sums[0][half + t] = a[t];
+      sums[1][half + t] = b[t];
+      sums[2][half + t] = c[t];
+      sums[3][half + t] = d[t];
     }
   }
 }
 
 }  // namespace
 
-void block_products(const float* values, const std::array<const float*, products_at_once>& factors, std::size_t count,
-                    const std::array<float*, products_at_once>& sums) {
-  float out[products_at_once * TemplateBank::block];
-  products(values, factors[0], factors[1], factors[2], factors[3], count, out);
-  for (std::size_t k = 0; k < products_at_once; ++k)
-    std::copy_n(out + k * TemplateBank::block, TemplateBank::block, sums[k]);
+void add_block_products(const float* values, const std::array<const float*, products_at_once>& factors,
+                        std::size_t count, const std::array<float*, products_at_once>& sums) {
+  add_products(values, factors.data(), count, sums.data());
 }
 
 void block_product(const float* values, const float* factors, std::size_t count, float* sums) {

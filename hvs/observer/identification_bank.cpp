@@ -13,6 +13,7 @@ namespace todbench {
 namespace {
 
 constexpr std::size_t identification_block = TemplateBank::block;
+constexpr std::size_t samples_at_once = 128;  ///< 32 KiB of templates
 
 /// Display and eye, as the templates of triangles.
 TransferFunction eye_filter(double sigma_samples) {
@@ -141,6 +142,30 @@ float inner_product(const float* a, const float* b, int count) {
   return sum;
 }
 
+/// results[l][row] = inner_product(values[row], factors[l]) of four factors, the same bits: their sums run beside each
+/// other.
+TODBENCH_MULTIVERSION
+void inner_products(const float* values, int count, int length, const float* const* factors, float* const* results) {
+  constexpr int lanes = 8, many = products_at_once;
+  for (int row = 0; row < count; ++row, values += length) {
+    float sums[many][lanes] = {};
+    int i = 0;
+    for (; i + lanes <= length; i += lanes) {
+      for (int k = 0; k < many; ++k) {
+        for (int l = 0; l < lanes; ++l) sums[k][l] += values[i + l] * factors[k][i + l];
+      }
+    }
+    for (; i < length; ++i) {
+      for (int k = 0; k < many; ++k) sums[k][0] += values[i] * factors[k][i];
+    }
+    for (int k = 0; k < many; ++k) {
+      float sum = 0;
+      for (const float part : sums[k]) sum += part;
+      results[k][row] = sum;
+    }
+  }
+}
+
 }  // namespace
 
 int identification_window_samples(const TemplateObserverSpec& spec, std::span<const AlternativeAspects> alternatives,
@@ -220,29 +245,44 @@ std::vector<std::vector<float>> IdentificationBank::project_all(std::span<const 
   const std::size_t block_values = identification_block * samples, rows = basis_.size() / samples;
   for (const auto& patch : patches) CV_Assert(patch.rows == window_ && patch.cols == window_ && patch.isContinuous());
   std::vector<float> products(patches.size() * rows);
+  // Of the patches, as many as are multiplied at once; the others one by one.
+  const std::size_t together = patches.size() / products_at_once * products_at_once;
   for (std::size_t from = 0; from < basis_.size(); from += block_values) {
-    std::size_t k = 0;
-    for (; k + products_at_once <= patches.size(); k += products_at_once) {
-      std::array<const float*, products_at_once> factors{};
-      std::array<float*, products_at_once> sums{};
-      for (std::size_t l = 0; l < products_at_once; ++l) {
-        factors[l] = patches[k + l].ptr<float>();
-        sums[l] = &products[(k + l) * rows + from / samples];
+    for (std::size_t part = 0; part < samples; part += samples_at_once) {
+      const std::size_t count = std::min(samples_at_once, samples - part);
+      for (std::size_t k = 0; k < together; k += products_at_once) {
+        std::array<const float*, products_at_once> factors{};
+        std::array<float*, products_at_once> sums{};
+        for (std::size_t l = 0; l < products_at_once; ++l) {
+          factors[l] = patches[k + l].ptr<float>() + part;
+          sums[l] = &products[(k + l) * rows + from / samples];
+        }
+        add_block_products(&basis_[from + part * identification_block], factors, count, sums);
       }
-      block_products(&basis_[from], factors, samples, sums);
     }
-    for (; k < patches.size(); ++k)
+    for (std::size_t k = together; k < patches.size(); ++k)
       block_product(&basis_[from], patches[k].ptr<float>(), samples, &products[k * rows + from / samples]);
   }
   std::vector<std::vector<float>> out(patches.size());
-  for (auto& scores_of_one : out) scores_of_one.reserve(scores());
-  std::size_t own = 0;
+  for (auto& scores_of_one : out) scores_of_one.resize(scores());
+  std::size_t own = 0, first_score = 0;
   for (const auto& aspect : aspects_) {
-    for (std::size_t k = 0; k < patches.size(); ++k) {
+    for (std::size_t k = 0; k < together; k += products_at_once) {
+      std::array<const float*, products_at_once> factors{};
+      std::array<float*, products_at_once> results{};
+      for (std::size_t l = 0; l < products_at_once; ++l) {
+        factors[l] = &products[(k + l) * rows + own];
+        results[l] = &out[k + l][first_score];
+      }
+      inner_products(aspect.ptr<float>(), aspect.rows, aspect.cols, factors.data(), results.data());
+    }
+    for (std::size_t k = together; k < patches.size(); ++k) {
       for (int place = 0; place < aspect.rows; ++place)
-        out[k].push_back(inner_product(aspect[place], &products[k * rows + own], aspect.cols));
+        out[k][first_score + static_cast<std::size_t>(place)] =
+            inner_product(aspect[place], &products[k * rows + own], aspect.cols);
     }
     own += static_cast<std::size_t>(aspect.cols);
+    first_score += static_cast<std::size_t>(aspect.rows);
   }
   return out;
 }

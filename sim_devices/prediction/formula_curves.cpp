@@ -155,14 +155,28 @@ Result<AxisCurves> mtdp_like_curves(const SensorSpec& spec, const FormulaConditi
   // Bars of fifty samples are not touched by blur.
   const double nyquist = nyquist_per_mrad(spec);
   add(0.01 * nyquist, 1);
-  constexpr int count = 40, phases = 16;
-  for (int i = 0; i < count; ++i) {
-    const double f = nyquist * (0.1 + 1.9 * i / (count - 1));
+  constexpr int count = 80, phases = 16;
+  const auto adds = [&](double f) {
     const BlurredBars bars(
         f * formula->pitch_mrad, [&](double u) { return per_sample(u); }, per_sample.band());
     const BarModulation left = bar_modulation(bars, phases);
-    if (left.best < 0.01 || left.bars_separated_at_best < 2) break;
+    if (left.best < 0.01 || left.bars_separated_at_best < 2) return false;
     add(f, left.best);
+    return true;
+  };
+  double last = 0;
+  for (int i = 0; i < count; ++i) {
+    const double f = nyquist * (0.1 + 1.9 * i / (count - 1));
+    if (adds(f)) {
+      last = f;
+      continue;
+    }
+    // Where the curve ends is the range of every target of high contrast: a step would be up to 2 % of it.
+    for (double beyond = f; last > 0 && beyond - last > 2e-4 * nyquist;) {
+      const double middle = 0.5 * (last + beyond);
+      (adds(middle) ? last : beyond) = middle;
+    }
+    break;
   }
   auto h = LogLinearCurve::of(horizontal, "MTDP-like"), v = LogLinearCurve::of(vertical, "MTDP-like");
   if (!h) return tl::unexpected(h.error());

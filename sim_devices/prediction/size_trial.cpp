@@ -72,29 +72,34 @@ SizeTrial::SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank
   if (has_display(sensor)) display_taps_ = taps_of([&](double f) { return display_response(sensor, f); });
   // The sampling grid and most effects look the same from all four sides.
   const bool alike = conditions_.orientations == ShownOrientations::as_needed && turns_alike;
-  const int per_axis = phases_per_sample(), dances = dances_per_phase(sensor, conditions_.phases_per_axis);
+  const int per_axis = phases_per_sample();
   const int per_pitch = chain.points_per_pitch() * (conditions_.by_pixels ? 2 : 1);
   // Pitches from the middle within which samples of the window and of the display's filter lie.
   const int margin = static_cast<int>(display_taps_.size()) / 2;
   const int reach = (bank_->window_samples() / 2 + margin) / conditions_.samples_per_pitch + 2 +
                     static_cast<int>(std::ceil(4 * dance_sd_pitch(sensor)));
-  for (int truth = 0; truth < (alike ? 1 : bank_->alternatives()); ++truth) {
+  places_of_dance_ = dances_per_phase(sensor, conditions_.phases_per_axis);
+  const int truths = alike ? 1 : bank_->alternatives();
+  for (int truth = 0; truth < truths; ++truth) {
     const cv::Mat1d fine =
         chain.image(triangle(size_pitch, all_apexes[static_cast<std::size_t>(truth)])).fine_image(per_pitch, reach);
-    for (int number = 0; number < per_axis * per_axis * dances; ++number) {
-      const cv::Point phase(number % per_axis, number / per_axis % per_axis);
-      responses_.push_back(response(fine, per_pitch, phase, per_axis, static_cast<std::uint64_t>(number)));
-      responses_.back().truth = truth;
+    for (int danced = 0; danced < places_of_dance_; ++danced) {
+      for (int phase = 0; phase < per_axis * per_axis; ++phase) {
+        const auto number = static_cast<std::uint64_t>((danced * truths + truth) * per_axis * per_axis + phase);
+        responses_.push_back(response(fine, per_pitch, {phase % per_axis, phase / per_axis}, per_axis, number));
+        responses_.back().truth = truth;
+      }
     }
   }
   int groups_per_axis = std::min(per_axis, 4);
   while (per_axis % groups_per_axis != 0) --groups_per_axis;
   for (std::size_t k = 0; k < responses_.size(); ++k) {
     const int phase = static_cast<int>(k) % (per_axis * per_axis);
+    const int danced = static_cast<int>(k) / (per_axis * per_axis) % places_of_dance_;
     const int group = phase / per_axis % groups_per_axis * groups_per_axis + phase % per_axis % groups_per_axis;
-    phase_group_.push_back(static_cast<std::size_t>(group));
+    phase_group_.push_back(static_cast<std::size_t>(danced * groups_per_axis * groups_per_axis + group));
   }
-  phase_groups_ = static_cast<std::size_t>(groups_per_axis * groups_per_axis);
+  phase_groups_ = static_cast<std::size_t>(places_of_dance_ * groups_per_axis * groups_per_axis);
   find_turns();
 }
 
@@ -315,7 +320,9 @@ double SizeTrial::share_in_all_ways(std::size_t draw, float own, float scale, fl
   // Coloured noise has a direction, and where detectors are dead it was replaced where they are.
   const std::size_t turns = has_coloured && !defects.empty() ? 1 : turns_.size();
   double all = 0;
-  std::size_t seen = 0, way = draw;  // another draw sees the phases in other ways
+  // Another draw sees the phases in other ways, and goes on among the places of a dance.
+  const std::size_t ways = 2 * turns;
+  std::size_t seen = 0, way = places_of_dance_ > 1 ? draw * ways + draw * ways / phase_groups_ : draw;
   for (std::size_t turn = 0; turn < turns; ++turn) {
     for (std::size_t t = 0; t < turned_.size(); ++t) {
       turned_[t] = own * noise_[draw][turns_[turn][t]];
@@ -377,13 +384,16 @@ Proportion SizeTrial::pixel_proportion(const PixelContrast& contrast, int draws)
   // Phases along a diagonal: every row and column of phases once in a draw, all of them in turn.
   const int per_axis = phases_per_sample();
   const auto phases = static_cast<std::size_t>(per_axis * per_axis), some = static_cast<std::size_t>(per_axis);
-  const std::size_t truths = responses_.size() / phases;
+  const auto places = static_cast<std::size_t>(places_of_dance_);
+  const std::size_t truths = responses_.size() / phases / places;
   auto& known = pixel_draws_[contrast.scene_k];
   for (std::size_t d = known.size(); d < static_cast<std::size_t>(draws); ++d) {
     double correct = 0;
     for (std::size_t k = 0; k < truths * some; ++k) {
       const std::size_t phase = ((k % some) * (some + 1) + d) % phases;
-      correct += pixel_trial(responses_[k / some * phases + phase], contrast, d * truths * some + k);
+      const std::size_t danced = (d + d / phases + k) % places;
+      correct +=
+          pixel_trial(responses_[(k / some * places + danced) * phases + phase], contrast, d * truths * some + k);
     }
     known.push_back(correct / static_cast<double>(truths * some));
   }

@@ -111,7 +111,8 @@ class SizeTrial {
   std::vector<double> display_taps_;                  ///< empty for sample and hold
   std::vector<double> white_taps_;                 ///< of sensor's and internal noise together; empty without display
   double white_ratio_ = -1;                        ///< for which white_taps_ are
-  std::vector<Response> responses_;                ///< per orientation that counts and phase
+  int places_of_dance_ = 1;                        ///< at every phase
+  std::vector<Response> responses_;                ///< per orientation that counts, place of the dance and phase
   std::vector<std::vector<std::uint32_t>> turns_;  ///< which template's score each template gets; the identity first
   std::vector<std::size_t> phase_group_;           ///< per response: phases of one group lie evenly in the pixel
   std::size_t phase_groups_ = 1;

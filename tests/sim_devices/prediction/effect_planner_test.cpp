@@ -255,11 +255,12 @@ TEST(EffectPlanner, SkipsDistortionThatMovesNothingFar) {
 }
 
 /// What skipping the effect truly changes, in percent of the acuity, beside the bound.
-void expect_bounded(Effect effect, const SensorSpec& sensor, SceneMotion motion, double delta_t_k) {
+void expect_bounded(Effect effect, const SensorSpec& sensor, SceneMotion motion, double delta_t_k, int draws) {
   TemplateObserver observer({}, triangle_alternatives());
   const SensorPlan everything = full_plan(sensor, {}, {}, motion);
   DirectEstimateOptions options{.motion = motion, .accuracy = Accuracy::draft(), .stop = {}};
   options.accuracy.standard_error_percent = 0;
+  options.accuracy.noise_draws = draws;
   options.orientations = ShownOrientations::all;
   const auto with = direct_estimate(sensor, everything, observer, {delta_t_k}, options);
   const auto without = direct_estimate(sensor, full_plan(sensor, {effect}, {}, motion), observer, {delta_t_k}, options);
@@ -281,11 +282,11 @@ TEST(EffectPlannerProof, ExposureAndReadoutChangeNoMoreThanTheirBounds) {
       const double rate_mrad_s = sensor.ifov_mrad() * sensor.frame_rate_hz;
       sensor.exposure_ms = 20 * part;  // so many pitches at one a frame
       const SceneMotion a_pitch{.x_mrad_s = 0.8 * rate_mrad_s, .y_mrad_s = 0.6 * rate_mrad_s};
-      expect_bounded(Effect::exposure, sensor, a_pitch, delta_t_k);
+      expect_bounded(Effect::exposure, sensor, a_pitch, delta_t_k, 100);
       sensor.exposure_ms = 0;
       sensor.row_time_us = 80;
       const double speed = part * 0.1 / 80e-6 * sensor.ifov_mrad();  // a tenth of a pitch from row to row
-      expect_bounded(Effect::readout, sensor, {.x_mrad_s = 0.6 * speed, .y_mrad_s = -0.8 * speed}, delta_t_k);
+      expect_bounded(Effect::readout, sensor, {.x_mrad_s = 0.6 * speed, .y_mrad_s = -0.8 * speed}, delta_t_k, 100);
     }
   }
 }
@@ -302,16 +303,17 @@ SensorSpec dancing(double sd_pitch) {
   return sensor;
 }
 
+/// Where frames dance, what an effect changes hangs on where they stand: 100 draws leave 0.3 % of it.
 TEST(EffectPlannerProof, TheDanceChangesNoMoreThanItsBound) {
   for (const double delta_t_k : {0.23, 16.9}) {
     for (const double sd_pitch : {0.08, 0.3}) {
       SensorSpec sensor = dancing(sd_pitch);
-      expect_bounded(Effect::image_dance, sensor, {}, delta_t_k);
+      expect_bounded(Effect::image_dance, sensor, {}, delta_t_k, 400);
       sensor.time_constant_ms = 10;
-      expect_bounded(Effect::motion, sensor, {}, delta_t_k);
+      expect_bounded(Effect::motion, sensor, {}, delta_t_k, 400);
       sensor.time_constant_ms = 0;
       sensor.exposure_ms = 10;
-      expect_bounded(Effect::exposure, sensor, {}, delta_t_k);
+      expect_bounded(Effect::exposure, sensor, {}, delta_t_k, 400);
     }
   }
 }
@@ -347,11 +349,12 @@ TEST(EffectPlanner, SimulatesTheDanceOnlyWhereItMatters) {
   EXPECT_THAT(much.reason, ::testing::HasSubstr("may change the acuity by"));
 }
 
+/// It dances by half a pitch before 2 x 2 microscan: a picture at every phase would be four pictures and 7 % wrong.
 TEST(EffectPlannerProof, TheTrueChangeStaysWithinTheToleranceBehindAirThatDances) {
   test::Observers observers;
-  const test::GridScene scene = test::random_dance_scene(9, 1);
+  const test::GridScene scene = test::random_dance_scene(3, 19);
   TemplateObserver& observer = observers.of(scene.observer);
-  test::BruteForce brute(scene, observer, 1, 50);
+  test::BruteForce brute(scene, observer, 1, 60);
 
   const auto plan = test::planned(scene, observer, 5);
 

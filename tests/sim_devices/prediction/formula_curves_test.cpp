@@ -56,6 +56,16 @@ TEST(FormulaCurves, TheMtdpLikeCurveGoesOnBeyondNyquistAndJoinsTheMrtdWhenSampli
   EXPECT_NEAR(joined->horizontal.at(f).value() / mrtd->horizontal.at(f).value(), 1, 0.1);
 }
 
+/// The end from another program: bars by FFT on 96 points a sample, 16 phases, frequency halved to 1e-5 of Nyquist.
+TEST(FormulaCurves, TheMtdpLikeCurveEndsWhereTwoBarsAreApartNoMore) {
+  const double nyquist = 0.5 / test::sc2000().ifov_mrad();
+
+  const auto mtdp = mtdp_like_curves(test::sc2000(), FormulaConditions{});
+
+  ASSERT_TRUE(mtdp) << mtdp.error().message;
+  EXPECT_NEAR(mtdp->horizontal.points().back().frequency / nyquist, 1.76702, 4e-4);
+}
+
 TEST(FormulaCurves, TheSystemCtfLiesAboveTheEyesAndFallsWithLessNoise) {
   const FormulaConditions conditions;
   SensorSpec quiet = test::sc2000();
