@@ -41,7 +41,8 @@ std::vector<Question> questions(int alternatives) {
   for (std::size_t size = 0; size < asked_sizes.size(); ++size) {
     for (int truth = 0; truth < alternatives; ++truth) {
       for (int place = 0; place < places_across * places_across; ++place) {
-        const cv::Point2d phase((place % places_across - 1) / 3.0, (place / places_across - 1) / 3.0);
+        const int row = place / places_across, column = place % places_across;
+        const cv::Point2d phase((column - 1) / 3.0, (row - 1) / 3.0);
         all.push_back({size, truth, phase, all.size()});
       }
     }
