@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <set>
 
@@ -199,6 +200,12 @@ Result<TargetSet> load_target_set(std::string_view reference) {
   if (names.size() < 2 || names.size() > 64) reader->reject("targets", "expected 2 to 64 targets");
   if (set.azimuths_deg.empty() || set.azimuths_deg.size() > 16)
     reader->reject("azimuths_deg", "expected 1 to 16 aspects");
+  std::set<double> sides;
+  for (const double azimuth_deg : set.azimuths_deg) {
+    // A side that is named twice would count twice in every mean; 90 and -270 degrees are one.
+    if (!sides.insert(azimuth_deg - 360 * std::floor(azimuth_deg / 360)).second)
+      reader->reject("azimuths_deg", fmt::format("expected every side once, found {:g} degrees twice", azimuth_deg));
+  }
   if (const Result<void> read = reader->finish(); !read) return tl::unexpected(read.error());
   std::set<std::string> known;
   for (const auto& name : names) {

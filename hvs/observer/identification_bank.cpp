@@ -191,7 +191,7 @@ Result<IdentificationBank> IdentificationBank::build(const TemplateObserverSpec&
   const auto too_large = [&](std::size_t bytes) { return bytes > TemplateBank::max_bytes; };
   const auto refusal = [&] {
     return fail(ErrorCode::invalid_input,
-                "targets of " + std::to_string(2 * reach) +
+                "targets of " + std::to_string(std::lround(2 * reach)) +
                     " samples are too large for this observer: their templates would need over 1 GiB");
   };
   if (too_large(samples * places * sizeof(double))) return refusal();

@@ -44,6 +44,22 @@ TEST(Scenes, TargetsAndSetsThatAreShippedReadAndAreCalledAsTheirFiles) {
   EXPECT_EQ(load_target_set("all-targets")->targets.size(), 24u);
 }
 
+TEST(TargetSets, NameEverySideOnce) {
+  const TemporaryFolder folder;
+  const auto set_of = [&](const std::string& sides) {
+    folder.write("set.toml", "name = \"s\"\ntargets = [\"craft-01\", \"craft-02\"]\nazimuths_deg = " + sides +
+                                 "\nbackground_k = 290\n");
+    return load_target_set((folder.path() / "set.toml").string());
+  };
+
+  EXPECT_TRUE(set_of("[90, -90, 0]"));
+  for (const char* sides : {"[90, 0, 90]", "[90, -270]", "[0, 360]"}) {
+    const auto set = set_of(sides);
+    ASSERT_FALSE(set) << sides;
+    EXPECT_THAT(set.error().message, ::testing::HasSubstr("every side once"));
+  }
+}
+
 /// A scene file of these lines behind name and background.
 Result<FieldScene> scene_from(const TemporaryFolder& folder, const std::string& lines) {
   folder.write("scene.toml", "name = \"s\"\nbackground_k = 290\n" + lines);
