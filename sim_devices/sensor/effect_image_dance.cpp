@@ -109,8 +109,8 @@ std::vector<cv::Point2d> spread_dance_pitch(const SensorSpec& spec, std::uint64_
 int dances_per_phase(const SensorSpec& spec, int phases_per_axis) {
   const int n = spec.samples_per_pitch();
   const double sd_samples = dance_sd_pitch(spec) * n, fineness = phases_per_axis / 8.0;
-  // With 16, 64 and 256 displacements of 0.9 samples the threshold of an observer that searches a sample far is 2.7, 0.9
-  // and 0.1 % off.
+  // With 16, 64 and 256 displacements of 0.9 samples the threshold of an observer that searches a sample far is 2.7,
+  // 0.9 and 0.1 % off.
   constexpr double needed_at_one_sample = 300;
   constexpr int most = 64;
   const double needed = needed_at_one_sample * std::pow(sd_samples * fineness, 2);
