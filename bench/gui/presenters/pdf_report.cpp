@@ -67,6 +67,11 @@ QTextBlock belongs_to(const QTextDocument& document, const QTextBlock& block) {
   return content;
 }
 
+/// A move shifts all that follows. Qt leaves blocks without lines where only the changed one is laid out again.
+void lay_out_from(QTextDocument& document, int position) {
+  document.markContentsDirty(position, document.characterCount() - position);
+}
+
 /// A table of one row, which holds figures side by side or the verdict, begins a page where it would go over two.
 void keep_row_together(QTextDocument& document, QTextTable& table) {
   const QTextBlock first = table.firstCursorPosition().block();
@@ -74,7 +79,7 @@ void keep_row_together(QTextDocument& document, QTextTable& table) {
   QTextTableFormat format = table.format();
   format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
   table.setFormat(format);
-  document.markContentsDirty(0, document.characterCount());
+  lay_out_from(document, table.firstPosition());
 }
 
 /// The first of the headings right over a block: what moves to the next page takes them along.
@@ -85,9 +90,7 @@ QTextBlock with_headings(const QTextBlock& block) {
   return heading ? with_headings(above) : block;
 }
 
-/// A heading, a caption or a figure at the foot of a page moves to the next one, with what it belongs to. Every move
-/// shifts what follows, so the whole document is laid out again each time: Qt leaves blocks without lines where only
-/// the changed one is.
+/// A heading, a caption or a figure at the foot of a page moves to the next one, with what it belongs to.
 void keep_together(QTextDocument& document) {
   for (QTextBlock block = document.begin(); block.isValid(); block = block.next()) {
     if (QTextTable* table = table_at(block); table != nullptr) {
@@ -105,7 +108,7 @@ void keep_together(QTextDocument& document) {
     QTextBlockFormat format = moved.blockFormat();
     format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
     QTextCursor(moved).setBlockFormat(format);
-    document.markContentsDirty(0, document.characterCount());
+    lay_out_from(document, moved.position());
   }
 }
 
