@@ -15,6 +15,7 @@
 #include "bench/session/measure_pictures.h"
 #include "bench/session/measures_record.h"
 #include "bench/session/open_session.h"
+#include "bench/text/base64.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
 #include "sim_devices/sensor/pixel_faults.h"

@@ -19,6 +19,7 @@ namespace todbench {
 namespace {
 
 using ::testing::HasSubstr;
+using testing::line_of;
 using testing::plan_of_one;
 using testing::TemporaryFolder;
 
