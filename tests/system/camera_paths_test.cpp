@@ -48,7 +48,8 @@ std::string plan_of(const Json& lab, const Path& path) {
          "contrast_frames = 8\nrecord_frames = true\n[target]\nkind = \"scpi\"\nblack_body = \"" +
          lab["black_body"].get<std::string>() + "\"\nstage = \"" + lab["stage"].get<std::string>() +
          "\"\ndistance_m = 2\nplates = [\"tcat-a\", \"tcat-b\"]\nmountings = [\"identity\", \"rotated_180\"]\n"
-         "delta_t_k = [16.9, 1.93]\nphases = 6\n[limits]\nequivalence_margin_percent = 25\n";
+         "delta_t_k = [16.9, 1.93]\nphases = 6\n[fit]\nestimator = \"weibull\"\n[limits]\nequivalence_margin_percent = "
+         "25\n";
 }
 
 /// Size at 75 % and its standard error, in logarithms, by contrast.

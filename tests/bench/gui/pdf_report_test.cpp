@@ -43,36 +43,46 @@ QStringList texts_of(const std::string& html) {
   return out;
 }
 
+/// The report of one measurement, which no test changes, and its PDF.
 class PdfReport : public ::testing::Test {
  protected:
-  PdfReport() {
-    window_.measure();
-    auto opened = read_opened_session(window_->measure().folder());
-    EXPECT_TRUE(opened) << opened.error().message;
+  static void SetUpTestSuite() {
+    window_ = std::make_unique<ShownWindow>("sim:sc2000", 3);
+    Plan plan = window()->bench().plan();
+    plan.fit.estimator = EstimatorChoice::automatic;
+    window()->bench().set_plan(plan);
+    window_->measure();
+    auto opened = read_opened_session(window()->measure().folder());
+    ASSERT_TRUE(opened) << opened.error().message;
     report_ = opened->report;
     // A simulated camera has a serial number like any other.
-    EXPECT_TRUE(report_.camera && !report_.camera->serial.empty());
+    ASSERT_TRUE(report_.camera && !report_.camera->serial.empty());
     report_.camera->serial = "TB-0815";
-    file_ = window_.sessions() / "report.pdf";
-    const auto written = write_pdf_report(report_, file_);
-    EXPECT_TRUE(written) << written.error().message;
+    const auto written = write_pdf_report(report_, file());
+    ASSERT_TRUE(written) << written.error().message;
   }
-  ShownWindow window_{"sim:sc2000", 3};
-  ReportData report_;
-  std::filesystem::path file_;
+  static void TearDownTestSuite() { window_.reset(); }
+
+  static ShownWindow& window() { return *window_; }
+  static const ReportData& report() { return report_; }
+  static std::filesystem::path file() { return window_->sessions() / "report.pdf"; }
+
+ private:
+  static inline std::unique_ptr<ShownWindow> window_;
+  static inline ReportData report_;
 };
 
 TEST_F(PdfReport, HoldsSerialNumberVerdictAndEveryTextOfThePage) {
-  const QString text = squeezed(output_of("pdftotext", {"-layout", QString::fromStdString(file_.string()), "-"}));
+  const QString text = squeezed(output_of("pdftotext", {"-layout", QString::fromStdString(file().string()), "-"}));
   // In reading order cells of a row that break into lines stay together.
-  const QString raw = squeezed(output_of("pdftotext", {"-raw", QString::fromStdString(file_.string()), "-"}));
+  const QString raw = squeezed(output_of("pdftotext", {"-raw", QString::fromStdString(file().string()), "-"}));
 
   EXPECT_TRUE(text.contains("TB-0815"));
-  const QString verdict = report_verdict(report_) == ReportVerdict::pass   ? "PASS"
-                          : report_verdict(report_) == ReportVerdict::fail ? "FAIL"
-                                                                           : "INCONCLUSIVE";
+  const QString verdict = report_verdict(report()) == ReportVerdict::pass   ? "PASS"
+                          : report_verdict(report()) == ReportVerdict::fail ? "FAIL"
+                                                                            : "INCONCLUSIVE";
   EXPECT_TRUE(raw.contains(verdict)) << verdict.toStdString();
-  const QStringList texts = texts_of(render_report(report_));
+  const QStringList texts = texts_of(render_report(report()));
   EXPECT_GT(texts.size(), 150);
   for (const QString& expected : texts)
     EXPECT_TRUE(raw.contains(squeezed(expected)) || text.contains(squeezed(expected))) << expected.toStdString();
@@ -80,7 +90,8 @@ TEST_F(PdfReport, HoldsSerialNumberVerdictAndEveryTextOfThePage) {
 
 TEST_F(PdfReport, LosesNoHeadingWhereverItsPagesBreak) {
   static const QRegularExpression heading("<h2[^>]*>(.*?)</h2>");
-  ReportData report = report_;
+  ReportData report = PdfReport::report();
+  const std::filesystem::path file = window().sessions() / "moved.pdf";
   report.human = report.measured;
   CostFrontier cost;
   for (const char* knob : {"tolerance", "draws", "wavelengths", "phases"})
@@ -89,14 +100,13 @@ TEST_F(PdfReport, LosesNoHeadingWhereverItsPagesBreak) {
   // Rows of a table before everything else: headings come to the foot of a page one after the other.
   for (int rows = 0; rows < 48; rows += 4) {
     report.conditions.assign(static_cast<std::size_t>(rows), {"Room temperature (K)", "295"});
-    ASSERT_TRUE(write_pdf_report(report, file_));
+    ASSERT_TRUE(write_pdf_report(report, file));
 
-    const QString pages = output_of("pdftotext", {"-raw", QString::fromStdString(file_.string()), "-"});
+    const QString pages = output_of("pdftotext", {"-raw", QString::fromStdString(file.string()), "-"});
     // Without the margin at the foot, in points: a page also holds what its clip leaves out.
-    const QStringList above_the_foot =
-        output_of("pdftotext", {"-raw", "-r", "72", "-x", "0", "-y", "0", "-W", "595", "-H", "770",
-                                QString::fromStdString(file_.string()), "-"})
-            .split('\f');
+    const QStringList above_the_foot = output_of("pdftotext", {"-raw", "-r", "72", "-x", "0", "-y", "0", "-W", "595",
+                                                               "-H", "770", QString::fromStdString(file.string()), "-"})
+                                           .split('\f');
     for (const QString& page : pages.split('\f'))
       EXPECT_EQ(page.contains("Tested by"), page.contains("Signature:")) << rows << " rows: signatures on two pages";
     const QString raw = squeezed(pages);
@@ -167,7 +177,7 @@ TEST(PdfDocument, CutsNoCaptionAndRepeatsHeadersWhereverItsPagesBreak) {
 }
 
 TEST_F(PdfReport, ReadsBackWithoutLigatures) {
-  const QString text = output_of("pdftotext", {"-raw", QString::fromStdString(file_.string()), "-"});
+  const QString text = output_of("pdftotext", {"-raw", QString::fromStdString(file().string()), "-"});
 
   // Alphabetic presentation forms: ff, fi, fl, ffi, ffl as one character; private use; what could not be mapped.
   static const QRegularExpression garbled("[\\x{FB00}-\\x{FB06}\\x{E000}-\\x{F8FF}\\x{FFFD}]");
@@ -190,21 +200,21 @@ TEST(PdfDocument, ShowsEveryTextOfEveryKindOfBlock) {
 }
 
 TEST_F(PdfReport, HasItsFiguresAsLinesAndNoPictures) {
-  const QString images = output_of("pdfimages", {"-list", QString::fromStdString(file_.string())});
+  const QString images = output_of("pdfimages", {"-list", QString::fromStdString(file().string())});
 
   // Two lines of heading and nothing below.
   EXPECT_EQ(images.trimmed().split('\n').size(), 2) << images.toStdString();
-  const QString text = output_of("pdftotext", {"-raw", QString::fromStdString(file_.string()), "-"});
+  const QString text = output_of("pdftotext", {"-raw", QString::fromStdString(file().string()), "-"});
   for (const char* label : {"Acuity 1/S", "Size S (mrad)", "25 % (chance)", "measured", "simulated"})
     EXPECT_TRUE(text.contains(label)) << label;
 }
 
 TEST_F(PdfReport, KeepsEverythingInsideTheMarginsOfEveryPage) {
-  const QString stem = QString::fromStdString((window_.sessions() / "page").string());
-  (void)output_of("pdftoppm", {"-r", "50", "-png", QString::fromStdString(file_.string()), stem});
+  const QString stem = QString::fromStdString((window().sessions() / "page").string());
+  (void)output_of("pdftoppm", {"-r", "50", "-png", QString::fromStdString(file().string()), stem});
 
   int pages = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(window_.sessions())) {
+  for (const auto& entry : std::filesystem::directory_iterator(window().sessions())) {
     if (entry.path().extension() != ".png") continue;
     ++pages;
     const QImage page(QString::fromStdString(entry.path().string()));
