@@ -51,6 +51,19 @@ Result<std::string> encoded(const cv::Mat1d& levels, const std::string& format) 
   return std::string(bytes.begin(), bytes.end());
 }
 
+/// A file that is not the truth of this picture is a plan, a plate or the truth of another picture, which would lose
+/// its own.
+Result<void> may_be_written(const std::string& truth_file, const std::string& out, const std::string& truth) {
+  if (truth_file == out) return fail(ErrorCode::invalid_input, "--out " + out + ": the truth is written to this name");
+  std::error_code problem;
+  if (!std::filesystem::exists(truth_file, problem)) return {};
+  const auto there = read_text_file(truth_file);
+  const std::string_view title = std::string_view(truth).substr(0, truth.find(':') + 1);
+  if (there && there->starts_with(title)) return {};
+  return fail(ErrorCode::invalid_input, "--out " + out + ": the truth would be written to " + truth_file +
+                                            ", which is there already and not that of such a picture");
+}
+
 int run_pattern(Console& console, const PatternArguments& a, std::uint64_t seed) {
   const PictureRequest request{
       .size = {a.pixels[0], a.pixels[1]}, .low = a.low, .high = a.high, .kind = kind_of(a, seed)};
@@ -63,13 +76,10 @@ int run_pattern(Console& console, const PatternArguments& a, std::uint64_t seed)
     return report_error(console,
                         {ErrorCode::invalid_input, "--out " + a.out + ": " + folder.string() + " is no folder"});
   const std::string truth_file = std::filesystem::path(a.out).replace_extension(".toml").string();
-  if (truth_file == a.out)
-    return report_error(console, {ErrorCode::invalid_input, "--out " + a.out + ": the truth is written to this name"});
+  const std::string truth = pattern_truth(request, *picture, std::filesystem::path(a.out).filename().string());
+  if (const auto may = may_be_written(truth_file, a.out, truth); !may) return report_error(console, may.error());
   if (auto written = write_file_atomically(a.out, *bytes); !written) return report_error(console, written.error());
-  if (auto written = write_file_atomically(
-          truth_file, pattern_truth(request, *picture, std::filesystem::path(a.out).filename().string()));
-      !written)
-    return report_error(console, written.error());
+  if (auto written = write_file_atomically(truth_file, truth); !written) return report_error(console, written.error());
   if (console.json()) {
     console.object({{"pattern", a.kind},
                     {"picture", a.out},

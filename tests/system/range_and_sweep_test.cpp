@@ -143,6 +143,24 @@ TEST(PatternCommand, WritesPictureAndPlate) {
                  2, "no folder");
 }
 
+TEST(PatternCommand, ReplacesItsOwnTruthAndNoOtherFile) {
+  const TemporaryFolder folder;
+  const auto drawn = [&](const std::string& kind, const std::string& out) {
+    return todbench({"pattern", kind, "--pixels", "64", "48", "--out", out}, {.folder = folder.path()});
+  };
+  EXPECT_EQ(drawn("edge", "x.png").code, 0);
+  EXPECT_EQ(drawn("flat", "x.png").code, 0);
+  const std::string truth = content(folder.path() / "x.toml");
+  EXPECT_THAT(truth, HasSubstr("flat"));
+
+  expect_refused(drawn("edge", "x.tiff"), 2, "x.toml");
+  EXPECT_EQ(content(folder.path() / "x.toml"), truth);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "x.tiff"));
+  folder.write("plan.toml", "name = \"plan\"\n");
+  expect_refused(drawn("edge", "plan.png"), 2, "plan.toml");
+  EXPECT_EQ(content(folder.path() / "plan.toml"), "name = \"plan\"\n");
+}
+
 TEST(SweepCommand, HasTheSameTableHoweverItWasRun) {
   const TemporaryFolder folder;
   const std::string sweep =

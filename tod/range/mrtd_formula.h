@@ -20,6 +20,9 @@ struct MrtdFormula {
   double snr_threshold = 2.5;
   NoiseRatios noise{};
   double noise_filter_sigma_mrad = 0;  ///< Gaussian filter behind the noise, per axis; 0: none
+  /// So many neighbours along either axis share the fixed offset (vh) of one detector, which looks at all of them in
+  /// turn: a microscan's. Whatever changes with time is independent from one to the next.
+  int samples_per_detector = 1;
 };
 
 /// Which of the two: bars along y, which the horizontal axis resolves, or across.
@@ -27,8 +30,14 @@ enum class BarAxis { horizontal, vertical };
 
 /// The noise that eye and brain leave of the four bars, in kelvin: SNR NETD sqrt(E_t E_w E_L + (vh/tvh)^2 E_w E_L +
 /// (th/tvh)^2 E_t E_w + (h/tvh)^2 E_w). E_t = 1 / (frame rate x integration time); E_w = 2 p int N^2 sinc^2(v w) dv
-/// over a bar's width w = 1 / (2 f), E_L over its length 7 w. Preconditions: all > 0.
+/// over a bar's width w = 1 / (2 f), E_L over its length 7 w. Where n samples share a detector, those of vh have the
+/// density p shared_density() in place of p: at low frequencies n times, as of the detectors' pitch. Preconditions: all
+/// > 0.
 [[nodiscard]] double perceived_noise_k(const MrtdFormula& formula, double frequency_per_mrad, BarAxis axis);
+
+/// Spectral density of noise of n neighbouring samples alike, over that of independent samples of the same variance, at
+/// cycles per sample: sum over |k| < n of (1 - |k| / n) cos(2 pi f k). Precondition: n > 0.
+[[nodiscard]] double shared_density(int n, double cycles_per_sample);
 
 /// (pi^2 / 8) perceived noise / MTF: 8 / pi^2 is the first harmonic of bars, 4 / pi, times its mean over half a period.
 /// Precondition: mtf > 0.

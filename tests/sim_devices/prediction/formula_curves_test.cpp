@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "sim_devices/sensor/sensor_plan.h"
@@ -39,6 +40,31 @@ TEST(FormulaCurves, AveragingAndMicroscanChangeNeitherNoisePerAngleAndTimeNorThe
   EXPECT_NEAR(a->horizontal.at(0.3).value() / plain->horizontal.at(0.3).value(), 1, 1e-12);
   EXPECT_NEAR(b->horizontal.at(0.3).value() / plain->horizontal.at(0.3).value(), 1, 1e-3) << "between points";
   EXPECT_NEAR(b->horizontal.points().back().frequency, 2 * plain->horizontal.points().back().frequency, 1e-12);
+}
+
+TEST(FormulaCurves, MicroscanTakesNothingFromTheFixedPatternOfTheSameDetectors) {
+  SensorSpec plain = test::sc2000();
+  plain.netd_k = 1e-4;
+  plain.fixed_pattern_k = 0.1;
+  SensorSpec scanned = plain, quiet = plain, quiet_scanned = plain;
+  scanned.microscan = quiet_scanned.microscan = 2;
+  quiet.fixed_pattern_k = quiet_scanned.fixed_pattern_k = 0;
+  const FormulaConditions conditions;
+  const double f = 0.1, low = 0.02;
+
+  const auto one = mrtd_curves(plain, conditions), four = mrtd_curves(scanned, conditions);
+  ASSERT_TRUE(one && four);
+  // Bars of 7.6 samples by 53: (1 - p / 2 w) of the mean over pairs of samples that begin anywhere.
+  const double sample = plain.ifov_mrad() / 2, width = 1 / (2 * f);
+  const double expected = std::sqrt((1 - sample / (2 * width)) * (1 - sample / (14 * width)));
+  EXPECT_NEAR(four->horizontal.at(f).value() / one->horizontal.at(f).value() / expected, 1, 5e-3);
+  // Over CTFs without the pattern, the noise that the eye's channel lets through.
+  const auto noise = [&](const SensorSpec& with, const SensorSpec& without) {
+    const double ratio =
+        system_ctf(with, conditions)->at(low).value() / system_ctf(without, conditions)->at(low).value();
+    return ratio * ratio - 1;
+  };
+  EXPECT_NEAR(noise(scanned, quiet_scanned) / noise(plain, quiet), 1, 0.02);
 }
 
 TEST(FormulaCurves, TheMtdpLikeCurveGoesOnBeyondNyquistAndJoinsTheMrtdWhenSamplingIsFine) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -60,6 +61,41 @@ TEST(MrtdFormula, TheMtdpLikeCurveJoinsTheMrtdWhereTheModulationIsThatOfTheFirst
   for (const double mtf : {0.1, 0.5, 0.9}) {
     EXPECT_NEAR(mtdp_like_k(formula, 0.3, 4 / std::numbers::pi * mtf, BarAxis::horizontal),
                 mrtd_k(formula, 0.3, mtf, BarAxis::horizontal), 1e-15);
+  }
+}
+
+/// Variance of the mean over a bar of samples of which n neighbours along the axis are alike: brute force over where
+/// the samples lie and which of them belong together.
+double variance_over_bar(double pitch, double width, int alike) {
+  constexpr int places = 4000;
+  double sum = 0;
+  for (int place = 0; place < places; ++place) {
+    for (int first = 0; first < alike; ++first) {
+      std::map<int, int> in_bar;  // samples by detector
+      for (int i = 0; (i + (place + 0.5) / places) * pitch < width; ++i) ++in_bar[(i + first) / alike];
+      for (const auto& [detector, samples] : in_bar) sum += samples * samples;
+    }
+  }
+  return sum / places / alike * pitch * pitch / (width * width);
+}
+
+TEST(MrtdFormula, TheFixedPatternOfADetectorIsSharedByAllItsSamples) {
+  MrtdFormula formula{.pitch_mrad = 0.5, .frame_rate_hz = 1e18, .noise = {.vh = 1}};
+  for (const int n : {1, 2, 3}) {
+    formula.samples_per_detector = n;
+    for (const double f : {0.05, 0.3, 0.71, 1.3}) {
+      const double width = 1 / (2 * f);
+      const double expected = variance_over_bar(0.5, width, n) * variance_over_bar(0.5, 7 * width, n);
+
+      const double found = perceived_noise_k(formula, f, BarAxis::horizontal) / formula.snr_threshold / formula.netd_k;
+
+      EXPECT_NEAR(found * found / expected, 1, 2e-3) << n << " at " << f;
+    }
+    // The Dirichlet kernel.
+    for (const double f : {0.01, 0.2, 0.49}) {
+      const double kernel = std::sin(std::numbers::pi * n * f) / std::sin(std::numbers::pi * f);
+      EXPECT_NEAR(shared_density(n, f), kernel * kernel / n, 1e-12);
+    }
   }
 }
 
