@@ -2,6 +2,7 @@
 #include <QApplication>
 #include <QCommandLineParser>
 #include <QDir>
+#include <QRegularExpression>
 #include <algorithm>
 #include <clocale>
 #include <csignal>
@@ -92,47 +93,25 @@ QList<QCommandLineOption> known_options() {
       manual};
 }
 
-}  // namespace
+int refused(const std::string& sentence) {
+  std::fprintf(stderr, "todbench-gui: %s\n", todbench::one_line(sentence).c_str());
+  return todbench::exit_code(todbench::ErrorCode::invalid_input);
+}
 
-int main(int argc, char** argv) {
-  // Writing a report needs fonts and no screen; so does the manual.
-  const auto needs_no_screen = [](const char* argument) {
-    return std::string_view(argument).starts_with("--report") || std::string_view(argument).starts_with("--manual");
-  };
-  if (std::any_of(argv + 1, argv + argc, needs_no_screen) && !qEnvironmentVariableIsSet("QT_QPA_PLATFORM"))
-    qputenv("QT_QPA_PLATFORM", "offscreen");
-  const auto needs_a_screen = [](const char* argument) {
-    return std::string_view(argument).starts_with("--pattern") || std::string_view(argument).starts_with("--pictures");
-  };
-  if (std::any_of(argv + 1, argv + argc, needs_a_screen) && !todbench::has_screen()) {
-    std::fprintf(stderr, "todbench-gui: there is no screen: neither DISPLAY nor WAYLAND_DISPLAY is set\n");
-    return todbench::exit_code(todbench::ErrorCode::not_found);
-  }
-  // A program behind the camera or on a display that has ended is an error in words.
-  std::signal(SIGPIPE, SIG_IGN);
-  const QApplication application(argc, argv);
-  // An application takes the user's locale for the C library as well; libraries that read numbers of cameras and files
-  // with strtod() would then expect a comma.
-  std::setlocale(LC_NUMERIC, "C");
-  QApplication::setApplicationName("todbench-gui");
-  const auto version = todbench::build_info().version;
-  QApplication::setApplicationVersion(QString::fromUtf8(version.data(), static_cast<qsizetype>(version.size())));
-  QCommandLineParser options;
-  options.setApplicationDescription("The bench of todbench as a window");
-  options.addHelpOption();
-  options.addVersionOption();
-  const QList<QCommandLineOption> known = known_options();
-  options.addOptions(known);
-  options.addPositionalArgument("SESSION", "Folder of a session, or its session.toml: shown at once.", "[SESSION]");
-  options.process(application);
-  if (options.isSet("manual")) return write_manual(known, options.value("manual"));
-  if (options.isSet("report")) return write_reports(options.value("report"));
+/// What a parser of Qt does not look at: the values. Empty when they can be taken.
+std::string wrong_value(const QCommandLineParser& options) {
+  const QString theme = options.value("theme"), size = options.value("size");
+  if (options.isSet("theme") && theme != "light" && theme != "dark")
+    return "--theme " + theme.toStdString() + ": expected light or dark";
+  static const QRegularExpression width_by_height("^([1-9][0-9]{0,4})x([1-9][0-9]{0,4})$");
+  if (options.isSet("size") && !width_by_height.match(size).hasMatch())
+    return "--size " + size.toStdString() + ": expected WIDTHxHEIGHT in pixels, for instance 1366x768";
+  if (options.positionalArguments().size() > 1) return "one session at most";
+  return {};
+}
 
-  if (options.isSet("pattern"))
-    return todbench::show_patterns(options.value("pattern"), options.value("screen"), options.value("truth"));
-  if (options.isSet("pictures"))
-    return todbench::show_pictures_of_input(options.value("screen"), options.value("copy"));
-
+/// The window, until it is closed, or its pictures.
+int run_window(const QCommandLineParser& options) {
   const QStringList arguments = options.positionalArguments();
   const auto shown = arguments.isEmpty() ? std::filesystem::path() : session_folder(arguments.constFirst());
   if (!shown.empty() && !std::filesystem::exists(shown / "session.toml")) {
@@ -161,4 +140,48 @@ int main(int argc, char** argv) {
   window.bench().rescan();
   if (!shown.empty()) window.open_path(shown);
   return QApplication::exec();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // Writing a report needs fonts and no screen; so does the manual. Without a screen the options are read all the same,
+  // so that help and mistakes are told anywhere.
+  const auto needs_no_screen = [](const char* argument) {
+    return std::string_view(argument).starts_with("--report") || std::string_view(argument).starts_with("--manual");
+  };
+  const bool screen = todbench::has_screen();
+  if (!screen || (std::any_of(argv + 1, argv + argc, needs_no_screen) && !qEnvironmentVariableIsSet("QT_QPA_PLATFORM")))
+    qputenv("QT_QPA_PLATFORM", "offscreen");
+  // A program behind the camera or on a display that has ended is an error in words.
+  std::signal(SIGPIPE, SIG_IGN);
+  const QApplication application(argc, argv);
+  // An application takes the user's locale for the C library as well; libraries that read numbers of cameras and files
+  // with strtod() would then expect a comma.
+  std::setlocale(LC_NUMERIC, "C");
+  QApplication::setApplicationName("todbench-gui");
+  const auto version = todbench::build_info().version;
+  QApplication::setApplicationVersion(QString::fromUtf8(version.data(), static_cast<qsizetype>(version.size())));
+  QCommandLineParser options;
+  options.setApplicationDescription("The bench of todbench as a window");
+  const QCommandLineOption help = options.addHelpOption(), of_version = options.addVersionOption();
+  const QList<QCommandLineOption> known = known_options();
+  options.addOptions(known);
+  options.addPositionalArgument("SESSION", "Folder of a session, or its session.toml: shown at once.", "[SESSION]");
+  if (!options.parse(QApplication::arguments())) return refused(options.errorText().toStdString());
+  if (options.isSet(of_version)) options.showVersion();
+  if (options.isSet(help) || options.isSet("help-all")) options.showHelp();
+  if (const std::string wrong = wrong_value(options); !wrong.empty()) return refused(wrong);
+  if (options.isSet("manual")) return write_manual(known, options.value("manual"));
+  if (options.isSet("report")) return write_reports(options.value("report"));
+
+  if (!screen && !options.isSet("screenshots")) {
+    std::fprintf(stderr, "todbench-gui: there is no screen: neither DISPLAY nor WAYLAND_DISPLAY is set\n");
+    return todbench::exit_code(todbench::ErrorCode::not_found);
+  }
+  if (options.isSet("pattern"))
+    return todbench::show_patterns(options.value("pattern"), options.value("screen"), options.value("truth"));
+  if (options.isSet("pictures"))
+    return todbench::show_pictures_of_input(options.value("screen"), options.value("copy"));
+  return run_window(options);
 }

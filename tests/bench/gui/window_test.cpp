@@ -29,6 +29,7 @@
 #include "bench/text/text.h"
 #include "tests/bench/gui/gui_test_support.h"
 #include "tests/bench/gui/watched_application.h"
+#include "tests/support/patience.h"
 
 namespace todbench::testing {
 namespace {
@@ -367,6 +368,35 @@ TEST(Window, ComparesTwoSessionsAndWritesBothReports) {
   EXPECT_EQ(QProcess::execute(TODBENCH_GUI_PROGRAM, {"--report", QString::fromStdString(folder.string())}), 0);
   EXPECT_TRUE(std::filesystem::exists(folder / "report.pdf"));
   EXPECT_EQ(QProcess::execute(TODBENCH_GUI_PROGRAM, {"--report", "no-such-session"}), 2);
+}
+
+/// Exit code and both outputs of the program where there is no window system.
+std::pair<int, QString> without_a_screen(const QStringList& arguments) {
+  QProcess program;
+  QProcessEnvironment environment = QProcessEnvironment::systemEnvironment();
+  for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"}) environment.remove(name);
+  program.setProcessEnvironment(environment);
+  program.setProcessChannelMode(QProcess::MergedChannels);
+  program.start(TODBENCH_GUI_PROGRAM, arguments);
+  EXPECT_TRUE(program.waitForFinished(static_cast<int>(testing_support::patience(std::chrono::minutes(1)).count())));
+  EXPECT_EQ(program.exitStatus(), QProcess::NormalExit);
+  return {program.exitCode(), QString::fromUtf8(program.readAll())};
+}
+
+TEST(WindowProgram, TellsHelpAndMistakesWithoutAScreen) {
+  const auto [help_code, help] = without_a_screen({"--help"});
+  EXPECT_EQ(help_code, 0);
+  EXPECT_TRUE(help.contains("--screenshots")) << help.toStdString();
+  EXPECT_EQ(without_a_screen({"--version"}).first, 0);
+  for (const QStringList& wrong :
+       {QStringList{"--sesions", "."}, {"--theme", "purple"}, {"--size", "1366"}, {"--size", "0x700"}, {"a", "b"}}) {
+    const auto [code, said] = without_a_screen(wrong);
+    EXPECT_EQ(code, 2) << wrong.join(' ').toStdString();
+    EXPECT_TRUE(said.trimmed().split('\n').constLast().startsWith("todbench-gui: ")) << said.toStdString();
+  }
+  const auto [code, said] = without_a_screen({});
+  EXPECT_EQ(code, 4);
+  EXPECT_TRUE(said.contains("there is no screen")) << said.toStdString();
 }
 
 TEST(Window, MeasuresThePlanOfASessionAgainBitForBit) {
