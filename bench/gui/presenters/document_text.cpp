@@ -3,6 +3,7 @@
 #include <QByteArray>
 #include <QFontMetricsF>
 #include <QImage>
+#include <QRegularExpression>
 #include <QTextCursor>
 #include <QTextTable>
 #include <QUrl>
@@ -91,36 +92,64 @@ QTextTableCellFormat cell_format(const QTextCharFormat& base, CellKind kind) {
   return format;
 }
 
+/// What a column needs: for all of its texts on one line, and for the longest word of them.
+struct Need {
+  double line_px = 0, word_px = 0;
+};
+
+Need need_of(const Table& table, std::size_t column, const QFontMetricsF& metrics) {
+  static const QRegularExpression blanks("[ \\n\\t]+");
+  constexpr double longest_px = 400, slack_px = 2, padding_px = 2 * (cell_padding + 1) + slack_px;
+  Need need;
+  const auto count = [&](const QString& text) {
+    need.line_px = std::max(need.line_px, metrics.horizontalAdvance(text));
+    for (const QString& word : text.split(blanks))
+      need.word_px = std::max(need.word_px, metrics.horizontalAdvance(word));
+  };
+  count(qt(table.header[column]));
+  for (const auto& row : table.rows) {
+    QString text;
+    if (column < row.size())
+      for (const Phrase& phrase : row[column].phrases) text += qt(phrase.text);
+    count(text);
+  }
+  return {std::min(std::ceil(need.line_px) + padding_px, longest_px),
+          std::min(std::ceil(need.word_px) + padding_px, longest_px)};
+}
+
 /// Parts of the width in per cent. Columns whose texts fit into an even share are as wide as these, the narrowest
-/// first; the others share what is left by the square roots of their lengths. Left to itself Qt breaks words of narrow
-/// columns. Empty where everything fits.
+/// first; the others share what is left by the square roots of their lengths, and none is narrower than its longest
+/// word as long as there is room. Left to itself Qt breaks words of narrow columns. Empty where everything fits.
 std::vector<double> widths_of(const Table& table) {
-  constexpr double text_width_px = 673, longest_px = 400, slack_px = 2;
+  constexpr double text_width_px = 673;
   QFont font("DejaVu Sans");
   font.setPixelSize(text_px);
   font.setBold(true);
   const QFontMetricsF metrics(font);
-  std::vector<double> widths;
-  for (std::size_t column = 0; column < table.header.size(); ++column) {
-    double widest = metrics.horizontalAdvance(qt(table.header[column]));
-    for (const auto& row : table.rows) {
-      QString text;
-      if (column < row.size())
-        for (const Phrase& phrase : row[column].phrases) text += qt(phrase.text);
-      widest = std::max(widest, metrics.horizontalAdvance(text));
-    }
-    widths.push_back(std::min(std::ceil(widest) + 2 * (cell_padding + 1) + slack_px, longest_px));
-  }
-  std::vector<std::size_t> order(widths.size());
+  std::vector<Need> needs;
+  for (std::size_t column = 0; column < table.header.size(); ++column) needs.push_back(need_of(table, column, metrics));
+  std::vector<std::size_t> order(needs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) { return widths[x] < widths[y]; });
-  double left_px = text_width_px, roots = 0;
-  std::size_t fitting = 0;
-  while (fitting < order.size() && widths[order[fitting]] <= left_px / static_cast<double>(order.size() - fitting))
-    left_px -= widths[order[fitting++]];
-  if (fitting == order.size()) return {};
-  for (std::size_t i = fitting; i < order.size(); ++i) roots += std::sqrt(widths[order[i]]);
-  for (std::size_t i = fitting; i < order.size(); ++i) widths[order[i]] = left_px * std::sqrt(widths[order[i]]) / roots;
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t x, std::size_t y) { return needs[x].line_px < needs[y].line_px; });
+  std::vector<double> widths(needs.size(), 0);
+  double left_px = text_width_px;
+  while (!order.empty() && needs[order.front()].line_px <= left_px / static_cast<double>(order.size())) {
+    left_px -= widths[order.front()] = needs[order.front()].line_px;
+    order.erase(order.begin());
+  }
+  if (order.empty()) return {};
+  while (true) {
+    double roots = 0;
+    for (const std::size_t i : order) roots += std::sqrt(needs[i].line_px);
+    for (const std::size_t i : order) widths[i] = left_px * std::sqrt(needs[i].line_px) / roots;
+    const auto tight = std::find_if(order.begin(), order.end(), [&](std::size_t i) {
+      return order.size() > 1 && widths[i] < needs[i].word_px && needs[i].word_px < left_px;
+    });
+    if (tight == order.end()) break;
+    left_px -= widths[*tight] = needs[*tight].word_px;
+    order.erase(tight);
+  }
   for (double& width : widths) width *= 100 / text_width_px;
   return widths;
 }

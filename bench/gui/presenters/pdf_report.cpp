@@ -10,6 +10,7 @@
 #include <QTextDocument>
 #include <QTextTable>
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "bench/gui/presenters/document_text.h"
@@ -90,6 +91,26 @@ QTextBlock with_headings(const QTextBlock& block) {
   return heading ? with_headings(above) : block;
 }
 
+/// Whether one of its lines lies on two pages: behind a table Qt sets some there.
+bool is_cut(const QTextDocument& document, const QTextBlock& block) {
+  const double top = document.documentLayout()->blockBoundingRect(block).top(), height = document.pageSize().height();
+  constexpr double rounding = 0.5;
+  for (int i = 0; i < block.layout()->lineCount(); ++i) {
+    const QTextLine line = block.layout()->lineAt(i);
+    const double begin = top + line.y() + rounding, end = top + line.y() + line.height() - rounding;
+    if (std::floor(begin / height) != std::floor(end / height)) return true;
+  }
+  return false;
+}
+
+void move_to_next_page(QTextDocument& document, const QTextBlock& block) {
+  const QTextBlock moved = with_headings(block);
+  QTextBlockFormat format = moved.blockFormat();
+  format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
+  QTextCursor(moved).setBlockFormat(format);
+  lay_out_from(document, moved.position());
+}
+
 /// A heading, a caption or a figure at the foot of a page moves to the next one, with what it belongs to.
 void keep_together(QTextDocument& document) {
   for (QTextBlock block = document.begin(); block.isValid(); block = block.next()) {
@@ -98,17 +119,17 @@ void keep_together(QTextDocument& document) {
       continue;
     }
     if (block.text().trimmed().isEmpty()) continue;
+    if (is_cut(document, block)) {
+      move_to_next_page(document, block);
+      continue;
+    }
     const QTextBlock next = content_after(block);
     const bool stands_over_a_table = next.isValid() && table_at(next) != nullptr;
     const bool figure = block.text().contains(QChar::ObjectReplacementCharacter);
     if (block.blockFormat().headingLevel() == 0 && !stands_over_a_table && !figure) continue;
     const QTextBlock content = belongs_to(document, block);
     if (!content.isValid() || page_of(document, content) == page_of(document, block)) continue;
-    const QTextBlock moved = with_headings(block);
-    QTextBlockFormat format = moved.blockFormat();
-    format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
-    QTextCursor(moved).setBlockFormat(format);
-    lay_out_from(document, moved.position());
+    move_to_next_page(document, block);
   }
 }
 
@@ -169,6 +190,11 @@ Result<void> write_pdf(const Document& document, const std::filesystem::path& fi
   text.setDefaultFont(font);
   text.documentLayout()->registerHandler(DrawingTextObject::object_type, &drawings);
   write_text(text, drawings, document);
+  // A line that just fits would leave the lower edge of its cell, or of its own letters, to the next page.
+  constexpr double room_below_px = 10;
+  QTextFrameFormat page = text.rootFrame()->frameFormat();
+  page.setBottomMargin(room_below_px);
+  text.rootFrame()->setFrameFormat(page);
   text.setPageSize({text_width, text_height});
   keep_together(text);
   if (const auto lost = lost_text(text))

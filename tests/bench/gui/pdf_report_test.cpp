@@ -43,6 +43,25 @@ QStringList texts_of(const std::string& html) {
   return out;
 }
 
+/// Dark pixels at 100 dpi in the last millimetre above the foot of the pages, where only edges of tables may be: a line
+/// there would be on two pages.
+int dark_above_the_foot(const std::filesystem::path& pdf, const std::filesystem::path& stem) {
+  (void)output_of("pdftoppm", {"-r", "100", "-gray", "-x", "0", "-y", "1069", "-W", "827", "-H", "5",
+                               QString::fromStdString(pdf.string()), QString::fromStdString(stem.string())});
+  int dark = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(stem.parent_path())) {
+    if (entry.path().extension() != ".pgm" || !entry.path().filename().string().starts_with(stem.filename().string()))
+      continue;
+    const QImage strip(QString::fromStdString(entry.path().string()));
+    EXPECT_EQ(strip.height(), 5);
+    for (int y = 0; y < strip.height(); ++y) {
+      for (int x = 0; x < strip.width(); ++x) dark += qGray(strip.pixel(x, y)) < 128 ? 1 : 0;
+    }
+    std::filesystem::remove(entry.path());
+  }
+  return dark;
+}
+
 /// The report of one measurement, which no test changes, and its PDF.
 class PdfReport : public ::testing::Test {
  protected:
@@ -118,6 +137,7 @@ TEST_F(PdfReport, LosesNoHeadingWhereverItsPagesBreak) {
         EXPECT_FALSE(page.trimmed().endsWith(text)) << rows << " rows: " << text.toStdString() << " ends a page";
     }
     EXPECT_TRUE(raw.contains(squeezed("p different: likelihood-ratio test"))) << rows << " rows";
+    EXPECT_EQ(dark_above_the_foot(file, window().sessions() / "strip"), 0) << rows << " rows: a line on two pages";
     EXPECT_FALSE(raw.contains("@@")) << "a figure is missing";
   }
 }
