@@ -25,6 +25,7 @@
 #include "bench/session/provenance.h"
 #include "bench/session/uncertainty_record.h"
 #include "tod/psychometric/acuity.h"
+#include "tod/psychometric/contrast_slope.h"
 
 namespace todbench {
 namespace {
@@ -93,7 +94,7 @@ void print_comparison(const Console& console, const ExperimentOutcome& outcome) 
   }
   console.table(
       {"dT [K]", "acuity measured [1/mrad]", "95 %", "simulated [1/mrad]", "95 %", "ratio", "95 %", "verdict"}, rows);
-  print_paired(console, *outcome.comparison);
+  print_paired(console, *outcome.comparison, has_contrast_measured_once(outcome.curve));
 }
 
 void print_effects(const Console& console, const SensorPlan& effects) {

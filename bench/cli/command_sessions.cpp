@@ -15,6 +15,7 @@
 #include "bench/session/session_comparison.h"
 #include "bench/session/signature.h"
 #include "bench/text/files.h"
+#include "tod/psychometric/contrast_slope.h"
 
 namespace todbench {
 namespace {
@@ -35,14 +36,14 @@ std::vector<std::string> accepted_files(const CompareArguments& arguments, const
   return files;
 }
 
-void print_comparison(const Console& console, const Comparison& comparison) {
+void print_comparison(const Console& console, const Comparison& comparison, bool measured_once) {
   std::vector<TableRow> rows;
   for (const auto& p : comparison.points) {
     rows.push_back({fixed(p.delta_t_a_k, 3), fixed(p.delta_t_b_k, 3), fixed(p.ratio, 4), range(p.ratio_ci95, 4),
                     fixed(p.p_difference, 4), fixed(p.p_equivalence, 4), std::string(to_string(p.verdict))});
   }
   console.table({"dT A [K]", "dT B [K]", "acuity A / B", "95 %", "p difference", "p equivalence", "verdict"}, rows);
-  print_paired(console, comparison);
+  print_paired(console, comparison, measured_once);
   print_findings(console, comparison.adequacy, "");
   console.text("margin " + fixed(comparison.points.front().margin_percent, 1) +
                " %; verdict: " + std::string(to_string(comparison.verdict)));
@@ -75,7 +76,8 @@ int run_compare(Console& console, const CompareArguments& arguments) {
     add_accepted_changes(json, arguments.opening, accepted_files(arguments, *a, *b));
     console.object(json);
   } else {
-    print_comparison(console, *comparison);
+    print_comparison(console, *comparison,
+                     has_contrast_measured_once(compared->a) || has_contrast_measured_once(compared->b));
     for (const auto& sentence : {accepted_sentence(arguments.a, *a), accepted_sentence(arguments.b, *b)}) {
       if (!sentence.empty()) console.text(sentence);
     }

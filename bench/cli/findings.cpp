@@ -36,7 +36,7 @@ void print_frontier(const Console& console, const std::vector<PrecisionChoice>& 
   console.table(header, rows);
 }
 
-void print_paired(const Console& console, const Comparison& comparison) {
+void print_paired(const Console& console, const Comparison& comparison, bool measured_once) {
   std::vector<TableRow> rows;
   for (const ComparisonPoint& point : comparison.points) {
     if (!point.paired) continue;
@@ -49,7 +49,7 @@ void print_paired(const Console& console, const Comparison& comparison) {
   console.text("");
   console.text("paired by presentation; these ratios decide:");
   console.table({"dT [K]", "ratio", "95 %", "90 %", "p difference", "p equivalence", "verdict"}, rows);
-  console.text(std::string(not_cancelled_by_pairs));
+  console.text(not_cancelled_by_pairs(measured_once));
 }
 
 }  // namespace todbench

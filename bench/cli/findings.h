@@ -17,7 +17,8 @@ void print_findings(const Console& console, const std::optional<Adequacy>& adequ
 /// Time against half-width as a table, with the number of frames that buys most.
 void print_frontier(const Console& console, const std::vector<PrecisionChoice>& choices);
 
-/// The ratios by common phases as a table, with what they do not cancel; nothing where there are none.
-void print_paired(const Console& console, const Comparison& comparison);
+/// The ratios by common phases as a table, with what they do not cancel; nothing where there are none. `measured_once`:
+/// has_contrast_measured_once() of a camera.
+void print_paired(const Console& console, const Comparison& comparison, bool measured_once);
 
 }  // namespace todbench

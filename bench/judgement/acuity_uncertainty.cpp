@@ -288,6 +288,7 @@ Result<std::optional<CurveUncertainty>> curve_uncertainty(const Plan& plan, cons
     out.points.push_back(std::move(found));
   }
   if (!read_back) out.not_stated.emplace_back(read_back_row);
+  if (has_contrast_measured_once(curve)) out.not_stated.push_back(std::string(seen_contrast_row) + " (measured once)");
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include "bench/report/tod_figures.h"
 #include "tod/comparison/paired_ratio.h"
 #include "tod/psychometric/acuity.h"
+#include "tod/psychometric/contrast_slope.h"
 
 namespace todbench {
 namespace {
@@ -53,6 +54,8 @@ std::vector<DrawnLimit> acuity_limits(const ReportData& data) {
 
 RichText contrast_cell(const TodPoint& point) {
   if (point.delta_t_k == 0 || !std::isfinite(point.delta_t_k)) return missing("not measured");
+  if (point.delta_t_measurements == 1 && !contrast_se_k(point))
+    return plain(significant(point.delta_t_k, 3)) + RichText{{{" (measured once)", Meaning::reason}}};
   if (!(point.delta_t_se_k > 0)) return plain(significant(point.delta_t_k, 3));
   const int decimals = decimals_for(point.delta_t_k, {-point.delta_t_se_k, point.delta_t_se_k});
   return unbroken(shown(point.delta_t_k, decimals) + " ± " + fixed(point.delta_t_se_k, decimals));
@@ -508,7 +511,7 @@ Section comparison_section(const ReportData& data) {
     section.blocks.emplace_back(
         note(plain("Paired by presentation: the twin was shown what the camera saw, with the same sub-pixel phases. "
                    "These ratios decide. " +
-                   std::string(not_cancelled_by_pairs))));
+                   not_cancelled_by_pairs(data.measured && has_contrast_measured_once(*data.measured)))));
     section.blocks.emplace_back(*std::move(paired));
   }
   section.blocks.emplace_back(Paragraph{overall});

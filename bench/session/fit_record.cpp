@@ -4,6 +4,7 @@
 
 #include "bench/session/json_output.h"
 #include "bench/text/json_reader.h"
+#include "tod/psychometric/contrast_slope.h"
 
 namespace todbench {
 
@@ -128,7 +129,7 @@ Json point_record(const TodPoint& point) {
   Json json;
   json["set_delta_t_k"] = json_number(point.set_delta_t_k);
   json["delta_t_k"] = json_number(point.delta_t_k);
-  json["delta_t_se_k"] = json_number(point.delta_t_se_k);
+  json["delta_t_se_k"] = json_number(contrast_se_k(point));
   json["delta_t_measurements"] = point.delta_t_measurements;
   json["fit"] = fit_record(point.fit);
   json["estimator"] = to_string(estimator_of(point.fit));
@@ -151,7 +152,7 @@ TodPoint read_point(const JsonReader& reader) {
   TodPoint point;
   point.set_delta_t_k = reader.at("set_delta_t_k").number();
   point.delta_t_k = reader.at("delta_t_k").number();
-  point.delta_t_se_k = reader.at("delta_t_se_k").number();
+  if (const JsonReader error = reader.at("delta_t_se_k"); !error.is_null()) point.delta_t_se_k = error.number();
   if (const JsonReader count = reader.at_if_there("delta_t_measurements"); !count.is_null())
     point.delta_t_measurements = static_cast<int>(count.whole());
   point.fit = read_fit(reader.at("fit"));

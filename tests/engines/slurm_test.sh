@@ -166,6 +166,7 @@ submit requeued --chunk 4 --program "$work/slow-program"
 for _ in $(seq 300); do [ -e slow.0 ] && [ -e slow.1 ] && break; sleep 0.1; done
 for job in $(squeue -h -r -o %i); do scontrol requeue "$job" || true; done
 for _ in $(seq 300); do [ -z "$(squeue -h -r -t R,CG -o %i)" ] && break; sleep 0.1; done
-for job in $(squeue -h -r -o %i); do scontrol update jobid="$job" starttime=now || true; done
+# A node takes no job whose credential is not younger than the end of its first run, in whole seconds.
+for job in $(squeue -h -r -o %i); do scontrol update jobid="$job" starttime=now+2 || true; done
 same_table requeued
 echo "PASSED: an array, an array that is too long, a lost node, a requeue: one table"

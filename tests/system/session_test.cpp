@@ -11,6 +11,7 @@ namespace todbench::testing {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
@@ -79,6 +80,24 @@ TEST_F(Sessions, MeasureWithASimulatedCameraComparesWithItsTwin) {
   EXPECT_TRUE(std::filesystem::exists(at("m") / "comparison.json"));
   EXPECT_EQ(json["judgement"], Json::parse(content_of(at("m") / "verdict.json")));
   EXPECT_EQ(rows_in(at("m") / "trials_simulated.csv"), 160u);
+}
+
+TEST_F(Sessions, AContrastThatWasMeasuredOnceHasNoStandardErrorAndNobodySaysItHas) {
+  write("plan.toml",
+        small_measurement(8, "[[uncertainty.component]]\nname = \"distance\"\nvalue = 1\nunit = \"mm\"\n"));
+
+  const Ended ended = run({"measure", "./plan.toml", "--out", "m"});
+
+  EXPECT_THAT(ended.out, HasSubstr("measured once"));
+  EXPECT_THAT(ended.out, Not(HasSubstr("scatter of the measured contrast is in the interval")));
+  EXPECT_THAT(content_of(at("m") / "report.html"), HasSubstr("(measured once)"));
+  const Json fits = Json::parse(content_of(at("m") / "fits.json"));
+  EXPECT_TRUE(fits["measured"]["points"][0]["delta_t_se_k"].is_null());
+  // side, set contrast, effective contrast, nothing.
+  EXPECT_THAT(content_of(at("m") / "curve.csv"), ContainsRegex("measured,16\\.9,[0-9.]+,,"));
+  const Json verdict = Json::parse(content_of(at("m") / "verdict.json"));
+  EXPECT_THAT(verdict["uncertainty_not_stated"].dump(), HasSubstr("measured once"));
+  EXPECT_EQ(run({"report", "m"}).code, 0);
 }
 
 TEST_F(Sessions, TheStoredPlanRepeatsTheRunAlsoOnOneProcessor) {

@@ -46,6 +46,16 @@ Result<void> check_pairs(std::span<const PairedAnswer> answers, double margin_pe
 
 }  // namespace
 
+std::string not_cancelled_by_pairs(bool measured_once) {
+  return std::string("Pairing cancels what both saw alike, the phases. ") +
+         (measured_once
+              ? "The contrast was measured once, in one set-up: how it scatters is not known and not in the interval. "
+              : "The scatter of the measured contrast is in the interval. ") +
+         "What is wrong with the contrast everywhere alike, with the distance or with the plate is not: that belongs "
+         "to the "
+         "budget.";
+}
+
 Result<RatioOfPairs> paired_ratio(std::span<const PairedAnswer> answers, const ProportionTable& table, bool with_slope,
                                   int draws, double margin_percent, const ContrastScatter& contrast) {
   if (auto fine = check_pairs(answers, margin_percent); !fine) return tl::unexpected(fine.error());

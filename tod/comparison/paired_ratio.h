@@ -3,7 +3,7 @@
 
 #include <optional>
 #include <span>
-#include <string_view>
+#include <string>
 
 #include "acquisition/core/result.h"
 #include "tod/comparison/comparison.h"
@@ -12,10 +12,8 @@
 
 namespace todbench {
 
-/// What is beside a paired ratio wherever people read it.
-inline constexpr std::string_view not_cancelled_by_pairs =
-    "Pairing cancels what both saw alike, the phases. The scatter of the measured contrast is in the interval. What is "
-    "wrong with the contrast everywhere alike, with the distance or with the plate is not: that belongs to the budget.";
+/// What is beside a paired ratio wherever people read it. `measured_once`: has_contrast_measured_once().
+[[nodiscard]] std::string not_cancelled_by_pairs(bool measured_once);
 
 /// One presentation of one triangle: what the camera's frames were answered with, and what the twin's were.
 struct PairedAnswer {

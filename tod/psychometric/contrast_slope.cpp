@@ -46,6 +46,16 @@ double contrast_seen_k(const TodPoint& point) {
   return seen > 0 && std::isfinite(seen) ? seen : std::abs(point.set_delta_t_k);
 }
 
+std::optional<double> contrast_se_k(const TodPoint& point) {
+  const bool known = point.delta_t_measurements > 1 || point.delta_t_se_k > 0;
+  return known ? std::optional(point.delta_t_se_k) : std::nullopt;
+}
+
+bool has_contrast_measured_once(const TodCurve& curve) {
+  return std::any_of(curve.points.begin(), curve.points.end(),
+                     [](const TodPoint& point) { return point.delta_t_measurements == 1 && !contrast_se_k(point); });
+}
+
 std::optional<double> freedom_of_contrast(const TodPoint& point) {
   return point.delta_t_measurements > 1 ? std::optional(point.delta_t_measurements - 1.0) : std::nullopt;
 }

@@ -11,6 +11,11 @@ namespace todbench {
 /// Size of the contrast that the camera saw, or of the one that was set where none is known.
 [[nodiscard]] double contrast_seen_k(const TodPoint& point);
 
+/// Standard error of the effective contrast; nothing where it was measured once and nobody knows how it scatters.
+[[nodiscard]] std::optional<double> contrast_se_k(const TodPoint& point);
+/// Whether there is a contrast whose scatter nobody knows.
+[[nodiscard]] bool has_contrast_measured_once(const TodCurve& curve);
+
 /// Of TodPoint::delta_t_se_k; nothing where it is not said.
 [[nodiscard]] std::optional<double> freedom_of_contrast(const TodPoint& point);
 

@@ -48,7 +48,9 @@ struct AnswersTaken {
 struct TodPoint {
   double set_delta_t_k = 0;  ///< what the target was told: the name by which points are paired
   double delta_t_k = 0;      ///< effective contrast measured by the camera (mean over trials)
-  double delta_t_se_k = 0;  ///< standard error of that mean, over the measurements of it (one per set-up and set-point)
+  /// Standard error of that mean, over the measurements of it (one per set-up and set-point); 0 of a single one, whose
+  /// scatter nobody knows: contrast_se_k().
+  double delta_t_se_k = 0;
   int delta_t_measurements = 0;  ///< how many those are; 0: not said
   std::vector<Level> levels;     ///< counts per size, one row per size and cluster: what the fit saw
   PsychometricFit fit;           ///< in mrad

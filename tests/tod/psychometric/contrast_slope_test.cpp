@@ -148,6 +148,23 @@ TEST(ContrastScatter, IsInARatioToATwinThatWasShownIt) {
   EXPECT_GT(width_with, 1.2 * width_without);
 }
 
+TEST(ContrastScatter, OfAContrastThatWasMeasuredOnceIsNotKnown) {
+  TodCurve curve;
+  curve.points.push_back(point_of(0.23, s75_at(0.23), 0.01));
+  curve.points[0].delta_t_measurements = 1;
+  EXPECT_EQ(contrast_se_k(curve.points[0]), std::nullopt);
+  EXPECT_TRUE(has_contrast_measured_once(curve));
+
+  curve.points[0].delta_t_measurements = 2;
+  EXPECT_EQ(contrast_se_k(curve.points[0]), 0.0);
+  EXPECT_FALSE(has_contrast_measured_once(curve));
+
+  // A curve of counts in a file has no measurement of a contrast at all.
+  curve.points[0].delta_t_measurements = 0;
+  EXPECT_EQ(contrast_se_k(curve.points[0]), std::nullopt);
+  EXPECT_FALSE(has_contrast_measured_once(curve));
+}
+
 TEST(ContrastScatter, IsTheSlopeTimesTheRelativeError) {
   TodCurve curve;
   for (const double contrast_k : {16.9, 1.93, 0.23})
