@@ -92,7 +92,7 @@ TEST_F(Sessions, AContrastThatWasMeasuredOnceHasNoStandardErrorAndNobodySaysItHa
   EXPECT_THAT(ended.out, Not(HasSubstr("scatter of the measured contrast is in the interval")));
   EXPECT_THAT(content_of(at("m") / "report.html"), HasSubstr("(measured once)"));
   const Json fits = Json::parse(content_of(at("m") / "fits.json"));
-  EXPECT_TRUE(fits["measured"]["points"][0]["delta_t_se_k"].is_null());
+  EXPECT_TRUE(fits["main"]["points"][0]["delta_t_se_k"].is_null());
   // side, set contrast, effective contrast, nothing.
   EXPECT_THAT(content_of(at("m") / "curve.csv"), ContainsRegex("measured,16\\.9,[0-9.]+,,"));
   const Json verdict = Json::parse(content_of(at("m") / "verdict.json"));
