@@ -402,7 +402,7 @@ TEST(CurveCsv, HasARowPerSideAndContrastAndEmptyFieldsForWhatDoesNotExist) {
 
   const std::string text = curve_csv({"o", "s", {point}}, std::nullopt, Side::measured);
 
-  EXPECT_THAT(text, HasSubstr("\nmeasured,0.5,0.5,0,,4,,,,0.25,,0,0,,,above_range\n"));
+  EXPECT_THAT(text, HasSubstr("\nmeasured,0.5,0.5,,,4,,,,0.25,,0,0,,,above_range\n"));
 }
 
 }  // namespace
