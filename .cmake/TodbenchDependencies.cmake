@@ -3,7 +3,7 @@
 find_package(PkgConfig REQUIRED)
 
 include(TodbenchFindOpenCv)
-todbench_find_opencv(core imgproc imgcodecs calib3d)
+todbench_find_opencv(core imgproc)
 
 pkg_check_modules(FFTW3 REQUIRED IMPORTED_TARGET fftw3)
 # Not by its CMake package, which defines a macro (FMT_SHARED) that only Windows needs and that precompiled headers would have to share.
@@ -15,6 +15,7 @@ find_package(nlohmann_json REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(OpenSSL REQUIRED)
+find_package(PNG REQUIRED)
 find_package(TIFF REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(SQLite3 REQUIRED)

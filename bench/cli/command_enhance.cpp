@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
 
 #include "bench/cli/scene_files.h"
 #include "bench/cli/session_argument.h"
@@ -16,6 +15,7 @@
 #include "bench/run/experiment.h"
 #include "bench/session/json_output.h"
 #include "bench/session/trials_csv.h"
+#include "bench/text/encoded_picture.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
 #include "tod/psychometric/acuity.h"
@@ -85,9 +85,10 @@ Result<void> write_folder(const std::filesystem::path& folder, const LoadedPlan&
     if (auto written = write_file_atomically(folder / fmt::format("package-{}.log", i), log); !written) return written;
   }
   const cv::Mat1b strip = side_by_side(enhancement);
-  std::vector<unsigned char> png;
-  if (strip.empty() || !cv::imencode(".png", strip, png)) return {};
-  return write_file_atomically(folder / "pictures.png", std::string(png.begin(), png.end()));
+  if (strip.empty()) return {};
+  const auto png = png_of(strip);
+  if (!png) return tl::unexpected(png.error());
+  return write_file_atomically(folder / "pictures.png", *png);
 }
 
 void say_enhancement(Console& console, const Enhancement& enhancement) {

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
 
 #include "bench/cli/commands.h"
 #include "bench/plan/descriptions.h"
+#include "bench/text/encoded_picture.h"
 #include "bench/text/files.h"
 #include "sim_devices/sensor/effect_detector.h"
 #include "sim_devices/sensor/image_chain.h"
@@ -82,9 +82,9 @@ Result<void> write_tiff(const std::string& file, const cv::Mat1f& kelvin) {
   const auto folder = std::filesystem::path(file).parent_path();
   if (std::error_code problem; !folder.empty() && !std::filesystem::is_directory(folder, problem))
     return fail(ErrorCode::invalid_input, "--tiff " + file + ": " + folder.string() + " is no folder");
-  std::vector<unsigned char> encoded;
-  if (!cv::imencode(".tiff", kelvin, encoded)) return fail(ErrorCode::internal, file + ": cannot be encoded");
-  return write_file_atomically(file, {reinterpret_cast<const char*>(encoded.data()), encoded.size()});
+  const auto encoded = tiff_of(kelvin);
+  if (!encoded) return tl::unexpected(encoded.error());
+  return write_file_atomically(file, *encoded);
 }
 
 int run_render(Console& console, const RenderArguments& a, std::uint64_t seed) {

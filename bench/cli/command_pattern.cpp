@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
 
 #include "bench/cli/commands.h"
 #include "bench/report/pattern_truth.h"
+#include "bench/text/encoded_picture.h"
 #include "bench/text/files.h"
 #include "bench/text/npy.h"
 #include "tod/pattern/test_picture.h"
@@ -39,16 +39,10 @@ Result<std::string> encoded(const cv::Mat1d& levels, const std::string& format) 
     array.values.assign(levels.begin(), levels.end());
     return to_npy(array);
   }
-  cv::Mat stored;
-  if (format == "png16") {
-    levels.convertTo(stored, CV_16U, 65535);
-  } else {
-    levels.convertTo(stored, CV_32F);
-  }
-  std::vector<unsigned char> bytes;
-  if (!cv::imencode(format == "png16" ? ".png" : ".tiff", stored, bytes))
-    return fail(ErrorCode::internal, "the picture cannot be encoded");
-  return std::string(bytes.begin(), bytes.end());
+  if (format == "tiff") return tiff_of(cv::Mat1f(levels));
+  cv::Mat1w counts;
+  levels.convertTo(counts, CV_16U, 65535);
+  return png_of(counts);
 }
 
 /// A file that is not the truth of this picture is a plan, a plate or the truth of another picture, which would lose

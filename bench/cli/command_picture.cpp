@@ -10,6 +10,7 @@
 #include "bench/plan/descriptions.h"
 #include "bench/report/picture_page.h"
 #include "bench/studies/scene_pictures.h"
+#include "bench/text/encoded_picture.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
 
@@ -153,9 +154,9 @@ Json picture_json(const ScenePicturesTask& task, const ScenePictures& pictures) 
 /// PNG and TIFF; the bytes of the former.
 Result<std::string> write_one(const std::filesystem::path& folder, const std::string& name, const cv::Mat1f& kelvin,
                               const ScenePictures& pictures, int least_px) {
-  auto png = encoded_picture(grey_picture(kelvin, pictures.grey_low_k, pictures.grey_high_k, least_px), ".png");
+  auto png = png_of(grey_picture(kelvin, pictures.grey_low_k, pictures.grey_high_k, least_px));
   if (!png) return png;
-  const auto tiff = encoded_picture(kelvin, ".tiff");
+  const auto tiff = tiff_of(kelvin);
   if (!tiff) return tiff;
   if (auto done = write_file_atomically(folder / (name + ".png"), *png); !done) return tl::unexpected(done.error());
   if (auto done = write_file_atomically(folder / (name + ".tiff"), *tiff); !done) return tl::unexpected(done.error());

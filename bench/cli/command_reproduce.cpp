@@ -8,6 +8,7 @@
 #include "bench/report/picture_page.h"
 #include "bench/studies/eo_vista.h"
 #include "bench/studies/eo_vista_craft.h"
+#include "bench/text/encoded_picture.h"
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
 #include "bench/text/text.h"
@@ -59,8 +60,7 @@ Result<std::vector<PagePicture>> write_craft(const std::filesystem::path& folder
                                              const std::vector<CraftPicture>& craft) {
   std::vector<PagePicture> entries;
   for (const auto& picture : craft) {
-    const auto png =
-        encoded_picture(grey_picture(picture.kelvin, picture.grey_low_k, picture.grey_high_k, 480), ".png");
+    const auto png = png_of(grey_picture(picture.kelvin, picture.grey_low_k, picture.grey_high_k, 480));
     if (!png) return tl::unexpected(png.error());
     if (auto done = write_file_atomically(folder / (picture.name + ".png"), *png); !done)
       return tl::unexpected(done.error());

@@ -1,8 +1,5 @@
 #include "bench/cli/scene_files.h"
 
-#include <opencv2/imgcodecs.hpp>
-#include <vector>
-
 #include "acquisition/recording/picture_file.h"
 #include "bench/text/folders.h"
 
@@ -14,12 +11,6 @@ Result<FieldScene> scene_with_pictures(std::string_view reference) {
     if (!file) return tl::unexpected(file.error());
     return StoredPicture{file->picture, file->counts ? StoredPicture::Kind::counts : StoredPicture::Kind::numbers};
   });
-}
-
-Result<std::string> encoded_picture(const cv::Mat& picture, const std::string& ending) {
-  std::vector<unsigned char> bytes;
-  if (!cv::imencode(ending, picture, bytes)) return fail(ErrorCode::internal, "a picture cannot be encoded");
-  return std::string(bytes.begin(), bytes.end());
 }
 
 Result<void> check_result_folder(const std::filesystem::path& folder, ExistingResults existing) {

@@ -1,9 +1,8 @@
-// Scenes from files with the pictures that they name, and pictures into files.
+// Scenes from files with the pictures that they name, and folders for pictures.
 #pragma once
 
 #include <filesystem>
-#include <opencv2/core.hpp>
-#include <string>
+#include <string_view>
 
 #include "acquisition/core/result.h"
 #include "bench/plan/scene_descriptions.h"
@@ -12,9 +11,6 @@ namespace todbench {
 
 /// load_scene() with TIFF and .npy pictures.
 [[nodiscard]] Result<FieldScene> scene_with_pictures(std::string_view reference);
-
-/// The bytes of a file: ".png" of 8 bits, or ".tiff" of 32-bit floating point.
-[[nodiscard]] Result<std::string> encoded_picture(const cv::Mat& picture, const std::string& ending);
 
 /// A folder for results: new, empty, or one that may be overwritten. `invalid_input` in one sentence.
 enum class ExistingResults { refused, overwritten };

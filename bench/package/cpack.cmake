@@ -49,7 +49,7 @@ session.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libtodbench-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "libopencv-core-dev, libopencv-imgproc-dev, libopencv-calib3d-dev, libfftw3-dev, libeigen3-dev, libboost-math-dev, libexpected-dev, libfmt-dev")
+  "libopencv-core-dev, libopencv-imgproc-dev, libfftw3-dev, libeigen3-dev, libboost-math-dev, libexpected-dev, libfmt-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "cmake, pkg-config")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS todbench-doc)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "observer, TOD and simulated sensors of todbench as libraries

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <opencv2/imgcodecs.hpp>
 #include <utility>
 #include <vector>
 
 #include "bench/report/svg.h"
 #include "bench/report/tod_figures.h"
+#include "bench/text/encoded_picture.h"
 #include "bench/text/json.h"
 
 namespace todbench {
@@ -73,9 +73,7 @@ std::string picture_of(const Frame& frame) {
   const double low = quantile(cut_share), high = std::max(quantile(1 - cut_share), low + 1);
   cv::Mat1b grey;
   frame.counts.convertTo(grey, CV_8U, 255 / (high - low), -255 * low / (high - low));
-  std::vector<unsigned char> png;
-  if (!cv::imencode(".png", grey, png)) return {};
-  return {png.begin(), png.end()};
+  return png_of(grey).value_or(std::string());
 }
 
 LiveRun::LiveRun(LiveServer& server, const LiveCurve& curve, const Plan& plan)

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 #include <utility>
 
 #include "bench/text/base64.h"
+#include "bench/text/encoded_picture.h"
 #include "tod/measures/medians.h"
 
 namespace todbench {
@@ -15,9 +15,7 @@ namespace {
 constexpr std::size_t most_listed = 5000;
 
 std::string png_text(const cv::Mat& picture) {
-  std::vector<unsigned char> png;
-  if (!cv::imencode(".png", picture, png)) return "";
-  return base64({reinterpret_cast<const char*>(png.data()), png.size()});
+  return base64(png_of(picture).value_or(std::string()));
 }
 
 /// Four standard deviations to both sides of the median, as normal values would have them.

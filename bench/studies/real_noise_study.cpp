@@ -10,7 +10,7 @@
 #include <string>
 
 #include "acquisition/core/distributions.h"
-#include "hvs/observer/score_maxima.h"
+#include "hvs/observer/share_won.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "tod/plate/test_pattern.h"
 
@@ -91,17 +91,14 @@ class SizeStudy {
   [[nodiscard]] BlockProportions proportions(double noise, double internal) const {
     BlockProportions result{std::vector<double>(blocks_, 0.0), std::vector<double>(blocks_, 0.0)};
     std::vector<float> mixed(bank_->padded_templates());
-    std::array<float, alternatives> tops{};
     for (const auto& draw : draws_) {
       for (std::size_t i = 0; i < mixed.size(); ++i) {
         mixed[i] = static_cast<float>(noise) * draw.noise[i] + static_cast<float>(internal) * draw.internal[i];
       }
       for (std::size_t apex = 0; apex < alternatives; ++apex) {
         for (const auto& signal : responses_[apex]) {
-          score_maxima(signal, mixed, 1.0F, bank_->places(), tops);
-          const float best = *std::max_element(tops.begin(), tops.end());
-          const auto ties = std::count(tops.begin(), tops.end(), best);
-          result.correct[draw.block] += tops[apex] == best ? 1.0 / static_cast<double>(ties) : 0.0;
+          result.correct[draw.block] +=
+              share_won(signal, mixed, 1.0F, bank_->places(), alternatives, static_cast<int>(apex));
           result.total[draw.block] += 1;
         }
       }

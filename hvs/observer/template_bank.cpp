@@ -1,6 +1,7 @@
 #include "hvs/observer/template_bank.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -106,6 +107,29 @@ void TemplateBank::project(std::span<const float> patch, std::span<float> scores
   CV_Assert(patch.size() == count && scores.size() == padded_templates());
   for (std::size_t b = 0; b < blocks_; ++b)
     block_product(values_.data() + b * block * count, patch.data(), count, scores.data() + b * block);
+}
+
+void TemplateBank::project_all(std::span<const std::span<const float>> patches,
+                               std::span<const std::span<float>> scores) const {
+  const auto count = static_cast<std::size_t>(window_) * static_cast<std::size_t>(window_);
+  CV_Assert(patches.size() == scores.size());
+  for (std::size_t k = 0; k < patches.size(); ++k)
+    CV_Assert(patches[k].size() == count && scores[k].size() == padded_templates());
+  for (std::size_t b = 0; b < blocks_; ++b) {
+    const float* values = values_.data() + b * block * count;
+    std::size_t k = 0;
+    for (; k + products_at_once <= patches.size(); k += products_at_once) {
+      std::array<const float*, products_at_once> factors{};
+      std::array<float*, products_at_once> sums{};
+      for (std::size_t i = 0; i < products_at_once; ++i) {
+        factors[i] = patches[k + i].data();
+        sums[i] = scores[k + i].data() + b * block;
+        std::fill_n(sums[i], block, 0.0F);
+      }
+      add_block_products(values, factors, count, sums);
+    }
+    for (; k < patches.size(); ++k) block_product(values, patches[k].data(), count, scores[k].data() + b * block);
+  }
 }
 
 void TemplateBank::copy_template(std::size_t index, std::span<float> values) const {

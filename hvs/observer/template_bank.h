@@ -36,6 +36,8 @@ class TemplateBank {
   /// Scores of all templates for a patch of window_samples()^2 values, row by row. `scores` has padded_templates()
   /// elements. Each score is one sum over samples in a fixed order: the same bits on every instruction set.
   void project(std::span<const float> patch, std::span<float> scores) const;
+  /// project() of every patch, which reads the bank once for all of them: the same bits. As many patches as scores.
+  void project_all(std::span<const std::span<const float>> patches, std::span<const std::span<float>> scores) const;
   /// The values of one template, sample by sample: window_samples()^2 elements.
   void copy_template(std::size_t index, std::span<float> values) const;
   /// Adds `amount` times every template's value at one sample of the patch to the scores: the change of project() when

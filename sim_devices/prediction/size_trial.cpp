@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "hvs/observer/known_position.h"
-#include "hvs/observer/observer.h"
-#include "hvs/observer/score_maxima.h"
+#include "hvs/observer/share_won.h"
 #include "sim_devices/sensor/effect_dead_pixels.h"
 #include "sim_devices/sensor/effect_display.h"
 #include "sim_devices/sensor/effect_image_dance.h"
@@ -41,6 +41,34 @@ RandomStream named(const RandomStream& stream, std::uint64_t draw, std::string_v
   if (name == "columns") return stream.sub(rare_part(draw, 1));
   if (name == "dead") return stream.sub(rare_part(draw, 2));
   return {stream.sub((std::uint64_t{1} << 41) + draw).stream(), name};
+}
+
+/// Square of `side` rows, its rows and columns exchanged.
+template <typename T>
+void transpose(const T* values, int side, T* out) {
+  for (int row = 0; row < side; ++row)
+    for (int column = 0; column < side; ++column) out[row * side + column] = values[column * side + row];
+}
+
+/// Square of `side` rows, rows or columns or both in reverse order.
+template <typename T>
+void reverse(const T* values, int side, bool rows, bool columns, T* out) {
+  if (rows == columns) {
+    if (rows) {
+      std::reverse_copy(values, values + side * side, out);
+    } else {
+      std::copy_n(values, side * side, out);
+    }
+    return;
+  }
+  for (int row = 0; row < side; ++row) {
+    const T* from = values + (rows ? side - 1 - row : row) * side;
+    if (rows) {
+      std::copy_n(from, side, out + row * side);
+    } else {
+      std::reverse_copy(from, from + side, out + row * side);
+    }
+  }
 }
 
 /// The map as the noise of way `turn` (of turns_) has it: T(turned) . w is T . (w turned back).
@@ -93,52 +121,64 @@ SizeTrial::SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank
   }
   int groups_per_axis = std::min(per_axis, 4);
   while (per_axis % groups_per_axis != 0) --groups_per_axis;
-  for (std::size_t k = 0; k < responses_.size(); ++k) {
+  phase_group_.resize(static_cast<std::size_t>(places_of_dance_ * groups_per_axis * groups_per_axis));
+  for (std::uint32_t k = 0; k < responses_.size(); ++k) {
     const int phase = static_cast<int>(k) % (per_axis * per_axis);
     const int danced = static_cast<int>(k) / (per_axis * per_axis) % places_of_dance_;
     const int group = phase / per_axis % groups_per_axis * groups_per_axis + phase % per_axis % groups_per_axis;
-    phase_group_.push_back(static_cast<std::size_t>(danced * groups_per_axis * groups_per_axis + group));
+    phase_group_[static_cast<std::size_t>(danced * groups_per_axis * groups_per_axis + group)].push_back(k);
   }
-  phase_groups_ = static_cast<std::size_t>(places_of_dance_ * groups_per_axis * groups_per_axis);
+  every_response_.resize(responses_.size());
+  std::iota(every_response_.begin(), every_response_.end(), 0U);
   find_turns();
 }
 
 /// Template (o, p) turned by a quarter is (o + 1, p turned about the middle); mirrored, right and left are exchanged.
 /// Where the bank is not so (it always is for the four triangles) only the identity is left.
 void SizeTrial::find_turns() {
-  const auto templates = static_cast<std::uint32_t>(bank_->templates());
-  std::vector<std::uint32_t> identity(bank_->padded_templates());
-  for (std::uint32_t t = 0; t < identity.size(); ++t) identity[t] = t;
-  turns_ = {identity};
-  const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(bank_->places())));
-  if (bank_->alternatives() != 4 || side * side != static_cast<std::uint32_t>(bank_->places())) return;
-  std::vector<std::uint32_t> quarter = identity, mirror = identity;
-  for (std::uint32_t t = 0; t < templates; ++t) {
-    const std::uint32_t o = t / (side * side), row = t / side % side, column = t % side;
-    quarter[t] = ((o + 1) % 4 * side + column) * side + (side - 1 - row);
-    mirror[t] = ((o % 2 == 0 ? o : 4 - o) * side + row) * side + (side - 1 - column);
-  }
+  turns_ = {Turn{}};
+  const int side = static_cast<int>(std::lround(std::sqrt(bank_->places())));
+  if (bank_->alternatives() != 4 || side * side != bank_->places()) return;
+  const auto turn_of = [](int quarters, bool mirrored) {
+    Turn turn;
+    for (int o = 0; o < 4; ++o) {
+      const int turned = (o + quarters) % 4;
+      turn.from[static_cast<std::size_t>(o)] = mirrored && turned % 2 == 1 ? 4 - turned : turned;
+    }
+    turn.transposed = quarters % 2 == 1;
+    turn.rows_reversed = quarters == 1 || quarters == 2;
+    turn.columns_reversed = quarters >= 2;
+    // The mirror exchanges columns of what is turned, which are rows where it is transposed.
+    if (mirrored && turn.transposed) turn.rows_reversed = !turn.rows_reversed;
+    if (mirrored && !turn.transposed) turn.columns_reversed = !turn.columns_reversed;
+    return turn;
+  };
   const int window = bank_->window_samples();
-  const auto is_symmetry = [&](const std::vector<std::uint32_t>& turn, auto change) {
+  const auto is_symmetry = [&](const Turn& turn, auto change) {
     cv::Mat1f values(window, window), changed, expected(window, window);
-    for (std::uint32_t t = 0; t < templates; t += 1 + templates / 32) {
-      bank_->copy_template(t, std::span(values.ptr<float>(), values.total()));
-      bank_->copy_template(turn[t], std::span(expected.ptr<float>(), expected.total()));
+    const int places = bank_->places();
+    std::vector<int> upright(static_cast<std::size_t>(places)), across(upright), found(upright);
+    std::iota(upright.begin(), upright.end(), 0);
+    transpose(upright.data(), side, across.data());
+    reverse((turn.transposed ? across : upright).data(), side, turn.rows_reversed, turn.columns_reversed, found.data());
+    const int templates = bank_->templates();
+    for (int t = 0; t < templates; t += 1 + templates / 32) {
+      const int other =
+          turn.from[static_cast<std::size_t>(t / places)] * places + found[static_cast<std::size_t>(t % places)];
+      bank_->copy_template(static_cast<std::size_t>(t), std::span(values.ptr<float>(), values.total()));
+      bank_->copy_template(static_cast<std::size_t>(other), std::span(expected.ptr<float>(), expected.total()));
       change(values, changed);
       if (cv::norm(changed, expected, cv::NORM_INF) > 1e-4) return false;
     }
     return true;
   };
-  if (!is_symmetry(quarter, [](const cv::Mat1f& a, cv::Mat1f& b) { cv::rotate(a, b, cv::ROTATE_90_CLOCKWISE); }) ||
-      !is_symmetry(mirror, [](const cv::Mat1f& a, cv::Mat1f& b) { cv::flip(a, b, 1); }))
+  if (!is_symmetry(turn_of(1, false),
+                   [](const cv::Mat1f& a, cv::Mat1f& b) { cv::rotate(a, b, cv::ROTATE_90_CLOCKWISE); }) ||
+      !is_symmetry(turn_of(0, true), [](const cv::Mat1f& a, cv::Mat1f& b) { cv::flip(a, b, 1); }))
     return;
-  const auto after = [&](const std::vector<std::uint32_t>& first, const std::vector<std::uint32_t>& second) {
-    std::vector<std::uint32_t> both(identity);
-    for (std::uint32_t t = 0; t < templates; ++t) both[t] = second[first[t]];
-    return both;
-  };
-  for (int k = 1; k < 4; ++k) turns_.push_back(after(turns_.back(), quarter));
-  for (int k = 0; k < 4; ++k) turns_.push_back(after(turns_[static_cast<std::size_t>(k)], mirror));
+  turns_.clear();
+  for (const bool mirrored : {false, true})
+    for (int quarters = 0; quarters < 4; ++quarters) turns_.push_back(turn_of(quarters, mirrored));
 }
 
 /// Without noise a rounded picture changes in steps of the phase: twice as many.
@@ -282,22 +322,42 @@ cv::Mat1f SizeTrial::coloured(std::uint64_t index, int window) const {
   return samples;
 }
 
-void SizeTrial::draw(std::uint64_t index) {
+void SizeTrial::draw_up_to(std::size_t draws) {
   const int window = bank_->window_samples();
-  const cv::Mat1b defects = dead(index, window);
-  const auto add = [&](std::vector<std::vector<float>>& to, cv::Mat1f samples, const std::vector<double>& taps) {
-    if (!defects.empty()) replace_dead(samples, defects, conditions_.samples_per_pitch);
-    to.push_back(projected(taps.empty() ? samples : filtered(samples, taps)));
+  // So many fit beside a part of the bank into the nearest cache.
+  constexpr std::size_t together = 32;
+  const auto project = [&](const std::vector<cv::Mat1f>& samples, std::vector<std::vector<float>>& to) {
+    std::vector<std::span<const float>> patches;
+    std::vector<std::span<float>> scores;
+    to.reserve(to.size() + samples.size());
+    for (const cv::Mat1f& patch : samples) {
+      patches.emplace_back(patch.ptr<float>(), patch.total());
+      scores.emplace_back(to.emplace_back(bank_->padded_templates()));
+    }
+    bank_->project_all(patches, scores);
   };
-  cv::Mat1f white(window, window);
-  stream_.sub(white_part(index)).fill_normal(std::span(white.ptr<float>(), white.total()));
-  add(noise_, white, white_taps_);
-  if (!coloured_stages_.empty()) add(coloured_, coloured(index, window), display_taps_);
+  while (noise_.size() < draws) {
+    std::vector<cv::Mat1f> white, coloured;
+    const std::size_t first = noise_.size();
+    for (std::size_t index = first; index < std::min(draws, first + together); ++index) {
+      const cv::Mat1b defects = dead(index, window);
+      const auto seen = [&](cv::Mat1f samples, const std::vector<double>& taps) {
+        if (!defects.empty()) replace_dead(samples, defects, conditions_.samples_per_pitch);
+        return taps.empty() ? samples : filtered(samples, taps);
+      };
+      cv::Mat1f numbers(window, window);
+      stream_.sub(white_part(index)).fill_normal(std::span(numbers.ptr<float>(), numbers.total()));
+      white.push_back(seen(numbers, white_taps_));
+      if (!coloured_stages_.empty()) coloured.push_back(seen(this->coloured(index, window), display_taps_));
+    }
+    project(white, noise_);
+    project(coloured, coloured_);
+  }
 }
 
 Proportion SizeTrial::proportion(const WhiteNoise& white, double contrast_k, int draws) {
   shape_white(white);
-  for (auto index = noise_.size(); index < static_cast<std::size_t>(draws); ++index) draw(index);
+  draw_up_to(static_cast<std::size_t>(draws));
   const double total = std::hypot(white.sensor, white.internal);
   // In units of the white noise, or of the contrast where there is none.
   const auto scale = static_cast<float>(total > 0 ? total : 1);
@@ -313,8 +373,32 @@ Proportion SizeTrial::proportion(const WhiteNoise& white, double contrast_k, int
   return {mean, std::max(0.0, squares / draws - mean * mean) / std::max(1, draws - 1)};
 }
 
+void SizeTrial::turn_noise(const std::vector<float>& noise, const std::vector<float>& across, std::size_t turn,
+                           float own) {
+  const auto places = static_cast<std::size_t>(bank_->places());
+  if (turns_.size() == 1) {
+    std::ranges::copy(noise, turned_.begin());
+  } else {
+    const Turn& way = turns_[turn];
+    const int side = static_cast<int>(std::lround(std::sqrt(bank_->places())));
+    const float* from = way.transposed ? across.data() : noise.data();
+    for (std::size_t o = 0; o < way.from.size(); ++o)
+      reverse(from + static_cast<std::size_t>(way.from[o]) * places, side, way.rows_reversed, way.columns_reversed,
+              turned_.data() + o * places);
+  }
+  if (own != 1) {
+    for (float& value : turned_) value *= own;
+  }
+}
+
 double SizeTrial::share_in_all_ways(std::size_t draw, float own, float scale, float ratio) {
   turned_.resize(bank_->padded_templates());
+  if (turns_.size() > 1) {
+    across_.resize(turned_.size());
+    const int places = bank_->places(), side = static_cast<int>(std::lround(std::sqrt(places)));
+    for (int from = 0; from < bank_->templates(); from += places)
+      transpose(noise_[draw].data() + from, side, across_.data() + from);
+  }
   const cv::Mat1b defects = dead(draw, bank_->window_samples());
   const bool has_coloured = !coloured_stages_.empty();
   // Coloured noise has a direction, and where detectors are dead it was replaced where they are.
@@ -322,16 +406,13 @@ double SizeTrial::share_in_all_ways(std::size_t draw, float own, float scale, fl
   double all = 0;
   // Another draw sees the phases in other ways, and goes on among the places of a dance.
   const std::size_t ways = 2 * turns;
-  std::size_t seen = 0, way = places_of_dance_ > 1 ? draw * ways + draw * ways / phase_groups_ : draw;
+  std::size_t seen = 0, way = places_of_dance_ > 1 ? draw * ways + draw * ways / phase_group_.size() : draw;
   for (std::size_t turn = 0; turn < turns; ++turn) {
-    for (std::size_t t = 0; t < turned_.size(); ++t) {
-      turned_[t] = own * noise_[draw][turns_[turn][t]];
-      if (has_coloured) turned_[t] += ratio * coloured_[draw][t];
-    }
+    turn_noise(noise_[draw], across_, turn, own);
+    for (std::size_t t = 0; has_coloured && t < turned_.size(); ++t) turned_[t] += ratio * coloured_[draw][t];
     const cv::Mat1b map = defects.empty() ? defects : dead_turned_back(defects, turn);
     for (const float sign : {1.0F, -1.0F}) {
-      for (std::size_t k = 0; k < responses_.size(); ++k) {
-        if (turns > 1 && phase_group_[k] != way % phase_groups_) continue;
+      for (const std::uint32_t k : turns > 1 ? phase_group_[way % phase_group_.size()] : every_response_) {
         const Response& response = responses_[k];
         all += map.empty() ? correct(response.truth, response.scores, turned_, sign * scale)
                            : correct(response.truth, with_defects(response, map), turned_, sign * scale);
@@ -371,12 +452,7 @@ double SizeTrial::pixel_trial(const Response& response, const PixelContrast& con
   }
   const std::vector<float> scores = projected(seen);
   const std::vector<float> nothing(scores.size(), 0.0F);
-  float maxima[Choice::max_alternatives];
-  const std::span<float> tops(maxima, static_cast<std::size_t>(bank_->alternatives()));
-  score_maxima(scores, nothing, 1.0F, bank_->places(), tops);
-  const float best = *std::max_element(tops.begin(), tops.end());
-  if (tops[static_cast<std::size_t>(response.truth)] != best) return 0;
-  return 1.0 / static_cast<double>(std::count(tops.begin(), tops.end(), best));
+  return correct(response.truth, scores, nothing, 1.0F);
 }
 
 Proportion SizeTrial::pixel_proportion(const PixelContrast& contrast, int draws) {
@@ -407,12 +483,7 @@ Proportion SizeTrial::pixel_proportion(const PixelContrast& contrast, int draws)
 }
 
 double SizeTrial::correct(int truth, std::span<const float> signal, std::span<const float> noise, float scale) const {
-  float maxima[Choice::max_alternatives];
-  const std::span<float> tops(maxima, static_cast<std::size_t>(bank_->alternatives()));
-  score_maxima(signal, noise, scale, bank_->places(), tops);
-  const float best = *std::max_element(tops.begin(), tops.end());
-  if (tops[static_cast<std::size_t>(truth)] != best) return 0;
-  return 1.0 / static_cast<double>(std::count(tops.begin(), tops.end(), best));
+  return share_won(signal, noise, scale, bank_->places(), bank_->alternatives(), truth);
 }
 
 std::vector<float> SizeTrial::with_defects(const Response& response, const cv::Mat1b& defects) const {

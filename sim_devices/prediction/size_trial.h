@@ -1,6 +1,7 @@
 // One target size before a simulated sensor and a searching observer: proportion correct without frames.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -89,7 +90,8 @@ class SizeTrial {
   [[nodiscard]] Response response(const cv::Mat1d& fine, int per_pitch, cv::Point phase, int per_axis,
                                   std::uint64_t number) const;
   [[nodiscard]] int phases_per_sample() const;  ///< per axis
-  void draw(std::uint64_t index);
+  /// Draws noise until there is enough for so many.
+  void draw_up_to(std::size_t draws);
   [[nodiscard]] cv::Mat1f coloured(std::uint64_t index, int window) const;
   [[nodiscard]] cv::Mat1b dead(std::uint64_t index, int window) const;
   [[nodiscard]] std::vector<float> projected(const cv::Mat1f& samples) const;
@@ -103,20 +105,27 @@ class SizeTrial {
   /// The scores of a response whose picture has `defects` replaced.
   [[nodiscard]] std::vector<float> with_defects(const Response& response, const cv::Mat1b& defects) const;
   void find_turns();
+  /// turned_: the noise of a draw as that turn has it. `across` holds the transposed noise where a turn needs it.
+  void turn_noise(const std::vector<float>& noise, const std::vector<float>& across, std::size_t turn, float own);
 
   std::shared_ptr<const TemplateBank> bank_;
   TrialConditions conditions_;
   RandomStream stream_;
   std::vector<const stage::Noise*> coloured_stages_;  ///< what this sensor has of noise that is not white
   std::vector<double> display_taps_;                  ///< empty for sample and hold
-  std::vector<double> white_taps_;                 ///< of sensor's and internal noise together; empty without display
-  double white_ratio_ = -1;                        ///< for which white_taps_ are
-  int places_of_dance_ = 1;                        ///< at every phase
-  std::vector<Response> responses_;                ///< per orientation that counts, place of the dance and phase
-  std::vector<std::vector<std::uint32_t>> turns_;  ///< which template's score each template gets; the identity first
-  std::vector<std::size_t> phase_group_;           ///< per response: phases of one group lie evenly in the pixel
-  std::size_t phase_groups_ = 1;
-  std::vector<float> turned_;                          ///< scratch
+  std::vector<double> white_taps_;   ///< of sensor's and internal noise together; empty without display
+  double white_ratio_ = -1;          ///< for which white_taps_ are
+  int places_of_dance_ = 1;          ///< at every phase
+  std::vector<Response> responses_;  ///< per orientation that counts, place of the dance and phase
+  /// Which template's score each template gets: of alternative from[o] at the place that is found so.
+  struct Turn {
+    std::array<int, 4> from{0, 1, 2, 3};
+    bool transposed = false, rows_reversed = false, columns_reversed = false;  ///< in this order
+  };
+  std::vector<Turn> turns_;                              ///< the identity first
+  std::vector<std::vector<std::uint32_t>> phase_group_;  ///< responses by group: phases of one lie evenly in the pixel
+  std::vector<std::uint32_t> every_response_;
+  std::vector<float> turned_, across_;                 ///< scratch
   std::vector<std::vector<float>> noise_;              ///< per draw, unit white noise projected
   std::vector<std::vector<float>> coloured_;           ///< per draw, noise that is not white, in kelvin projected
   std::map<double, std::vector<double>> pixel_draws_;  ///< by contrast of the scene, proportion of each draw

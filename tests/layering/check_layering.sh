@@ -78,7 +78,8 @@ BEGIN {
   home["^sqlite3.h"] = "^bench/(history|sweep)/"
   home["^CLI/"] = "^bench/cli/"
   home["^libxml/"] = "^acquisition/description/"
-  home["^tiffio.h"] = "^acquisition/recording/"
+  home["^tiffio.h"] = "^(acquisition/recording|bench/text)/"
+  home["^png.h"] = "^bench/text/"
   home["^fftw3.h"] = "^hvs/shape/"
 }
 function folder_of(path) {

@@ -1,11 +1,10 @@
 #include "tod/registration/plate_mapping.h"
 
 #include <cmath>
-#include <opencv2/calib3d.hpp>
-#include <vector>
 
 #include "acquisition/core/distributions.h"
 #include "tod/plate/plate_outlines.h"
+#include "tod/registration/homography.h"
 #include "tod/registration/layout_matching.h"
 
 namespace todbench {
@@ -85,10 +84,7 @@ FittedMapping fit_mapping(std::span<const cv::Point2d> plate_mm, std::span<const
   if (n >= 5 && flatness(plate_mm) > least_flatness) {
     consider(fit_affine(plate_mm, pixels), PlateMapping::affine, 6);
     if (n >= 6) {
-      const std::vector<cv::Point2d> from(plate_mm.begin(), plate_mm.end());
-      const std::vector<cv::Point2d> to(pixels.begin(), pixels.end());
-      const cv::Mat h = cv::findHomography(from, to, 0);
-      if (!h.empty()) consider(cv::Matx33d(h), PlateMapping::homography, 8);
+      if (const auto h = fit_homography(plate_mm, pixels)) consider(*h, PlateMapping::homography, 8);
     }
   }
   best.residual_px = std::sqrt(sum / n);

@@ -8,7 +8,6 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <thread>
 #include <vector>
@@ -18,6 +17,7 @@
 #include "bench/serve/live_run.h"
 #include "bench/text/json.h"
 #include "tests/support/patience.h"
+#include "tests/support/read_png.h"
 
 namespace todbench {
 namespace {
@@ -212,7 +212,7 @@ TEST(LiveRun, ShowsWhatTheRunLeaves) {
   EXPECT_GT(state["picture"], 0);
   EXPECT_EQ(state["over"], true);
   const std::string png = s.get(s.path + "picture.png").body;
-  const cv::Mat picture = cv::imdecode(std::vector<unsigned char>(png.begin(), png.end()), cv::IMREAD_UNCHANGED);
+  const cv::Mat picture = testing::read_png(png);
   EXPECT_EQ(picture.size(), cv::Size(32, 24));
   EXPECT_EQ(picture.at<unsigned char>(3, 4), 255);
   EXPECT_EQ(picture.at<unsigned char>(0, 0), 0);

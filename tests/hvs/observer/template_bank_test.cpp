@@ -4,8 +4,10 @@
 
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <vector>
 
+#include "acquisition/core/rng.h"
 #include "hvs/observer/template_observer.h"
 #include "tod/plate/test_pattern.h"
 
@@ -30,6 +32,25 @@ TEST(TemplateBank, TemplatesHaveZeroMeanAndUnitNorm) {
     const cv::Mat1f t = bank->image(2, place);
     EXPECT_NEAR(cv::sum(t)[0], 0, 1e-5);
     EXPECT_NEAR(cv::norm(t), 1, 1e-6);
+  }
+}
+
+TEST(TemplateBank, ManyPatchesHaveTheScoresOfEach) {
+  const auto bank = TemplateBank::build({}, triangle_alternatives(), 1.6, 1);
+  ASSERT_TRUE(bank.has_value());
+  const auto samples = static_cast<std::size_t>(bank->window_samples() * bank->window_samples());
+  const RandomStream numbers(7, "patches");
+  for (const std::size_t count : {0U, 1U, 4U, 7U}) {
+    std::vector<std::vector<float>> patches(count, std::vector<float>(samples));
+    std::vector<std::vector<float>> scores(count, std::vector<float>(bank->padded_templates(), -1.0F));
+    for (std::size_t k = 0; k < count; ++k) numbers.sub(k).fill_normal(patches[k]);
+    bank->project_all(std::vector<std::span<const float>>(patches.begin(), patches.end()),
+                      std::vector<std::span<float>>(scores.begin(), scores.end()));
+    for (std::size_t k = 0; k < count; ++k) {
+      std::vector<float> alone(bank->padded_templates());
+      bank->project(patches[k], alone);
+      EXPECT_EQ(scores[k], alone) << "patch " << k << " of " << count;
+    }
   }
 }
 
