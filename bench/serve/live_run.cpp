@@ -83,7 +83,7 @@ LiveRun::LiveRun(LiveServer& server, const LiveCurve& curve, const Plan& plan)
   worker_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
 }
 
-ExperimentListener LiveRun::listening(ExperimentListener listener) {
+ExperimentListener LiveRun::listening(const ExperimentListener& listener) {
   ExperimentListener out = listener;
   out.on_phase = [this, next = listener.on_phase](std::string_view phase) {
     {

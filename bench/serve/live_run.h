@@ -54,7 +54,7 @@ class LiveRun {
   LiveRun(LiveServer& server, const LiveCurve& curve, const Plan& plan);
 
   /// `listener`, and the page beside it.
-  [[nodiscard]] ExperimentListener listening(ExperimentListener listener);
+  [[nodiscard]] ExperimentListener listening(const ExperimentListener& listener);
   /// What the operator is asked; empty: nothing any more.
   void ask(const std::string& step);
   /// The last state: hands it over before it returns. `reason`: why the run stopped before its end.
