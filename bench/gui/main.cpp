@@ -4,7 +4,6 @@
 #include <QDir>
 #include <QRegularExpression>
 #include <algorithm>
-#include <clocale>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -16,6 +15,7 @@
 #include "bench/gui/presenters/session_presenter.h"
 #include "bench/gui/screenshots.h"
 #include "bench/gui/views/main_window.h"
+#include "bench/gui/views/plain_numbers.h"
 #include "bench/judgement/verdict.h"
 #include "bench/session/build_info.h"
 #include "bench/text/files.h"
@@ -156,9 +156,7 @@ int main(int argc, char** argv) {
   // A program behind the camera or on a display that has ended is an error in words.
   std::signal(SIGPIPE, SIG_IGN);
   const QApplication application(argc, argv);
-  // An application takes the user's locale for the C library as well; libraries that read numbers of cameras and files
-  // with strtod() would then expect a comma.
-  std::setlocale(LC_NUMERIC, "C");
+  todbench::use_plain_numbers();
   QApplication::setApplicationName("todbench-gui");
   const auto version = todbench::build_info().version;
   QApplication::setApplicationVersion(QString::fromUtf8(version.data(), static_cast<qsizetype>(version.size())));

@@ -2,7 +2,6 @@
 
 #include <QCheckBox>
 #include <QComboBox>
-#include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QGridLayout>
 #include <QHBoxLayout>
@@ -15,6 +14,7 @@
 #include "bench/gui/presenters/colour_map.h"
 #include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/picture_view.h"
+#include "bench/gui/views/plain_numbers.h"
 #include "bench/plan/atmospheres.h"
 #include "bench/plan/resources.h"
 
@@ -74,12 +74,12 @@ QWidget* ChainView::options_panel() {
   for (const auto& name : resource_names(ResourceKind::sensor)) sensor_->addItem(QString::fromStdString(name));
   apex_ = new QComboBox;
   for (const Apex apex : all_apexes) apex_->addItem(words(to_string(apex)));
-  size_ = new QDoubleSpinBox;
+  size_ = new PlainSpinBox;
   size_->setObjectName("chainSize");
   size_->setRange(0.3, 20);
   size_->setSingleStep(0.1);
   size_->setSuffix(" pitch");
-  contrast_ = new QDoubleSpinBox;
+  contrast_ = new PlainSpinBox;
   contrast_->setObjectName("chainContrast");
   contrast_->setRange(-100, 100);
   contrast_->setDecimals(3);

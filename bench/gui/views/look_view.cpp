@@ -2,7 +2,6 @@
 
 #include <QCheckBox>
 #include <QComboBox>
-#include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QHBoxLayout>
 #include <QHeaderView>
@@ -14,6 +13,7 @@
 #include "bench/gui/views/histogram_view.h"
 #include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/picture_view.h"
+#include "bench/gui/views/plain_numbers.h"
 
 namespace todbench {
 namespace {
@@ -126,8 +126,8 @@ QWidget* LookView::display_panel() {
   mode_->addItems({"Automatic", "Fixed"});
   colours_->setAccessibleName("Colours");
   mode_->setAccessibleName("Level");
-  level_ = new QDoubleSpinBox;
-  span_ = new QDoubleSpinBox;
+  level_ = new PlainSpinBox;
+  span_ = new PlainSpinBox;
   level_->setAccessibleName("Middle of the grey levels");
   span_->setAccessibleName("Span of the grey levels");
   for (QDoubleSpinBox* box : {level_, span_}) {

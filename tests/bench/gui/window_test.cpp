@@ -3,11 +3,13 @@
 #include <QAccessible>
 #include <QCheckBox>
 #include <QComboBox>
+#include <QDoubleSpinBox>
 #include <QDropEvent>
 #include <QHeaderView>
 #include <QLabel>
 #include <QLineEdit>
 #include <QListWidget>
+#include <QLocale>
 #include <QMenuBar>
 #include <QMimeData>
 #include <QPlainTextEdit>
@@ -24,6 +26,7 @@
 #include "bench/gui/views/human_view.h"
 #include "bench/gui/views/page_check.h"
 #include "bench/gui/views/picture_view.h"
+#include "bench/gui/views/plain_numbers.h"
 #include "bench/gui/views/plot_view.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
@@ -241,6 +244,27 @@ TEST(Window, FillsInAPlanWithThePartThatEachValueAsksFor) {
   EXPECT_EQ(plan().target.mountings, std::vector<Mounting>{Mounting::identity});
   EXPECT_EQ(table.rowCount(), 2) << "the form follows";
   EXPECT_EQ(to_toml(plan()), before);
+}
+
+TEST(Window, ReadsAndWritesNumbersAsPlansDoInEveryLocale) {
+  // Where a comma is the decimal sign, "1.500" is a thousand and a half, or was meant as one and a half.
+  QLocale::setDefault(QLocale(QLocale::German, QLocale::Germany));
+  use_plain_numbers();
+  PlainSpinBox box;
+  box.setMaximum(1e6);
+  box.setDecimals(3);
+  const auto accepted = [&](QString text) {
+    int place = 0;
+    return box.validate(text, place) == QValidator::Acceptable;
+  };
+
+  box.setValue(12345.25);
+  EXPECT_EQ(box.text(), "12345.250");
+  EXPECT_FALSE(accepted("1,500"));
+  EXPECT_FALSE(accepted("1,5"));
+  EXPECT_TRUE(accepted("1.500"));
+  EXPECT_EQ(box.valueFromText("1.500"), 1.5);
+  EXPECT_EQ(QLocale().toString(1234.5), "1234.5");
 }
 
 TEST(Window, ShowsTheLivePictureWithCountsAndKelvinUnderTheCursor) {
