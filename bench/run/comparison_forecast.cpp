@@ -15,6 +15,11 @@ std::optional<double> standard_error(const PsychometricFit& fit) {
   return std::log(*fit.ci95.high / *fit.ci95.low) / (2 * 1.96);
 }
 
+/// "62 %"; what rounds to all of them is "more than 99 %".
+std::string probability_text(double probability) {
+  return probability >= 0.995 ? "more than 99 %" : number_text(std::round(100 * probability)) + " %";
+}
+
 }  // namespace
 
 ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& prediction) {
@@ -41,12 +46,13 @@ ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& p
   }
   if (contrasts.empty()) return {};
   const ComparisonOutlook outlook = comparison_outlook(contrasts, margin);
-  const std::string power = number_text(std::round(100 * outlook.power)) + " %";
+  const std::string power = probability_text(outlook.power);
   const std::string needed =
       number_text(outlook.trials_needed_a) + " trials per contrast (" + number_text(std::round(planned)) + " planned)";
   if (outlook.reaches_80_percent()) {
     return {outlook, "if camera and twin are equal, the comparison finds them equivalent within " + margin_text +
-                         " with a probability of at least " + power + "; 80 % would need " + needed};
+                         " with a probability of " + (power.starts_with("more") ? "" : "at least ") + power +
+                         "; 80 % would need " + needed};
   }
   return {outlook, "warning: the plan can hardly show equivalence within " + margin_text +
                        ": equal acuities would be found equivalent with a probability of " + power + "; 80 % needs " +
@@ -76,9 +82,9 @@ ComparisonForecast comparison_forecast(const TodCurve& a, const TodCurve& b, con
   if (contrasts.empty()) return {};
   const ComparisonOutlook outlook = comparison_outlook(contrasts, margin);
   const std::string sentence = "trials like these find equal acuities equivalent within " + number_text(margin) +
-                               " % with a probability of " + number_text(std::round(100 * outlook.power)) +
-                               " %; 80 % needs " + number_text(outlook.trials_needed_a) +
-                               " trials per contrast of A (" + number_text(trials) + " made), those of B in proportion";
+                               " % with a probability of " + probability_text(outlook.power) + "; 80 % needs " +
+                               number_text(outlook.trials_needed_a) + " trials per contrast of A (" +
+                               number_text(trials) + " made), those of B in proportion";
   return {outlook, (outlook.reaches_80_percent() ? "" : "warning: ") + sentence};
 }
 
