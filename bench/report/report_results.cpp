@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bench/judgement/demand_kinds.h"
+#include "bench/report/fit_words.h"
 #include "bench/report/number_format.h"
 #include "bench/report/report_pieces.h"
 #include "bench/report/tod_figures.h"
@@ -154,74 +155,6 @@ std::vector<double> all_contrasts(const ReportData& data) {
 
 const TodPoint* point_of(const std::optional<TodCurve>& curve, double contrast) {
   return curve ? point_at(*curve, contrast) : nullptr;
-}
-
-std::vector<const TodPoint*> points_by(const ReportData& data, FitEstimator estimator) {
-  std::vector<const TodPoint*> points;
-  for (const std::optional<TodCurve>* curve : {&data.measured, &data.simulated}) {
-    if (!*curve) continue;
-    for (const TodPoint& point : (*curve)->points)
-      if (estimator_of(point.fit) == estimator) points.push_back(&point);
-  }
-  return points;
-}
-
-/// Why, in brackets; empty where nobody said.
-std::string reason_of(const TodPoint& point) {
-  return point.estimator_reason ? " (" + std::string(in_words(*point.estimator_reason)) + ")" : std::string();
-}
-
-std::string twin_in_words(const ReportData& data, const std::vector<const TodPoint*>& points) {
-  std::string text =
-      "The function is that of the simulated twin" + reason_of(*points.front()) +
-      ", averaged over phases and noise without a form and stretched in ln S to the answers by quasi-likelihood; S₇₅ "
-      "is the size at which it passes 0.75. The slope b is that of the Weibull function with the same rise there.";
-  const std::vector<const TodPoint*> others = points_by(data, FitEstimator::weibull);
-  for (std::size_t i = 0; i < others.size(); ++i) {
-    const bool simulated = data.measured && data.simulated && others[i] >= data.simulated->points.data() &&
-                           others[i] < data.simulated->points.data() + data.simulated->points.size();
-    text += std::string(i == 0 ? " A Weibull function instead: " : ", ") + stated(others[i]->set_delta_t_k) + " K" +
-            (simulated ? ", simulated" : "") + reason_of(*others[i]) + (i + 1 == others.size() ? "." : "");
-  }
-  return text;
-}
-
-std::string form_in_words(const ReportData& data) {
-  if (const auto points = points_by(data, FitEstimator::twin_shape); !points.empty())
-    return twin_in_words(data, points);
-  const std::string form = data.fit.form == PsychometricForm::size
-                               ? "ψ(S) = 0.25 + (0.75 − λ)(1 − exp(−(S/a)^b)), a Weibull function of size"
-                               : "ψ(S) = 0.25 + (0.75 − λ) exp(−(a/S)^b), a Weibull function of acuity 1/S";
-  const std::string lapse =
-      data.fit.fixed_lapse ? "lapse λ fixed at " + stated(*data.fit.fixed_lapse) : "lapse λ free between 0 and 0.1";
-  const auto points = points_by(data, FitEstimator::weibull);
-  return form + (points.empty() ? std::string() : reason_of(*points.front())) + ", " + lapse +
-         ", fitted by maximum likelihood; S₇₅ is the size at which ψ = 0.75 exactly.";
-}
-
-std::string text_of(const AnswersTaken& answers) {
-  const std::string reason = " (" + std::string(in_words(answers.reason)) + ")";
-  if (answers.kind == AnswerKind::binary) return "right or wrong, each to one frame" + reason;
-  return "graded: the observer's probability of the right answer, averaged over " + std::to_string(answers.frames) +
-         (answers.frames == 1 ? " frame" : " frames") + " of a presentation" + reason;
-}
-
-/// What was counted; empty where nobody said. Contrasts that differ from the first are named.
-std::string answers_in_words(const ReportData& data) {
-  std::string text;
-  std::optional<AnswersTaken> first;
-  for (const std::optional<TodCurve>* curve : {&data.measured, &data.simulated}) {
-    if (!*curve) continue;
-    for (const TodPoint& point : (*curve)->points) {
-      if (!point.answers || point.answers == first) continue;
-      const bool simulated = curve == &data.simulated && data.measured;
-      text += first ? "; at " + stated(point.set_delta_t_k) + " K" + (simulated ? ", simulated, " : " ")
-                    : std::string(" Answers are ");
-      text += text_of(*point.answers);
-      if (!first) first = point.answers;
-    }
-  }
-  return text.empty() ? text : text + ".";
 }
 
 RichText limit_cell(const Demand& demand) {

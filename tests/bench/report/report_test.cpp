@@ -7,6 +7,8 @@
 #include <limits>
 #include <set>
 
+#include "bench/report/fit_words.h"
+#include "bench/report/number_format.h"
 #include "tests/bench/report/report_sample.h"
 
 namespace todbench {
@@ -345,6 +347,36 @@ TEST(Report, AOneSidedLimitIsShownAsOneInTableAndFigure) {
   EXPECT_TRUE(contains(page, "≥ 0.787"));
   EXPECT_TRUE(contains(page, "answers right at every size: only an upper limit of the size"));
   EXPECT_TRUE(contains(page, "(not identified)"));
+}
+
+TEST(Report, SaysOnceWhatTheAnswersAreAndWhereTheyDiffer) {
+  ReportData data = sample_report();
+  ASSERT_EQ(data.measured->points.size(), 3u);
+  const auto give = [](TodCurve& curve, AnswerKind kind, AnswersReason reason, const std::vector<int>& frames) {
+    for (std::size_t i = 0; i < curve.points.size(); ++i)
+      curve.points[i].answers = AnswersTaken{kind, frames.at(i % frames.size()), reason};
+  };
+  const auto set = [&](std::size_t i) { return stated(data.measured->points[i].set_delta_t_k) + " K"; };
+  for (TodCurve* curve : {&*data.measured, &*data.simulated})
+    give(*curve, AnswerKind::graded, AnswersReason::twin, {1, 2, 10});
+  const std::string graded = "graded: the observer's probability of the right answer (" +
+                             std::string(in_words(AnswersReason::twin)) + "), averaged over ";
+
+  EXPECT_EQ(answers_in_words(data), " Answers are " + graded + "1 frame of a presentation at " + set(0) +
+                                        ", 2 frames at " + set(1) + ", 10 frames at " + set(2) + ".");
+  give(*data.measured, AnswerKind::graded, AnswersReason::twin, {4});
+  give(*data.simulated, AnswerKind::graded, AnswersReason::twin, {4});
+  EXPECT_EQ(answers_in_words(data), " Answers are " + graded + "4 frames of a presentation.");
+  give(*data.simulated, AnswerKind::binary, AnswersReason::plan, {1});
+  const std::string binary = "right or wrong, each to one frame (" + std::string(in_words(AnswersReason::plan)) + ")";
+  EXPECT_EQ(answers_in_words(data),
+            " Answers are " + graded + "4 frames of a presentation. Those of the twin are " + binary + ".");
+  data.simulated.reset();
+  data.measured->points[1].answers = AnswersTaken{AnswerKind::binary, 1, AnswersReason::plan};
+  EXPECT_EQ(answers_in_words(data), " Answers are " + graded + "4 frames of a presentation at " + set(0) + ", " +
+                                        set(2) + "; " + binary + " at " + set(1) + ".");
+  for (TodPoint& point : data.measured->points) point.answers.reset();
+  EXPECT_EQ(answers_in_words(data), "");
 }
 
 TEST(Report, AFreeLapseThatFitsBetterIsSaidAndDrawn) {
