@@ -121,17 +121,19 @@ endfunction()
 # Patience of a test whose program is a process of ctest: a hang ends it, a busy machine does not.
 set(todbench_hang_s 1800)
 
-# todbench_test(NAME SOURCES ... DEPENDS ... [LABELS ...] [SANITIZERS address thread] [SHARDS n | EACH_CASE] [COST s]
+# todbench_test(NAME SOURCES ... DEPENDS ... [LABELS ...] [SANITIZERS address thread [UNSANITIZED ...]] [SHARDS n | EACH_CASE] [COST s]
 # [TIMED] [APART ...] [PRECOMPILED KIND]): one GoogleTest program.
 #   LABELS      of its tests for ctest; the target todbench_tests_LABEL builds the programs with that label
 #   SANITIZERS  a build with a sanitizer has only the programs that name it
+#   UNSANITIZED cases, as --gtest_filter names them, that such a build leaves out: long loops over numbers whose code shorter cases of the
+#               same program run through as well
 #   SHARDS      ctest runs the program as so many processes with a part of the cases each; one when nothing is said: starting a process
 #               costs more than most cases do
 #   EACH_CASE   ctest runs every case in a process of its own: for programs whose cases take seconds
 #   COST        seconds of the whole program; ctest begins with the longest, so that none runs alone at the end
 #   TIMED       its cases run against real time: ctest runs at most one other program beside it
 function(todbench_test name)
-  cmake_parse_arguments(ARG "EACH_CASE;TIMED" "COST;SHARDS;PRECOMPILED" "SOURCES;DEPENDS;LABELS;SANITIZERS;APART" ${ARGN})
+  cmake_parse_arguments(ARG "EACH_CASE;TIMED" "COST;SHARDS;PRECOMPILED" "SOURCES;DEPENDS;LABELS;SANITIZERS;UNSANITIZED;APART" ${ARGN})
   foreach(sanitizer address thread)
     if(TODBENCH_SANITIZE MATCHES "${sanitizer}" AND NOT "${sanitizer}" IN_LIST ARG_SANITIZERS)
       return()
@@ -160,6 +162,10 @@ function(todbench_test name)
   set(environment GTEST_BRIEF=1)
   if(TODBENCH_SANITIZE MATCHES "thread")
     list(APPEND environment "TSAN_OPTIONS=suppressions=${CMAKE_SOURCE_DIR}/tests/tsan_suppressions.txt")
+  endif()
+  if(TODBENCH_SANITIZE AND ARG_UNSANITIZED)
+    list(JOIN ARG_UNSANITIZED ":" left_out)
+    list(APPEND environment "GTEST_FILTER=-${left_out}")
   endif()
   if(NOT ARG_COST)
     set(ARG_COST 1)

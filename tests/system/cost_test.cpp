@@ -80,9 +80,8 @@ TEST(Cost, OfAPlanWithoutThresholdIsInconclusive) {
 
 TEST(Cost, RefusesABudgetThatIsTooShort) {
   const TemporaryFolder folder;
-  folder.write("plan.toml", small_plan(1));
 
-  const Ended ended = todbench({"cost", "./plan.toml", "--budget-s", "0.1"}, {.folder = folder.path()});
+  const Ended ended = todbench({"cost", "demo", "--budget-s", "0.1"}, {.folder = folder.path()});
 
   expect_refused(ended, 2, "a budget of 0.1 s is too short");
 }

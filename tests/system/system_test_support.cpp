@@ -17,9 +17,11 @@ void expect_numbers(const Json& json) {
 }  // namespace
 
 std::string small_plan(int phases, const std::string& more) {
+  const bool has_fit = more.find("[fit]") != std::string::npos;
   return "name = \"small\"\n[target]\ndistance_m = 2\nplates = [\"tcat-a\"]\nmountings = [\"identity\"]\n"
          "delta_t_k = [16.9]\nphases = " +
-         std::to_string(phases) + "\n[simulation]\naccuracy = \"draft\"\n" + more;
+         std::to_string(phases) + (has_fit ? "" : "\n[fit]\nestimator = \"weibull\"") +
+         "\n[simulation]\naccuracy = \"draft\"\n" + more;
 }
 
 std::string small_measurement(int phases, const std::string& more) {

@@ -16,7 +16,8 @@ namespace todbench::testing {
 
 using Json = nlohmann::json;
 
-/// A plan of one plate at one contrast in draft accuracy, to be simulated within seconds. `more` is added at its end.
+/// A plan of one plate at one contrast in draft accuracy, to be simulated within a second: without a `[fit]` in `more`
+/// with a Weibull function, because that of the twin costs as much again. `more` is added at its end.
 [[nodiscard]] std::string small_plan(int phases, const std::string& more = "");
 /// The same, measured with the simulated camera.
 [[nodiscard]] std::string small_measurement(int phases, const std::string& more = "");

@@ -41,7 +41,8 @@ struct Files {
                       "[target]\ndistance_m = 2\nplates = [\"./a.toml\"]\nmountings = [\"identity\"]\n"
                       "delta_t_k = [16.9]\nphases = 1\n[observer]\nname = \"./eye.toml\"\n"
                       "[simulation]\nsensor = \"./sensor.toml\"\naccuracy = \"draft\"\n"
-                      "[measurement]\nregistration_frames = 2\ncontrast_frames = 2\n")
+                      "[measurement]\nregistration_frames = 2\ncontrast_frames = 2\n"
+                      "[fit]\nestimator = \"weibull\"\n")
                .string();
   }
 };
