@@ -83,7 +83,7 @@ std::vector<BudgetRow> rows_at(const UncertaintyPlan& plan, const TodPoint& poin
                     .value = point.delta_t_se_k,
                     .degrees_of_freedom = freedom_of_contrast(point),
                     .unit = "K",
-                    .source = "standard error over the measurements of it",
+                    .source = "standard error over the measurements of it and their triangles",
                     .enters = BudgetInput::contrast});
   }
   if (deviation_k) {

@@ -24,6 +24,7 @@
 #include "bench/text/text.h"
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "tod/adequacy/adequacy.h"
+#include "tod/measurement/contrast_error.h"
 #include "tod/measurement/measurement.h"
 
 namespace todbench {
@@ -178,6 +179,7 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
   // What ended the run is the reason, not that the few trials up to there make no curve.
   if (!curve) return tl::unexpected(run.result.ended_by.value_or(curve.error()));
   run.curve = std::move(*curve);
+  add_contrast_errors(run.curve, run.result.contrasts);
   run.curve.sensor = inputs.sensor.name;
   run.curve.observer = observer_name(plan, inputs);
   for (auto& point : run.curve.points) {
@@ -455,6 +457,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
     provenance.run = run_record(*result, seconds_since(begin));
     return abandon(frame, plan, provenance, result->ended_by.value_or(curve.error()));
   }
+  add_contrast_errors(*curve, result->contrasts);
   std::map<double, double> shown;
   for (const auto& point : curve->points) shown[point.set_delta_t_k] = point.delta_t_k;
   TodCurve known;

@@ -130,7 +130,9 @@ Json point_record(const TodPoint& point) {
   json["set_delta_t_k"] = json_number(point.set_delta_t_k);
   json["delta_t_k"] = json_number(point.delta_t_k);
   json["delta_t_se_k"] = json_number(contrast_se_k(point));
+  json["delta_t_shared_se_k"] = json_number(point.delta_t_shared_se_k);
   json["delta_t_measurements"] = point.delta_t_measurements;
+  json["delta_t_degrees_of_freedom"] = json_number(freedom_of_contrast(point));
   json["fit"] = fit_record(point.fit);
   json["estimator"] = to_string(estimator_of(point.fit));
   json["estimator_reason"] = point.estimator_reason ? Json(to_string(*point.estimator_reason)) : Json(nullptr);
@@ -155,6 +157,10 @@ TodPoint read_point(const JsonReader& reader) {
   if (const JsonReader error = reader.at("delta_t_se_k"); !error.is_null()) point.delta_t_se_k = error.number();
   if (const JsonReader count = reader.at_if_there("delta_t_measurements"); !count.is_null())
     point.delta_t_measurements = static_cast<int>(count.whole());
+  if (const JsonReader shared = reader.at_if_there("delta_t_shared_se_k"); !shared.is_null())
+    point.delta_t_shared_se_k = shared.number();
+  if (const JsonReader freedom = reader.at_if_there("delta_t_degrees_of_freedom"); !freedom.is_null())
+    point.delta_t_freedom = freedom.number();
   point.fit = read_fit(reader.at("fit"));
   if (const JsonReader reason = reader.at_if_there("estimator_reason"); !reason.is_null())
     point.estimator_reason = reason.named(all_estimator_reasons);

@@ -12,7 +12,7 @@
 namespace todbench {
 namespace {
 
-constexpr std::array<std::string_view, 17> target_columns{"presentation",
+constexpr std::array<std::string_view, 19> target_columns{"presentation",
                                                           "plate",
                                                           "mounting",
                                                           "set_delta_t_k",
@@ -28,7 +28,9 @@ constexpr std::array<std::string_view, 17> target_columns{"presentation",
                                                           "reached_mounting",
                                                           "reached_shift_x_mm",
                                                           "reached_shift_y_mm",
-                                                          "air_transmittance"};
+                                                          "air_transmittance",
+                                                          "delta_t_se_k",
+                                                          "reference_triangles"};
 
 std::string number_field(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? number_text(*value) : std::string();
@@ -54,13 +56,15 @@ std::string target_line(const Presentation& shown) {
   add(number_field(said.state.shift_mm.x));
   add(number_field(said.state.shift_mm.y));
   add(number_field(shown.air_transmittance));
+  add(number_field(shown.delta_t_se_k));
+  add(shown.reference_triangles > 0 ? std::to_string(shown.reference_triangles) : std::string());
   return line + "\n";
 }
 
-/// Without the air, as sessions had it before.
-constexpr std::span older_columns(target_columns.data(), 16);
+/// How many columns sessions have had: without the air, without the error of the contrast.
+constexpr std::size_t without_air = 16, without_error = 17;
 
-Presentation read_target(FieldReader& fields, bool has_air) {
+Presentation read_target(FieldReader& fields, std::size_t columns) {
   // What an instrument said that was no number.
   const auto said = [&fields] { return fields.optional_number().value_or(std::nan("")); };
   Presentation shown;
@@ -80,7 +84,11 @@ Presentation read_target(FieldReader& fields, bool has_air) {
   shown.said.state.mounting = fields.mounting();
   shown.said.state.shift_mm.x = said();
   shown.said.state.shift_mm.y = said();
-  if (has_air) shown.air_transmittance = fields.optional_number();
+  if (columns > without_air) shown.air_transmittance = fields.optional_number();
+  if (columns > without_error) {
+    shown.delta_t_se_k = fields.optional_number();
+    shown.reference_triangles = fields.optional_whole<int>().value_or(0);
+  }
   return shown;
 }
 
@@ -111,15 +119,16 @@ Result<std::vector<Presentation>> read_targets(const std::filesystem::path& file
   if (!text) return tl::unexpected(text.error());
   const Result<CsvTable> table = parse_csv(*text, file.string());
   if (!table) return tl::unexpected(table.error());
-  const bool has_air = table->header.size() != older_columns.size();
-  if (const Result<void> as_expected = check_columns(*table, has_air ? std::span(target_columns) : older_columns);
-      !as_expected)
+  const std::size_t had = table->header.size();
+  const std::span columns(target_columns.data(),
+                          had == without_air || had == without_error ? had : target_columns.size());
+  if (const Result<void> as_expected = check_columns(*table, columns); !as_expected)
     return tl::unexpected(as_expected.error());
   std::vector<Presentation> presentations;
   presentations.reserve(table->rows.size());
   for (const CsvRow& row : table->rows) {
     FieldReader fields(row.fields, target_columns);
-    presentations.push_back(read_target(fields, has_air));
+    presentations.push_back(read_target(fields, columns.size()));
     if (fields.wrong()) return table->wrong(row.line, *fields.wrong());
   }
   return presentations;

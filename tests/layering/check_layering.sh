@@ -23,7 +23,7 @@ BEGIN {
   may["tod/registration"] = hvs " tod/plate"
   may["tod/psychometric"] = core " tod/presentation"
   may["tod/schedule"] = core " tod/plate tod/presentation tod/psychometric"
-  may["tod/measurement"] = hvs " tod/plate tod/presentation tod/registration tod/schedule tod/measures"
+  may["tod/measurement"] = hvs " tod/plate tod/presentation tod/psychometric tod/registration tod/schedule tod/measures"
   may["tod/camera_measures"] = hvs " tod/plate tod/presentation tod/registration tod/schedule tod/measurement tod/measures tod/range"
   may["tod/comparison"] = core " tod/psychometric"
   may["tod/adequacy"] = core " tod/psychometric"

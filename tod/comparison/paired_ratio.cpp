@@ -88,7 +88,9 @@ Result<RatioOfPairs> paired_ratio(std::span<const PairedAnswer> answers, const P
   const ClusteredVariance found = clustered_variance(scores, 1, 0);
   if (!std::isfinite(found.variance) || !(found.variance > 0))
     return fail(ErrorCode::invalid_input, "paired answers: too few set-ups, presentations or places for a variance");
-  const double of_contrast = found.kind == IntervalKind::set_ups ? 0 : std::pow(contrast.se_ln_acuity, 2);
+  // The scatter over set-ups has that of their contrasts, but not what all of them have in common.
+  const double of_contrast =
+      std::pow(found.kind == IntervalKind::set_ups ? contrast.shared_se_ln_acuity : contrast.se_ln_acuity, 2);
   const double variance = found.variance + of_contrast;
   double rest = found.variance * found.variance / found.degrees_of_freedom;
   if (contrast.degrees_of_freedom) rest += of_contrast * of_contrast / *contrast.degrees_of_freedom;

@@ -30,8 +30,8 @@ struct PairedAnswer {
 /// would cancel as well: the caller sees to it that they share none.
 ///
 /// The twin is shown the contrast that the camera measured once in each set-up. Over set-ups its scatter is in the
-/// differences; presentations and places do not see it, and then `contrast`, what it leaves open of the acuity, is
-/// added.
+/// differences; what all set-ups have in common of it (`contrast.shared_se_ln_acuity`) is added. Presentations and
+/// places do not see that scatter, and then all of `contrast.se_ln_acuity` is.
 ///
 /// `draws` is kept for the record. Verdict as of compare(), with Student's t; equivalent wins. `invalid_input`: as
 /// twin_shape_estimate(), fewer than two clusters, a margin that is not positive, probabilities outside 0 to 1.

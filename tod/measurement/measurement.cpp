@@ -218,7 +218,8 @@ class Run {
     if (new_contrast) {
       auto measured = step_.contrast(mounted_plate, registration, state, presented_, stop_);
       if (!measured) return tl::unexpected(measured.error());
-      seen_ = *measured;
+      seen_ = *std::move(measured);
+      if (!seen_.references.empty()) result_.contrasts.push_back({state.delta_t_k, seen_.contrast_k, seen_.references});
     }
     current_set_up_ = set_up;
     current_contrast_ = state.delta_t_k;
@@ -230,6 +231,8 @@ class Run {
                                      .set = state,
                                      .said = presented_,
                                      .delta_t_k = seen ? std::optional(seen_.contrast_k) : std::nullopt,
+                                     .delta_t_se_k = seen ? seen_.standard_error_k : std::nullopt,
+                                     .reference_triangles = seen ? static_cast<int>(seen_.references.size()) : 0,
                                      .air_transmittance = options_.air_transmittance,
                                      .host_time_ns = there_ns});
     if (listener_.on_presentation) listener_.on_presentation(result_.presentations.back());

@@ -14,6 +14,7 @@
 #include "acquisition/core/frame_source.h"
 #include "acquisition/core/integrity_gate.h"
 #include "hvs/observer/observer.h"
+#include "tod/measurement/contrast_error.h"
 #include "tod/measurement/frame_taker.h"
 #include "tod/measurement/grey_levels.h"
 #include "tod/measurement/measurement_host.h"
@@ -96,6 +97,7 @@ struct MeasurementResult {
   std::vector<Trial> trials;
   std::vector<Presentation> presentations;
   std::vector<SetUpRecord> set_ups;
+  std::vector<ContrastMeasurement> contrasts;  ///< in kelvin, one for each set-up and contrast
   std::uint64_t frames_used = 0;
   std::map<std::string, std::uint64_t> frames_rejected;  ///< by reason
   std::uint64_t frames_lost = 0;                         ///< gaps in the sequence

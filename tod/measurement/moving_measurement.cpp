@@ -188,6 +188,8 @@ class MovingRun {
                                      .set = state,
                                      .said = presented_,
                                      .delta_t_k = seen_.contrast_k,
+                                     .delta_t_se_k = seen_.standard_error_k,
+                                     .reference_triangles = static_cast<int>(seen_.references.size()),
                                      .air_transmittance = at_rest().air_transmittance,
                                      .host_time_ns = there_ns_});
     if (listener_.on_presentation) {

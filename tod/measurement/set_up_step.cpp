@@ -165,7 +165,11 @@ SeenContrast SetUpStep::in_kelvin(const EffectiveContrast& measured, const Targe
     note_(fmt::format("{}: the camera sees {:.3f} K where {:.3f} K were set ({:+.0f} %)", plate_and_mounting(set),
                       seen_k, set.delta_t_k, 100 * deviation));
   }
-  return {.contrast_k = seen_k, .noise_k = noise_of_frame_k_};
+  SeenContrast seen{.contrast_k = seen_k, .noise_k = noise_of_frame_k_};
+  seen.references = measured.references;
+  for (ReferenceTriangle& reference : seen.references) reference.value /= response(set.plate);
+  if (measured.triangles > 1) seen.standard_error_k = measured.standard_error / response(set.plate);
+  return seen;
 }
 
 SeenContrast SetUpStep::in_grey_levels(const AveragedPicture& picture, const EffectiveContrast& measured,

@@ -32,10 +32,12 @@ namespace todbench {
 
 /// A contrast as it is judged by.
 struct SeenContrast {
-  double contrast_k = 0;    ///< effective
-  double noise_k = 0;       ///< of a pixel in one frame, as an observer suffers it; 0: not measured
-  double levels_per_k = 0;  ///< signal transfer; 0: the contrast is in kelvin
-  GreySteps steps{};        ///< where it is in grey levels
+  double contrast_k = 0;                        ///< effective
+  double noise_k = 0;                           ///< of a pixel in one frame, as an observer suffers it; 0: not measured
+  double levels_per_k = 0;                      ///< signal transfer; 0: the contrast is in kelvin
+  GreySteps steps{};                            ///< where it is in grey levels
+  std::optional<double> standard_error_k{};     ///< as in Presentation
+  std::vector<ReferenceTriangle> references{};  ///< in kelvin; none where the contrast is in grey levels
 };
 
 /// One thread at a time. What it is given outlives it.

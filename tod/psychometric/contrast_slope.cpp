@@ -57,6 +57,7 @@ bool has_contrast_measured_once(const TodCurve& curve) {
 }
 
 std::optional<double> freedom_of_contrast(const TodPoint& point) {
+  if (point.delta_t_freedom) return point.delta_t_freedom;
   return point.delta_t_measurements > 1 ? std::optional(point.delta_t_measurements - 1.0) : std::nullopt;
 }
 
@@ -86,7 +87,9 @@ std::vector<ContrastScatter> contrast_scatter(const TodCurve& curve) {
   for (std::size_t i = 0; i < curve.points.size(); ++i) {
     const TodPoint& point = curve.points[i];
     const double relative = point.delta_t_se_k / contrast_seen_k(point);
+    const double shared = point.delta_t_shared_se_k / contrast_seen_k(point);
     scatter.push_back({.se_ln_acuity = std::isfinite(relative) ? slopes[i] * relative : 0,
+                       .shared_se_ln_acuity = std::isfinite(shared) ? slopes[i] * shared : 0,
                        .degrees_of_freedom = freedom_of_contrast(point)});
   }
   return scatter;

@@ -27,7 +27,8 @@ namespace todbench {
 
 /// What the scatter of the measurements of a contrast leaves open of the acuity at it.
 struct ContrastScatter {
-  double se_ln_acuity = 0;                     ///< 0 where it was measured once or not at all
+  double se_ln_acuity = 0;                     ///< 0 where nobody knows how it scatters
+  double shared_se_ln_acuity = 0;              ///< the part of it that no scatter over set-ups shows
   std::optional<double> degrees_of_freedom{};  ///< nothing: not said
 };
 /// At each point: the standard error of the contrast by contrast_slopes().

@@ -48,12 +48,15 @@ struct AnswersTaken {
 struct TodPoint {
   double set_delta_t_k = 0;  ///< what the target was told: the name by which points are paired
   double delta_t_k = 0;      ///< effective contrast measured by the camera (mean over trials)
-  /// Standard error of that mean, over the measurements of it (one per set-up and set-point); 0 of a single one, whose
-  /// scatter nobody knows: contrast_se_k().
+  /// Standard error of that mean: over the measurements of it (one per set-up and set-point) and the triangles each was
+  /// made by, contrast_error(); over the measurements alone where nothing is said of triangles; 0 of a single one then,
+  /// whose scatter nobody knows: contrast_se_k().
   double delta_t_se_k = 0;
-  int delta_t_measurements = 0;  ///< how many those are; 0: not said
-  std::vector<Level> levels;     ///< counts per size, one row per size and cluster: what the fit saw
-  PsychometricFit fit;           ///< in mrad
+  double delta_t_shared_se_k = 0;           ///< part of it that no scatter over the measurements shows
+  int delta_t_measurements = 0;             ///< how many those are; 0: not said
+  std::optional<double> delta_t_freedom{};  ///< degrees of freedom of that error; nothing: measurements less one
+  std::vector<Level> levels;                ///< counts per size, one row per size and cluster: what the fit saw
+  PsychometricFit fit;                      ///< in mrad
   /// Why the fit is with a Weibull function or with that of the twin; nothing: not said.
   std::optional<EstimatorReason> estimator_reason;
   std::optional<AnswersTaken> answers;            ///< nothing: not said

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "acquisition/core/median.h"
 #include "tod/plate/plate_outlines.h"
@@ -108,7 +109,7 @@ Result<EffectiveContrast> effective_contrast(const cv::Mat1d& picture, const Tar
   for (const PlateTriangle& t : mounted_plate.triangles) {
     outlines.push_back(outline_in_picture(registration.plate_to_pixel, t, t.apex));
   }
-  std::vector<double> contrasts;
+  std::vector<ReferenceTriangle> references;
   double pixel_error = 0;
   double largest = 0;
   for (std::size_t k = 0; k < outlines.size(); ++k) {
@@ -126,22 +127,25 @@ Result<EffectiveContrast> effective_contrast(const cv::Mat1d& picture, const Tar
     const double noise = spread(s.ring);
     const double between_medians = median(s.inside) - median(s.ring);
     const double reach = std::max(8 * noise, 0.5 * std::abs(between_medians));
-    contrasts.push_back(level == LevelEstimate::median
-                            ? between_medians
-                            : mean_near_median(s.inside, reach) - mean_near_median(s.ring, reach));
+    const double contrast = level == LevelEstimate::median
+                                ? between_medians
+                                : mean_near_median(s.inside, reach) - mean_near_median(s.ring, reach);
+    references.push_back(
+        {.value = contrast, .place_px = to_pixel(registration.plate_to_pixel, t.position_mm), .size_px = size});
     pixel_error = std::hypot(median_error(s.inside, noise), median_error(s.ring, noise));
   }
-  if (contrasts.empty()) {
+  if (references.empty()) {
     return fail(ErrorCode::invalid_input, doing + "no triangle is at least " + fixed(min_size_px, 1) +
                                               " px, the largest is " + fixed(largest, 1) + " px");
   }
   EffectiveContrast result;
-  result.triangles = static_cast<int>(contrasts.size());
-  const double n = static_cast<double>(contrasts.size());
-  for (const double c : contrasts) result.value += c / n;
+  result.triangles = static_cast<int>(references.size());
+  const double n = static_cast<double>(references.size());
+  for (const ReferenceTriangle& r : references) result.value += r.value / n;
   double squares = 0;
-  for (const double c : contrasts) squares += (c - result.value) * (c - result.value);
+  for (const ReferenceTriangle& r : references) squares += (r.value - result.value) * (r.value - result.value);
   result.standard_error = n > 1 ? std::sqrt(squares / (n - 1) / n) : pixel_error;
+  result.references = std::move(references);
   return result;
 }
 

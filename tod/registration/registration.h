@@ -3,6 +3,7 @@
 
 #include <opencv2/core.hpp>
 #include <string_view>
+#include <vector>
 
 #include "acquisition/core/result.h"
 #include "tod/plate/target_plate.h"
@@ -69,11 +70,19 @@ enum class LevelEstimate {
            ///< contrast and eight standard deviations of the ring are left out
 };
 
+/// One triangle that a contrast is measured by.
+struct ReferenceTriangle {
+  double value = 0;      ///< its contrast
+  cv::Point2d place_px;  ///< its centroid
+  double size_px = 0;
+};
+
 /// Contrast as the camera shows it, in the unit of the picture, sign included.
 struct EffectiveContrast {
   double value = 0;           ///< mean over the triangles used
   double standard_error = 0;  ///< from the scatter over triangles; with one triangle from the scatter of its pixels
   int triangles = 0;
+  std::vector<ReferenceTriangle> references;  ///< those
 };
 
 /// Over the triangles of at least `min_size_px`: median of the inside (0.45 of the inscribed radius, at most 1.25 px,

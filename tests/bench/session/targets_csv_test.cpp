@@ -39,6 +39,8 @@ TEST_F(TargetsCsv, EveryValueComesBackExactly) {
   silent.delta_t_k.reset();
   silent.host_time_ns.reset();
   silent.air_transmittance = 0.98765432109876543;
+  silent.delta_t_se_k = 0.0012345678901234567;
+  silent.reference_triangles = 4;
   const std::vector<Presentation> presentations{testing::full_presentation(), silent};
 
   write(presentations);
@@ -54,21 +56,32 @@ TEST_F(TargetsCsv, TheHeaderStatesTheUnits) {
   EXPECT_EQ(testing::content_of(file_),
             "presentation,plate,mounting,set_delta_t_k,reached_delta_t_k,delta_t_k,plate_temperature_k,"
             "black_body_temperature_k,settling_s,host_time_ns,set_shift_x_mm,set_shift_y_mm,reached_plate,"
-            "reached_mounting,reached_shift_x_mm,reached_shift_y_mm,air_transmittance\n");
+            "reached_mounting,reached_shift_x_mm,reached_shift_y_mm,air_transmittance,delta_t_se_k,"
+            "reference_triangles\n");
 }
 
-TEST_F(TargetsCsv, OfAnEarlierVersionHasNoAir) {
-  Presentation with_air = testing::full_presentation();
-  with_air.air_transmittance = 0.994;
-  write({with_air});
+TEST_F(TargetsCsv, OfAnEarlierVersionHasNoErrorOfTheContrastAndOfAYetEarlierNoAir) {
+  Presentation shown = testing::full_presentation();
+  shown.air_transmittance = 0.994;
+  shown.delta_t_se_k = 0.0071;
+  shown.reference_triangles = 5;
+  write({shown});
   std::string text = testing::content_of(file_);
-  for (const std::string column : {",air_transmittance", ",0.994"}) text.erase(text.find(column), column.size());
-  (void)folder_.write("targets.csv", text);
+  const auto without = [&](std::initializer_list<std::string> columns) {
+    for (const std::string& column : columns) text.erase(text.find(column), column.size());
+    (void)folder_.write("targets.csv", text);
+    return read_targets(file_);
+  };
 
-  const auto back = read_targets(file_);
+  const auto with_air = without({",delta_t_se_k,reference_triangles", ",0.0071,5"});
+  const auto with_neither = without({",air_transmittance", ",0.994"});
 
-  ASSERT_TRUE(back) << back.error().message;
-  EXPECT_EQ(*back, std::vector{testing::full_presentation()});
+  ASSERT_TRUE(with_air) << with_air.error().message;
+  shown.delta_t_se_k.reset();
+  shown.reference_triangles = 0;
+  EXPECT_EQ(*with_air, std::vector{shown});
+  ASSERT_TRUE(with_neither) << with_neither.error().message;
+  EXPECT_EQ(*with_neither, std::vector{testing::full_presentation()});
 }
 
 TEST_F(TargetsCsv, WhatATargetSaysThatIsNoNumberIsEmpty) {

@@ -124,7 +124,13 @@ TEST(PairedRatio, HoldsTheScatterOfTheContrastOnceWhateverTheClusters) {
   const auto over_set_ups = paired_ratio(of_many, table(), false, 24, 3, contrast);
   ASSERT_TRUE(over_set_ups);
   EXPECT_EQ(over_set_ups->interval, IntervalKind::set_ups);
-  EXPECT_EQ(over_set_ups->se_ln_ratio, paired_ratio(of_many, table(), false, 24, 3)->se_ln_ratio);
+  const double alone = paired_ratio(of_many, table(), false, 24, 3)->se_ln_ratio;
+  EXPECT_EQ(over_set_ups->se_ln_ratio, alone);
+  // What all set-ups have in common is in no scatter over them.
+  const ContrastScatter common{.se_ln_acuity = 0.02, .shared_se_ln_acuity = 0.015, .degrees_of_freedom = 7.0};
+  EXPECT_NEAR(paired_ratio(of_many, table(), false, 24, 3, common)->se_ln_ratio, std::hypot(alone, 0.015), 1e-12);
+  EXPECT_NEAR(paired_ratio(of_one_set_up, table(), false, 24, 3, common)->se_ln_ratio,
+              std::hypot(without->se_ln_ratio, 0.02), 1e-12);
 }
 
 TEST(PairedRatio, RefusesWhatHasNoVariance) {
