@@ -1,0 +1,137 @@
+#!/bin/bash
+# Debian's Grid Engine, a master and an execution daemon on this host in namespaces of their own, on copies of their folders: an array job, an
+# element that is deleted in the middle of a task while the others go on, the same script again; one table, byte for byte, as one process.
+# Usage: gridengine_test.sh TODBENCH. Exit 0: passed, 77: Grid Engine cannot run here (said why on stdout), 1: failed.
+set -eu
+todbench=$1
+home=/var/lib/gridengine
+spool=/var/spool/gridengine
+skip() { echo "SKIPPED: $*"; exit 77; }
+fail() { echo "FAILED: $*"; tail -n 20 "$work"/log/* "$work"/spool/qmaster/messages 2>/dev/null || true; exit 1; }
+
+if [ -z "${TODBENCH_GRIDENGINE_WORK:-}" ]; then
+  for tool in sge_qmaster sge_execd qsub ip unshare; do
+    PATH=$PATH:/usr/sbin:/sbin command -v $tool >/dev/null ||
+      skip "$tool is not installed (apt-get install gridengine-master gridengine-exec gridengine-client iproute2)"
+  done
+  [ "$(id -u)" -eq 0 ] || skip "the daemons need root"
+  unshare -nmu --ipc --pid --fork --mount-proc true 2>/dev/null || skip "this host allows no namespaces"
+  work=$(mktemp -d)
+  # With the shell everything in its namespace ends, daemons and jobs, and what it mounted.
+  code=0
+  TODBENCH_GRIDENGINE_WORK=$work timeout -s KILL 300 unshare -nmu --ipc --pid --fork --mount-proc --kill-child bash "$0" "$@" || code=$?
+  rm -rf "$work"
+  exit $code
+fi
+work=$TODBENCH_GRIDENGINE_WORK
+export PATH=$PATH:/usr/sbin:/sbin SGE_ROOT=$home SGE_CELL=default
+chmod 711 "$work"
+mkdir -p "$work"/log "$work"/spool/{spooldb,qmaster,execd}
+# Grid Engine looks its own address up and takes none of the loopback network.
+address=192.0.2.1
+hostname engine
+{ ip link set lo up && ip addr add $address/32 dev lo; } || skip "no address can be set"
+printf '127.0.0.1 localhost\n%s engine\n' $address >"$work/hosts"
+cp -a $home "$work/lib"
+mkdir -p "$work/lib/default/common"
+cat >"$work/lib/default/common/bootstrap" <<CONF
+admin_user sgeadmin
+default_domain none
+ignore_fqdn false
+spooling_method berkeleydb
+spooling_lib libspoolb
+spooling_params $spool/spooldb
+binary_path /usr/sbin
+qmaster_spool_dir $spool/qmaster
+security_mode none
+listener_threads 2
+worker_threads 2
+scheduler_threads 1
+CONF
+echo engine >"$work/lib/default/common/act_qmaster"
+chown -R sgeadmin "$work/lib" "$work/spool"
+{ mount --bind "$work/hosts" /etc/hosts && mount --bind "$work/lib" $home && mount --bind "$work/spool" $spool; } || skip "nothing can be mounted"
+as_admin() { su sgeadmin -s /bin/sh -c "SGE_ROOT=$home SGE_CELL=default PATH=$PATH $*"; }
+as_admin "/usr/share/gridengine/scripts/init_cluster $home default $spool/spooldb sgeadmin" >"$work/log/init" 2>&1 || fail "no cluster was set up"
+as_admin sge_qmaster >"$work/log/qmaster" 2>&1 || skip "sge_qmaster does not start"
+for _ in $(seq 100); do qconf -sh >/dev/null 2>&1 && break; sleep 0.2; done
+qconf -sh >/dev/null 2>&1 || skip "sge_qmaster does not answer"
+as_admin "qconf -am root; qconf -ah engine; qconf -as engine" >"$work/log/hosts" 2>&1 || true
+sge_execd >"$work/log/execd" 2>&1 || skip "sge_execd does not start"
+# Jobs of root are refused by itself.
+qconf -sconf | sed 's/^min_\([ug]id\) .*/min_\1 0/' >"$work/global"
+as_admin "qconf -Mconf $work/global" >"$work/log/configuration" 2>&1 || fail "root may not submit"
+qconf -sq | sed -e 's/^qname .*/qname main.q/' -e 's/^hostlist .*/hostlist engine/' -e 's/^slots .*/slots 2/' -e 's/^pe_list .*/pe_list NONE/' \
+  -e 's/^ckpt_list .*/ckpt_list NONE/' -e 's/^load_thresholds .*/load_thresholds NONE/' >"$work/queue"
+qconf -Aq "$work/queue" >"$work/log/queue" 2>&1 || fail "no queue was set up"
+
+cd "$work"
+sweep() {
+  mkdir "$1"
+  cat >"$1/s.toml" <<'SWEEP'
+kind = "estimate"
+[base]
+accuracy = "draft"
+delta_t_k = [16.9, 1.93]
+[grid]
+netd_k = [0.05, 0.2]
+detector_um = [30, 42.5]
+[repeat]
+seeds = 2
+SWEEP
+}
+# In its folder, as the printed script is used.
+submit() { (cd "$1" && "$todbench" sweep tasks s.toml --for gridengine --quiet "${@:2}" >job.sh && qsub -terse -o /dev/null -e /dev/null job.sh) >>log/jobs || fail "$1: nothing was submitted"; }
+all_done() {
+  for _ in $(seq 600); do
+    [ -z "$(qstat)" ] && return 0
+    sleep 0.2
+  done
+  qstat -f
+  fail "$1: jobs are left"
+}
+same_table() {
+  all_done "$1"
+  "$todbench" sweep collect "$1/s.toml" --quiet >/dev/null || { "$todbench" sweep status "$1/s.toml"; fail "$1: not all tasks have a result"; }
+  cmp serial/s.results/table.csv "$1/s.results/table.csv" || fail "$1: another table than that of one process"
+  echo "passed: $1"
+}
+
+sweep serial
+"$todbench" sweep run serial/s.toml --quiet >/dev/null
+"$todbench" sweep collect serial/s.toml --quiet >/dev/null
+
+sweep array
+submit array --chunk 2 --program "$todbench"
+same_table array
+
+# The program of the third element is stopped in the middle of a task, its lock taken; then the element is deleted.
+sweep deleted
+cat >stopped-program <<PROGRAM
+#!/bin/bash
+if [ "\$SGE_TASK_ID" = 3 ] && [ ! -e "$work/stopped" ]; then
+  "$todbench" "\$@" &
+  while kill -0 \$! 2>/dev/null; do
+    for lock in s.results/*/*.lock; do
+      if [ -f "\$lock" ] && [ "\$(sed -n 2p "\$lock")" = \$! ]; then
+        kill -STOP \$!
+        if [ -f "\$lock" ]; then touch "$work/stopped"; sleep 3600; fi
+        kill -CONT \$!
+      fi
+    done
+  done
+  wait
+  exit
+fi
+exec "$todbench" "\$@"
+PROGRAM
+chmod +x stopped-program
+submit deleted --chunk 2 --program "$work/stopped-program"
+for _ in $(seq 600); do [ -e stopped ] && break; sleep 0.1; done
+[ -e stopped ] || fail "no task was stopped in the third element"
+qdel "$(tail -n 1 log/jobs | cut -d. -f1)" -t 3 >/dev/null
+all_done deleted
+"$todbench" sweep collect deleted/s.toml --quiet >/dev/null 2>&1 && fail "a table was made though a task has no result"
+submit deleted --chunk 2 --program "$work/stopped-program"
+same_table deleted
+echo "PASSED: an array, an element that was deleted and submitted again: one table"
