@@ -16,8 +16,9 @@ Plan demo() {
   return *plan;
 }
 
-const PlanField& field(const std::vector<PlanField>& fields, const QString& name) {
-  const auto found = std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return f.object_name == name; });
+const PlanField& field(const std::vector<PlanField>& fields, QAnyStringView name) {
+  const auto found =
+      std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return QAnyStringView(f.object_name) == name; });
   EXPECT_NE(found, fields.end());
   return *found;
 }
