@@ -50,7 +50,7 @@ void observer_graded(benchmark::State& state, double size_samples) {
   std::uint64_t trial = 0;
   double draws = 0;
   for (auto _ : state) {
-    const GradedChoice graded = prepared->judge(patch, contrast_k, noise.sub(trial++), 32);
+    GradedChoice graded = prepared->judge(patch, contrast_k, noise.sub(trial++), 32);
     benchmark::DoNotOptimize(graded);
     draws += graded.answers.draws;
   }

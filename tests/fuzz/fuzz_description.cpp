@@ -32,7 +32,9 @@ gboolean read_memory(ArvDevice*, guint64 address, guint32 size, void* buffer, GE
   return TRUE;
 }
 
-gboolean write_memory(ArvDevice*, guint64, guint32, void*, GError**) {
+/// Of what the interface of Aravis takes: in some versions the buffer is const.
+template <typename Buffer>
+gboolean write_memory(ArvDevice*, guint64, guint32, Buffer, GError**) {
   return TRUE;
 }
 
