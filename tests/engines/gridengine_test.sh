@@ -4,6 +4,7 @@
 # Usage: gridengine_test.sh TODBENCH. Exit 0: passed, 77: Grid Engine cannot run here (said why on stdout), 1: failed.
 set -eu
 todbench=$1
+. "$(dirname "$0")/one_table.sh"
 home=/var/lib/gridengine
 spool=/var/spool/gridengine
 skip() { echo "SKIPPED: $*"; exit 77; }
@@ -66,66 +67,20 @@ qconf -sq | sed -e 's/^qname .*/qname main.q/' -e 's/^hostlist .*/hostlist engin
 qconf -Aq "$work/queue" >"$work/log/queue" 2>&1 || fail "no queue was set up"
 
 cd "$work"
-sweep() {
-  mkdir "$1"
-  cat >"$1/s.toml" <<'SWEEP'
-kind = "estimate"
-[base]
-accuracy = "draft"
-delta_t_k = [16.9, 1.93]
-[grid]
-netd_k = [0.05, 0.2]
-detector_um = [30, 42.5]
-[repeat]
-seeds = 2
-SWEEP
-}
 # In its folder, as the printed script is used.
 submit() { (cd "$1" && "$todbench" sweep tasks s.toml --for gridengine --quiet "${@:2}" >job.sh && qsub -terse -o /dev/null -e /dev/null job.sh) >>log/jobs || fail "$1: nothing was submitted"; }
-all_done() {
-  for _ in $(seq 600); do
-    [ -z "$(qstat)" ] && return 0
-    sleep 0.2
-  done
-  qstat -f
-  fail "$1: jobs are left"
-}
-same_table() {
-  all_done "$1"
-  "$todbench" sweep collect "$1/s.toml" --quiet >/dev/null || { "$todbench" sweep status "$1/s.toml"; fail "$1: not all tasks have a result"; }
-  cmp serial/s.results/table.csv "$1/s.results/table.csv" || fail "$1: another table than that of one process"
-  echo "passed: $1"
-}
+jobs_left() { qstat; }
 
-sweep serial
-"$todbench" sweep run serial/s.toml --quiet >/dev/null
-"$todbench" sweep collect serial/s.toml --quiet >/dev/null
+serial_table
 
 sweep array
 submit array --chunk 2 --program "$todbench"
+all_done array
 same_table array
 
 # The program of the third element is stopped in the middle of a task, its lock taken; then the element is deleted.
 sweep deleted
-cat >stopped-program <<PROGRAM
-#!/bin/bash
-if [ "\$SGE_TASK_ID" = 3 ] && [ ! -e "$work/stopped" ]; then
-  "$todbench" "\$@" &
-  while kill -0 \$! 2>/dev/null; do
-    for lock in s.results/*/*.lock; do
-      if [ -f "\$lock" ] && [ "\$(sed -n 2p "\$lock")" = \$! ]; then
-        kill -STOP \$!
-        if [ -f "\$lock" ]; then touch "$work/stopped"; sleep 3600; fi
-        kill -CONT \$!
-      fi
-    done
-  done
-  wait
-  exit
-fi
-exec "$todbench" "\$@"
-PROGRAM
-chmod +x stopped-program
+stopping_program "[ \"\$SGE_TASK_ID\" = 3 ] && [ ! -e '$work/stopped' ]" "$work/deleted/s.results"
 submit deleted --chunk 2 --program "$work/stopped-program"
 for _ in $(seq 600); do [ -e stopped ] && break; sleep 0.1; done
 [ -e stopped ] || fail "no task was stopped in the third element"
@@ -133,5 +88,6 @@ qdel "$(tail -n 1 log/jobs | cut -d. -f1)" -t 3 >/dev/null
 all_done deleted
 "$todbench" sweep collect deleted/s.toml --quiet >/dev/null 2>&1 && fail "a table was made though a task has no result"
 submit deleted --chunk 2 --program "$work/stopped-program"
+all_done deleted
 same_table deleted
 echo "PASSED: an array, an element that was deleted and submitted again: one table"

@@ -4,6 +4,7 @@
 # Usage: slurm_test.sh TODBENCH. Exit 0: passed, 77: Slurm cannot run here (said why on stdout), 1: failed.
 set -eu
 todbench=$1
+. "$(dirname "$0")/one_table.sh"
 skip() { echo "SKIPPED: $*"; exit 77; }
 fail() { echo "FAILED: $*"; tail -n 20 "$work"/log/* 2>/dev/null || true; exit 1; }
 
@@ -79,69 +80,22 @@ done
 [ "$(sinfo -h -o '%T %D')" = "idle 2" ] || skip "the nodes do not come up: $(tail -n 1 "$work"/log/n1)"
 
 cd "$work"
-sweep() {
-  mkdir "$1"
-  cat >"$1/s.toml" <<'SWEEP'
-kind = "estimate"
-[base]
-accuracy = "draft"
-delta_t_k = [16.9, 1.93]
-[grid]
-netd_k = [0.05, 0.2]
-detector_um = [30, 42.5]
-[repeat]
-seeds = 2
-SWEEP
-}
-all_done() {
-  for _ in $(seq 600); do
-    [ -z "$(squeue -h -r)" ] && return 0
-    sleep 0.2
-  done
-  squeue
-  fail "$1: jobs are left"
-}
-same_table() {
-  all_done "$1"
-  "$todbench" sweep collect "$1/s.toml" --quiet >/dev/null || { "$todbench" sweep status "$1/s.toml"; fail "$1: not all tasks have a result"; }
-  cmp serial/s.results/table.csv "$1/s.results/table.csv" || fail "$1: another table than that of one process"
-  echo "passed: $1"
-}
+jobs_left() { squeue -h -r; }
 echo "--output=/dev/null" >site
 submit() { "$todbench" sweep submit "$1/s.toml" --engine slurm --options site --quiet "${@:2}"; }
 
-sweep serial
-"$todbench" sweep run serial/s.toml --quiet >/dev/null
-"$todbench" sweep collect serial/s.toml --quiet >/dev/null
+serial_table
 
 sweep array
 submit array 2>refusal && fail "an array of 8 elements was taken where 5 is the limit"
 grep -qi "array" refusal || fail "nobody said why the array was refused"
 submit array --chunk 2
+all_done array
 same_table array
 
 # On the second node a program is stopped in the middle of a task, its lock taken; then the node is lost.
 sweep lost-node
-cat >stopped-program <<PROGRAM
-#!/bin/bash
-if [ "\$(hostname)" = n2 ] && [ -z "\${SLURM_RESTART_COUNT:-}" ]; then
-  "$todbench" "\$@" &
-  while kill -0 \$! 2>/dev/null; do
-    for lock in $work/lost-node/s.results/*/*.lock; do
-      if [ -f "\$lock" ] && [ "\$(sed -n 2p "\$lock")" = \$! ] && [ "\$(sed -n 1p "\$lock")" = n2 ]; then
-        kill -STOP \$!
-        # Too late where its task has come to its end meanwhile.
-        if [ -f "\$lock" ]; then touch "$work/stopped"; sleep 3600; fi
-        kill -CONT \$!
-      fi
-    done
-  done
-  wait
-  exit
-fi
-exec "$todbench" "\$@"
-PROGRAM
-chmod +x stopped-program
+stopping_program '[ "$(hostname)" = n2 ] && [ -z "${SLURM_RESTART_COUNT:-}" ]' "$work/lost-node/s.results"
 submit lost-node --chunk 2 --program "$work/stopped-program"
 for _ in $(seq 300); do [ -e stopped ] && break; sleep 0.1; done
 [ -e stopped ] || fail "no task was stopped on the second node"
@@ -151,6 +105,7 @@ for _ in $(seq 300); do node_is_down && break; sleep 0.2; done
 node_is_down || scontrol update nodename=n2 state=down reason=killed
 # Slurm waits two minutes before it starts such a job again.
 for job in $(squeue -h -r -t PD -o %i); do scontrol update jobid="$job" starttime=now || true; done
+all_done lost-node
 same_table lost-node
 grep -q "requeue" log/slurmctld || fail "no element was requeued"
 
@@ -168,5 +123,6 @@ for job in $(squeue -h -r -o %i); do scontrol requeue "$job" || true; done
 for _ in $(seq 300); do [ -z "$(squeue -h -r -t R,CG -o %i)" ] && break; sleep 0.1; done
 # A node takes no job whose credential is not younger than the end of its first run, in whole seconds.
 for job in $(squeue -h -r -o %i); do scontrol update jobid="$job" starttime=now+2 || true; done
+all_done requeued
 same_table requeued
 echo "PASSED: an array, an array that is too long, a lost node, a requeue: one table"

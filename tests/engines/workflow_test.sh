@@ -5,25 +5,14 @@
 set -eu
 todbench=$1
 tool=$2
+. "$(dirname "$0")/one_table.sh"
 fail() { echo "FAILED: $*"; tail -n 20 "$work/log"; exit 1; }
 command -v "$tool" >/dev/null || { echo "SKIPPED: $tool is not installed (apt-get install $tool)"; exit 77; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 export HOME="$work"
-for way in serial workflow; do
-  mkdir "$work/$way"
-  cat >"$work/$way/s.toml" <<'SWEEP'
-kind = "estimate"
-[base]
-accuracy = "draft"
-delta_t_k = [16.9]
-[grid]
-netd_k = [0.05, 0.2]
-detector_um = [30, 42.5]
-[repeat]
-seeds = 2
-SWEEP
-done
+cd "$work"
+sweep workflow
 cat >"$work/program" <<PROGRAM
 #!/bin/sh
 case "\$*" in
@@ -33,7 +22,7 @@ echo "\$*" >>"$work/started"
 exec "$todbench" "\$@"
 PROGRAM
 chmod +x "$work/program"
-cd "$work/workflow"
+cd workflow
 case $tool in
   make) file=Makefile; run() { make -j 2 >"$work/log" 2>&1; } ;;
   snakemake) file=Snakefile; run() { snakemake --cores 2 --quiet >"$work/log" 2>&1; } ;;
@@ -44,7 +33,6 @@ run && fail "$tool did not say that a job failed"
 run || fail "$tool says $?"
 [ "$(wc -l <"$work/started")" -eq 4 ] || fail "jobs that were done were started again"
 cd "$work"
-"$todbench" sweep run serial/s.toml --quiet
-for way in serial workflow; do "$todbench" sweep collect "$way/s.toml" --quiet >/dev/null; done
-cmp serial/s.results/table.csv workflow/s.results/table.csv || fail "$tool differs from one process"
+serial_table
+same_table workflow
 echo "PASSED: $(tail -n +2 serial/s.results/table.csv | wc -l) rows, one table"
