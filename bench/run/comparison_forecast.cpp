@@ -15,9 +15,12 @@ std::optional<double> standard_error(const PsychometricFit& fit) {
   return std::log(*fit.ci95.high / *fit.ci95.low) / (2 * 1.96);
 }
 
-/// "62 %"; what rounds to all of them is "more than 99 %".
+/// From here on a probability rounds to 100 %, which none is.
+constexpr double nearly_certain = 0.995;
+
+/// "62 %"; what would round to all of them is "more than 99 %".
 std::string probability_text(double probability) {
-  return probability >= 0.995 ? "more than 99 %" : number_text(std::round(100 * probability)) + " %";
+  return probability >= nearly_certain ? "more than 99 %" : number_text(std::round(100 * probability)) + " %";
 }
 
 }  // namespace
@@ -51,7 +54,7 @@ ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& p
       number_text(outlook.trials_needed_a) + " trials per contrast (" + number_text(std::round(planned)) + " planned)";
   if (outlook.reaches_80_percent()) {
     return {outlook, "if camera and twin are equal, the comparison finds them equivalent within " + margin_text +
-                         " with a probability of " + (power.starts_with("more") ? "" : "at least ") + power +
+                         " with a probability of " + (outlook.power >= nearly_certain ? "" : "at least ") + power +
                          "; 80 % would need " + needed};
   }
   return {outlook, "warning: the plan can hardly show equivalence within " + margin_text +
