@@ -15,7 +15,7 @@ namespace todbench {
 
 namespace {
 
-constexpr std::array<std::string_view, 24> trial_columns{"presentation",
+constexpr std::array<std::string_view, 26> trial_columns{"presentation",
                                                          "plate",
                                                          "mounting",
                                                          "triangle",
@@ -38,10 +38,12 @@ constexpr std::array<std::string_view, 24> trial_columns{"presentation",
                                                          "since_nuc_s",
                                                          "saturated_pixels",
                                                          "probability_correct",
-                                                         "frames"};
+                                                         "frames",
+                                                         "centroid_x_px",
+                                                         "centroid_y_px"};
 
-/// Files of earlier versions end before saturated_pixels, or before probability_correct.
-constexpr std::array<std::size_t, 2> earlier_columns{21, 22};
+/// Files of earlier versions end before saturated_pixels, before probability_correct, or before centroid_x_px.
+constexpr std::array<std::size_t, 3> earlier_columns{21, 22, 24};
 
 Trial read_trial(FieldReader& fields, std::size_t columns) {
   Trial trial;
@@ -68,6 +70,11 @@ Trial read_trial(FieldReader& fields, std::size_t columns) {
     trial.probability_correct = fields.optional_probability();
     trial.frames = fields.count();
   }
+  if (columns > earlier_columns[2]) {
+    const auto x_px = fields.optional_number();
+    const auto y_px = x_px ? std::optional(fields.number()) : fields.optional_number();
+    if (x_px && y_px) trial.centroid = PlaceInPicture{*x_px, *y_px};
+  }
   return trial;
 }
 
@@ -92,6 +99,8 @@ std::string trial_line(const Trial& trial) {
   add(std::to_string(trial.saturated_pixels));
   add(trial.probability_correct ? number_text(*trial.probability_correct) : std::string());
   add(std::to_string(trial.frames));
+  add(trial.centroid ? number_text(trial.centroid->x_px) : std::string());
+  add(trial.centroid ? number_text(trial.centroid->y_px) : std::string());
   return line + "\n";
 }
 
@@ -104,6 +113,8 @@ bool all_finite(const Trial& trial) {
   for (const double score : trial.scores) {
     if (!std::isfinite(score)) return false;
   }
+  const PlaceInPicture place = trial.centroid.value_or(PlaceInPicture{});
+  if (!std::isfinite(place.x_px) || !std::isfinite(place.y_px)) return false;
   return true;
 }
 

@@ -30,7 +30,8 @@ class TrialsWriter {
 
 /// Reads what TrialsWriter wrote, every number exactly as it was. A since_nuc_s that is not known is an empty field.
 /// A file without its last columns is one of an earlier version: without saturated_pixels, which it did not count, they
-/// are 0; without probability_correct and frames there is no probability and one frame.
+/// are 0; without probability_correct and frames there is no probability and one frame; without its
+/// place in the picture a triangle has none.
 /// `invalid_input` "FILE:LINE: ..." for anything else than such a file.
 [[nodiscard]] Result<std::vector<Trial>> read_trials(const std::filesystem::path& file);
 

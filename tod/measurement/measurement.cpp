@@ -315,6 +315,7 @@ class Run {
         probabilities[i] += judged.answers.probability[static_cast<std::size_t>(t.apex)];
         if (k == 0) {
           Trial trial = first_answer(t, state, frame, judged.choice, window.phase);
+          trial.centroid = PlaceInPicture{place.x, place.y};
           trial.size_px = plate.size_px[i] / options_.judged_samples_per_pixel;
           trials.push_back(std::move(trial));
           patches.push_back(std::move(patch));

@@ -21,6 +21,12 @@ inline constexpr std::array all_answer_kinds{AnswerKind::binary, AnswerKind::gra
   return kind == AnswerKind::binary ? "binary" : "graded";
 }
 
+/// Where something is in the picture of the camera, in pixels from the centre of the first one.
+struct PlaceInPicture {
+  double x_px = 0, y_px = 0;
+  bool operator==(const PlaceInPicture&) const = default;
+};
+
 struct Trial {
   std::int64_t presentation = 0;  ///< counts states shown; trials of one presentation share frame and phase
   std::string plate;
@@ -44,6 +50,7 @@ struct Trial {
   /// observer adds itself, averaged over the frames. Nothing: only the answer is known.
   std::optional<double> probability_correct{};
   int frames = 1;  ///< successive good frames behind probability_correct; the answer is that to the first
+  std::optional<PlaceInPicture> centroid{};  ///< of the triangle; nothing: not said, as in earlier versions
 
   [[nodiscard]] bool correct() const { return truth == answer; }
   bool operator==(const Trial&) const = default;

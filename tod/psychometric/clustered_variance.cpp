@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <utility>
 
 namespace todbench {
 namespace {
@@ -70,7 +71,7 @@ double corrected(const Cluster& cluster, const Root& root) {
 template <typename Key>
 Sums sums_over(std::span<const AnswerScore> answers, const Root& root, const Key& key_of) {
   const Eigen::Index parameters = root.row.size();
-  std::map<int, Cluster> clusters;
+  std::map<decltype(key_of(answers.front())), Cluster> clusters;
   for (const AnswerScore& answer : answers) {
     auto [slot, is_new] =
         clusters.try_emplace(key_of(answer), Cluster{Vector::Zero(parameters), Matrix::Zero(parameters, parameters)});
@@ -111,14 +112,17 @@ ClusteredVariance clustered_variance(std::span<const AnswerScore> answers, std::
   int number = 0;
   const Sums single = sums_over(answers, *root, [&number](const AnswerScore&) { return number++; });
   const bool binomial = scatter == AnswerScatter::binomial;
+  const Sums triangles = sums_over(answers, *root, [](const AnswerScore& a) { return std::pair(a.set_up, a.place); });
+  const Sums detectors = sums_over(answers, *root, [](const AnswerScore& a) { return a.place; });
   if (!binomial && 1 / set_ups.concentration >= least_set_ups) {
     out.kind = IntervalKind::set_ups;
-    out.variance = std::max(set_ups.variance, least_share * single.variance);
+    const double shared = std::max(0.0, detectors.variance - triangles.variance);
+    out.variance = std::max(set_ups.variance, least_share * single.variance) + shared;
     out.degrees_of_freedom = freedom(set_ups);
     return out;
   }
   const Sums presentations = sums_over(answers, *root, [](const AnswerScore& a) { return a.presentation; });
-  const Sums places = sums_over(answers, *root, [](const AnswerScore& a) { return a.place; });
+  const Sums& places = binomial ? triangles : detectors;
   if (binomial && (presentations.clusters < 2) != (places.clusters < 2)) {
     const Sums& several = presentations.clusters < 2 ? places : presentations;
     out.variance = std::max(several.variance, root->variance);

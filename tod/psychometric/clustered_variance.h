@@ -21,8 +21,8 @@ struct AnswerScore {
   std::array<double, most_parameters> direction{};  ///< d mu / d parameter over sqrt(v)
   double residual = 0;                              ///< (answer - mu) / sqrt(v)
   int presentation = 0;                             ///< whole numbers of 0 or more
-  int place = 0;
-  int set_up = 0;  ///< of the plate and its mounting: a presentation and a place have one each
+  int place = 0;                                    ///< in the picture (picture_places.h)
+  int set_up = 0;                                   ///< of the plate and its mounting: a presentation has one
 };
 
 /// What is known of the scatter of single answers.
@@ -44,16 +44,19 @@ struct ClusteredVariance {
 /// correction CR2 of the clusters (Bell and McCaffrey 2002). It may be below the binomial variance where answers
 /// scatter less.
 ///
-/// Phases of one set-up are spread evenly from one start, contrast and registration are measured once in it, and its
-/// places look at the same detectors: set-ups hold everything that presentations and places have in common, and phases
-/// make the scatter over them much smaller than that over single answers. Less than a hundredth of the latter is not
-/// believed. From `least_set_ups` on they are the clusters. With fewer, presentations and places are clusters both
-/// ways, V_presentation + V_place - V_answer (Cameron, Gelbach and Miller 2011), but not below that of either alone:
-/// safe, and too long where evenly spread phases cancel.
+/// Phases of one set-up are spread evenly from one start, and contrast and registration are measured once in it:
+/// set-ups hold what presentations have in common, and phases make the scatter over them much smaller than that over
+/// single answers. Less than a hundredth of the latter is not believed. From `least_set_ups` on they are the clusters.
+/// Set-ups that put triangles before the same detectors share their fixed pattern: what answers of different set-ups
+/// have in common at one place in the picture is added, V_place - V_triangle, a triangle being what a set-up has at a
+/// place (both ways, Cameron, Gelbach and Miller 2011), and nothing where it is negative. With fewer set-ups,
+/// presentations and places are clusters both ways, V_presentation + V_place - V_answer, but not below that of either
+/// alone: safe, and too long where evenly spread phases cancel.
 ///
 /// Right and wrong answers scatter by chance far more than by what a set-up has in common, and a variance over eight
-/// set-ups scatters by a quarter itself: `binomial` ones have presentations and places as clusters both ways, however
-/// many set-ups there are, and at least the binomial variance. Where there is one cluster of a kind the other is used.
+/// set-ups scatters by a quarter itself: `binomial` ones have presentations and triangles as clusters both ways,
+/// however many set-ups there are, and at least the binomial variance. Where there is one cluster of a kind the other
+/// is used.
 ///
 /// Degrees of freedom: clusters less one, with (sum of shares)^2 / sum of squared shares of the information as their
 /// number (Satterthwaite 1946); both ways, those of the fewer ones.

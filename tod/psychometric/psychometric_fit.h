@@ -25,8 +25,8 @@ struct GradedAnswer {
   double size = 0;                 ///< > 0
   double probability_correct = 0;  ///< 0 to 1
   int presentation = 0;            ///< shares frame and phase with the others of this number; 0 or more
-  int place = 0;                   ///< shares detectors and their fixed pattern; 0 or more
-  int set_up = 0;                  ///< plate and mounting of presentation and place; 0 or more
+  int place = 0;                   ///< in the picture: shares detectors and their fixed pattern; 0 or more
+  int set_up = 0;                  ///< plate and mounting of the presentation; 0 or more
 };
 
 /// Both forms are Weibull functions with chance level 0.25 that pass through 0.75 at the threshold.

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "tod/psychometric/picture_places.h"
 #include "tod/psychometric/psychometric_clusters.h"
 
 namespace todbench {
@@ -223,17 +224,17 @@ std::vector<Trial> as_binary(std::span<const Trial> trials) {
 
 std::vector<GradedAnswer> graded_answers(std::span<const Trial> trials) {
   std::map<std::int64_t, int> presentations;
-  std::map<Place, int> places;
   std::map<std::pair<std::string, Mounting>, int> set_ups;
   std::vector<GradedAnswer> answers;
   const auto number = [](auto& numbers, const auto& key) {
     return numbers.emplace(key, static_cast<int>(numbers.size())).first->second;
   };
+  const std::vector<int> places = picture_places(trials);
   for (const Trial& trial : trials) {
     answers.push_back({.size = trial.size_mrad,
                        .probability_correct = trial.probability_correct.value_or(trial.correct() ? 1 : 0),
                        .presentation = number(presentations, trial.presentation),
-                       .place = number(places, place_of(trial)),
+                       .place = places[answers.size()],
                        .set_up = number(set_ups, std::pair(trial.plate, trial.mounting))});
   }
   return answers;

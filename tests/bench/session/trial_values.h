@@ -17,7 +17,7 @@ inline auto values_of(const Trial& t) {
   return std::make_tuple(t.presentation, t.plate, t.mounting, t.triangle, t.set_delta_t_k, t.delta_t_k, t.size_mm,
                          t.size_mrad, t.size_px, t.truth, t.answer, t.scores, t.phase_x_px, t.phase_y_px, t.frame,
                          t.device_time_ns, t.host_time_ns, t.since_nuc_s, t.saturated_pixels, t.probability_correct,
-                         t.frames);
+                         t.frames, t.centroid ? t.centroid->x_px : -1, t.centroid ? t.centroid->y_px : -1);
 }
 
 /// A presentation in which nothing is missing and no two numbers are the same.
@@ -65,6 +65,7 @@ inline std::vector<Trial> random_trials(int count) {
     t.saturated_pixels = i % 4 == 0 ? 0 : 100 * i;
     if (i % 5 != 0) t.probability_correct = i % 5 == 1 ? 1 : stream.uniform(draw++);
     t.frames = 1 + i % 3;
+    if (i % 4 != 1) t.centroid = PlaceInPicture{300 * stream.uniform(draw++), number()};
     trials.push_back(std::move(t));
   }
   return trials;

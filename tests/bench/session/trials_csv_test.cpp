@@ -52,7 +52,7 @@ TEST(TrialsCsv, TheHeaderStatesTheUnits) {
       testing::content_of(folder.path() / "t.csv"),
       "presentation,plate,mounting,triangle,set_delta_t_k,delta_t_k,size_mm,size_mrad,size_px,truth,answer,score_up,"
       "score_right,score_down,score_left,phase_x_px,phase_y_px,frame,device_time_ns,host_time_ns,since_nuc_s,saturated_"
-      "pixels,probability_correct,frames\n");
+      "pixels,probability_correct,frames,centroid_x_px,centroid_y_px\n");
 }
 
 TEST(TrialsCsv, AFileOfAnEarlierVersionEndsBeforeItsLastColumns) {
@@ -61,7 +61,7 @@ TEST(TrialsCsv, AFileOfAnEarlierVersionEndsBeforeItsLastColumns) {
   Result<TrialsWriter> writer = TrialsWriter::create(file);
   ASSERT_TRUE(writer) << writer.error().message;
   for (const Trial& trial : testing::random_trials(5)) ASSERT_TRUE(writer->append(trial));
-  for (const int left_out : {1, 2, 3, 4}) {
+  for (const int left_out : {1, 2, 3, 4, 5, 6}) {
     std::istringstream lines(testing::content_of(file));
     std::string earlier;
     for (std::string line; std::getline(lines, line);) {
@@ -71,7 +71,7 @@ TEST(TrialsCsv, AFileOfAnEarlierVersionEndsBeforeItsLastColumns) {
 
     const auto trials = read_trials(folder.write("earlier.csv", earlier));
 
-    if (left_out == 1 || left_out == 4) {
+    if (left_out == 1 || left_out == 3 || left_out == 6) {
       EXPECT_FALSE(trials) << "no version ended there";
       continue;
     }
@@ -79,9 +79,12 @@ TEST(TrialsCsv, AFileOfAnEarlierVersionEndsBeforeItsLastColumns) {
     ASSERT_EQ(trials->size(), 5u);
     for (std::size_t i = 0; i < trials->size(); ++i) {
       Trial expected = testing::random_trials(5)[i];
-      expected.probability_correct.reset();
-      expected.frames = 1;
-      if (left_out == 3) expected.saturated_pixels = 0;
+      expected.centroid.reset();
+      if (left_out > 2) {
+        expected.probability_correct.reset();
+        expected.frames = 1;
+      }
+      if (left_out > 4) expected.saturated_pixels = 0;
       EXPECT_EQ(testing::values_of((*trials)[i]), testing::values_of(expected)) << "trial " << i;
     }
   }
@@ -202,14 +205,14 @@ TEST(TrialsCsv, TheReaderNamesLineAndColumn) {
   };
 
   EXPECT_EQ(complaint(good), "");
-  EXPECT_THAT(complaint(good.substr(0, good.size() - 40)), HasSubstr("bad.csv:4: expected 24 fields as in the header"));
+  EXPECT_THAT(complaint(good.substr(0, good.size() - 40)), HasSubstr("bad.csv:4: expected 26 fields as in the header"));
   EXPECT_THAT(complaint(with("plate 0", "plate 0,x")),
-              HasSubstr("bad.csv:2: expected 24 fields as in the header, found 25"));
+              HasSubstr("bad.csv:2: expected 26 fields as in the header, found 27"));
   EXPECT_THAT(complaint(with("identity", "upside_down")), HasSubstr("bad.csv:2: column mounting: expected a mounting"));
   EXPECT_THAT(complaint(with("size_px", "size_pix")),
               HasSubstr("bad.csv:1: column 9: expected size_px, found 'size_pix'"));
-  EXPECT_THAT(complaint(good.substr(0, good.rfind(',')) + ",-1\n"),
-              HasSubstr("bad.csv:4: column frames: expected a whole number of 0 or more, found '-1'"));
+  EXPECT_THAT(complaint(good.substr(0, good.rfind(',')) + ",x\n"),
+              HasSubstr("bad.csv:4: column centroid_y_px: expected a finite number, found 'x'"));
   EXPECT_THAT(complaint(""), HasSubstr("bad.csv:1: the file is empty"));
 }
 

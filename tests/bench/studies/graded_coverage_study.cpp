@@ -1,6 +1,7 @@
 // Coverage of the true S75 over whole simulated runs, graded answers beside right and wrong ones of the same runs.
 // TODBENCH_STUDY_FOLDER: where runs are kept; what is there is not made again. TODBENCH_STUDY_RUNS: how many of each
-// design (600 and 200 without it). TODBENCH_STUDY_DESIGN: this one alone. Prints the tables of docs/uncertainty.md.
+// design (600 and 200 without it). TODBENCH_STUDY_DESIGN: this one alone. TODBENCH_STUDY_SHARE: "1/2", every second
+// run, for two processes at once. Prints the tables of docs/uncertainty.md.
 #include <cstdio>
 #include <cstdlib>
 
@@ -13,6 +14,7 @@ namespace {
 struct Studied {
   GradedDesign design;
   std::uint64_t runs = 200;
+  std::uint64_t pairs = 0;  ///< of the first runs: beside the twin by common phases, for paired_comparison_study
 };
 
 SensorSpec with(void (*change)(SensorSpec&)) {
@@ -29,7 +31,7 @@ Studied other_camera(const std::string& name, void (*change)(SensorSpec&)) {
 std::vector<Studied> designs() {
   const SensorSpec pattern = with([](SensorSpec& s) { s.fixed_pattern_k = 0.1; });
   const SensorSpec rounded = with([](SensorSpec& s) { s.kelvin_per_count = s.netd_k; });
-  return {{{.name = "demonstration"}, 600},
+  return {{default_design(), 600, 400},
           {{.name = "quarter", .phases = 3}},
           {{.name = "6 phases of 8 frames", .phases = 6, .frames = {8}}},
           {{.name = "demonstration by contrast", .phases = 6, .frames = {1, 2, 10}}},
@@ -47,14 +49,16 @@ TEST(GradedCoverage, OfTheTruthOverWholeRuns) {
   const char* kept = std::getenv("TODBENCH_STUDY_FOLDER");
   const char* asked = std::getenv("TODBENCH_STUDY_RUNS");
   const std::string folder = kept != nullptr ? kept : temporary.path().string();
-  GradedRecord record(folder + "/graded_runs.csv");
+  const StudyShare share = study_share();
+  GradedRecord record(folder + "/graded_runs.csv", share);
   std::printf("| design | contrast | estimator | runs | bias | scatter | stated | half-width | coverage | second |\n");
   const char* only = std::getenv("TODBENCH_STUDY_DESIGN");
-  for (const auto& [design, all] : designs()) {
+  for (const auto& [design, all, pairs] : designs()) {
     if (only != nullptr && design.name != only) continue;
     const std::uint64_t runs = asked != nullptr ? std::strtoull(asked, nullptr, 10) : all;
-    for (std::uint64_t seed = 1; seed <= runs; ++seed)
-      if (!record.has(design.name, seed)) record.append(results_of(design, seed));
+    DesignParts parts(design);
+    for (std::uint64_t seed = share.first; seed <= runs; seed += share.step)
+      if (!record.has(design.name, seed)) record.append(results_of(parts, seed, seed <= pairs));
     const auto truth = true_s75_mrad(design, {16.9, 1.93, 0.23}, 3);
     for (const double contrast : {16.9, 1.93, 0.23}) {
       for (const char* estimator : {"binary weibull", "binary twin-shape", "graded weibull", "graded twin-shape"}) {
@@ -79,8 +83,9 @@ TEST(DefaultCoverage, OfTheTruthOverWholeRuns) {
   const GradedDesign design{.name = "default"};
   GradedRecord record((kept != nullptr ? kept : temporary.path().string()) + std::string("/default_runs.csv"));
   const std::uint64_t runs = asked != nullptr ? std::strtoull(asked, nullptr, 10) : 600;
+  DesignParts parts(design);
   for (std::uint64_t seed = 1; seed <= runs; ++seed)
-    if (!record.has(design.name, seed)) record.append(default_results_of(design, seed));
+    if (!record.has(design.name, seed)) record.append(default_results_of(parts, seed));
   const auto truth = true_s75_mrad(design, {16.9, 1.93, 0.23}, 3);
   for (const double contrast : {16.9, 1.93, 0.23}) {
     for (const char* estimator : {"default weibull", "default"}) {

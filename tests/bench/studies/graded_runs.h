@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
@@ -14,8 +17,10 @@
 #include <vector>
 
 #include "bench/plan/plan_options.h"
+#include "bench/run/devices.h"
+#include "bench/run/functions_meanwhile.h"
 #include "bench/run/paired_comparison.h"
-#include "bench/run/simulated_set_up.h"
+#include "bench/run/simulated_responses.h"
 #include "bench/run/twin_shapes.h"
 #include "tod/plate/test_pattern.h"
 
@@ -30,6 +35,11 @@ struct GradedDesign {
   int microscan = 1;
   std::vector<double> delta_t_k{16.9, 1.93, 0.23};
 };
+
+/// What a plan of defaults shows with a camera of 50 Hz, and the frames that are chosen for it (with_frames()).
+inline GradedDesign default_design() {
+  return {.name = "default", .frames = {4, 8, 8}};
+}
 
 /// One contrast of one run by one estimator. Percentages are 100 ln of a ratio.
 struct GradedResult {
@@ -67,16 +77,49 @@ inline ExperimentInputs inputs_of(const Plan& plan, const SensorSpec& sensor) {
   return inputs;
 }
 
-/// The trials of a run, `simulate` without its session.
-inline std::vector<Trial> trials_of(const Plan& plan, const ExperimentInputs& inputs) {
-  auto set_up = simulated_set_up(plan, inputs, {}, {});
-  if (!set_up) {
-    ADD_FAILURE() << set_up.error().message;
-    return {};
+/// What the runs of a design have in common, made once: how the contrast estimate reads the sensor, and functions of
+/// the twin, each of 4000 draws of its own. Every function serves all runs of one remainder, a 25th of them.
+class DesignParts {
+ public:
+  static constexpr std::uint64_t functions = 25;
+
+  explicit DesignParts(GradedDesign design) : design_(std::move(design)) {}
+
+  [[nodiscard]] const GradedDesign& design() const { return design_; }
+
+  const std::map<std::string, double>& response(const SensorModel& model, const Plan& plan,
+                                                const ExperimentInputs& inputs, const MeasurementOptions& options) {
+    if (response_.empty()) response_ = simulated_responses(model, plan, inputs.plates, options, {}).value();
+    return response_;
   }
+
+  /// Of the twin, where a run saw the contrasts nearly as they were set.
+  TodCurve known(const TodCurve& curve, std::uint64_t seed) {
+    auto& tables = tables_[seed % functions];
+    if (tables.empty()) {
+      const Plan plan = plan_of(design_, 5'000'000 + seed % functions);
+      tables = twin_tables(plan, inputs_of(plan, design_.twin), std::nullopt, {}).value();
+    }
+    return known_functions(tables, curve);
+  }
+
+ private:
+  GradedDesign design_;
+  std::map<std::string, double> response_;
+  std::map<std::uint64_t, std::map<double, ProportionTable>> tables_;
+};
+
+/// The trials of a run, `simulate` without its session.
+inline std::vector<Trial> trials_of(const Plan& plan, const ExperimentInputs& inputs, DesignParts& parts) {
+  const auto model = std::make_shared<const SensorModel>(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
+  MeasurementOptions options = simulated_options(plan, inputs);
+  options.contrast_response = parts.response(*model, plan, inputs, options);
+  OpenedBench bench = simulated_bench(model, inputs.plates, plan.target.distance_m, {}, inputs.motion);
+  const auto schedule = make_schedule(plan, inputs.plates, inputs.sensor.ifov_mrad(), Side::simulated,
+                                      RandomStream(plan.seed, "schedule.simulated"), {});
   TemplateObserver observer(inputs.observer, triangle_alternatives());
-  auto result = measure(*set_up->bench.camera, *set_up->bench.target, observer, *set_up->schedule, set_up->options,
-                        *set_up->bench.host, MeasurementListener{}, {});
+  auto result =
+      measure(*bench.camera, *bench.target, observer, *schedule, options, *bench.host, MeasurementListener{}, {});
   if (!result || result->ended_by) ADD_FAILURE() << (result ? result->ended_by->message : result.error().message);
   return result ? result->trials : std::vector<Trial>{};
 }
@@ -93,79 +136,24 @@ inline void add_results(std::vector<GradedResult>& results, const GradedDesign& 
   }
 }
 
-/// The same answers as one bit each and graded, with a Weibull function and with that of the twin.
-inline std::vector<GradedResult> results_of(const GradedDesign& design, std::uint64_t seed) {
-  const Plan plan = plan_of(design, seed);
-  const ExperimentInputs camera = inputs_of(plan, design.camera), twin = inputs_of(plan, design.twin);
-  const std::vector<Trial> graded = trials_of(plan, camera);
-  std::vector<Trial> binary = graded;
-  for (Trial& trial : binary) trial.probability_correct.reset();
-  std::vector<GradedResult> results;
-  TodCurve known;  // of the graded answers: right and wrong ones have the same functions
-  for (const auto& [trials, kind] : {std::pair(&graded, "graded"), std::pair(&std::as_const(binary), "binary")}) {
-    const auto curve = tod_curve(*trials, {.with_posterior = false});
-    EXPECT_TRUE(curve) << design.name << " " << seed;
-    if (!curve) continue;
-    add_results(results, design, seed, std::string(kind) + " weibull", *curve);
-    TodCurve shaped = *curve;
-    std::map<double, double> shown;
-    for (const TodPoint& point : shaped.points) shown[point.set_delta_t_k] = point.delta_t_k;
-    const auto outcome = fit_twin_shapes(shaped, *trials, twin, {}, direct_options(shaped, twin, shown, seed, {}),
-                                         known.points.empty() ? nullptr : &known);
-    EXPECT_TRUE(outcome.notes.empty()) << outcome.notes.front();
-    add_results(results, design, seed, std::string(kind) + " twin-shape", shaped);
-    if (known.points.empty()) known = shaped;
-  }
-  return results;
-}
-
-/// What a plan with right and wrong answers and without `estimator` makes of the same run, one frame each, beside what
-/// a Weibull function does.
-inline std::vector<GradedResult> default_results_of(const GradedDesign& design, std::uint64_t seed) {
-  Plan plan = plan_of(design, seed);
-  plan.schedule = {};
-  plan.schedule.answers = AnswersChoice::binary;
-  plan.fit = {};
-  const ExperimentInputs camera = inputs_of(plan, design.camera), twin = inputs_of(plan, design.twin);
-  const std::vector<Trial> trials = trials_of(plan, camera);
-  std::vector<GradedResult> results;
-  auto curve = tod_curve(trials, {.with_posterior = false});
-  EXPECT_TRUE(curve) << design.name << " " << seed;
-  if (!curve) return results;
-  add_results(results, design, seed, "default weibull", *curve);
+/// Fits a curve with the functions of the twin, as a session does.
+inline void give_functions(TodCurve& curve, const std::vector<Trial>& trials, const ExperimentInputs& twin,
+                           std::uint64_t seed, DesignParts& parts) {
   std::map<double, double> shown;
-  for (const TodPoint& point : curve->points) shown[point.set_delta_t_k] = point.delta_t_k;
-  const auto outcome = fit_twin_shapes(*curve, trials, twin, {}, direct_options(*curve, twin, shown, seed, {}));
+  for (const TodPoint& point : curve.points) shown[point.set_delta_t_k] = point.delta_t_k;
+  const TodCurve known = parts.known(curve, seed);
+  const auto outcome = fit_twin_shapes(curve, trials, twin, {}, direct_options(curve, twin, shown, seed, {}), &known);
   EXPECT_TRUE(outcome.notes.empty()) << outcome.notes.front();
-  add_results(results, design, seed, "default", *curve);
-  return results;
 }
 
-/// Camera and twin by common phases, beside two estimators of the same run that know nothing of them. In a row of
-/// "paired" the size is the ratio of acuities camera / twin with its interval, and `clusters` its degrees of freedom
-/// and one.
-inline std::vector<GradedResult> paired_results_of(const GradedDesign& design, std::uint64_t seed) {
-  const Plan plan = plan_of(design, seed);
-  const ExperimentInputs camera = inputs_of(plan, design.camera), twin = inputs_of(plan, design.twin);
-  const std::vector<Trial> graded = trials_of(plan, camera);
-  std::vector<Trial> binary = graded;
-  for (Trial& trial : binary) trial.probability_correct.reset();
-  std::vector<GradedResult> results;
-  if (const auto curve = tod_curve(binary, {.with_posterior = false}))
-    add_results(results, design, seed, "binary weibull", *curve);
-  auto curve = tod_curve(graded, {.with_posterior = false});
-  EXPECT_TRUE(curve) << design.name << " " << seed;
-  if (!curve) return results;
-  std::map<double, double> shown;
-  for (const TodPoint& point : curve->points) shown[point.set_delta_t_k] = point.delta_t_k;
-  const auto shaped = fit_twin_shapes(*curve, graded, twin, {}, direct_options(*curve, twin, shown, seed, {}));
-  EXPECT_TRUE(shaped.notes.empty()) << shaped.notes.front();
-  add_results(results, design, seed, "graded twin-shape", *curve);
+/// Camera and twin by common phases. In a row of "paired" the size is the ratio of acuities camera / twin with its
+/// interval, and `clusters` its degrees of freedom and one.
+inline void add_pairs(std::vector<GradedResult>& results, const GradedDesign& design, std::uint64_t seed,
+                      const TodCurve& curve, const std::vector<Trial>& trials, const ExperimentInputs& twin) {
   Comparison comparison;
-  for (const TodPoint& point : curve->points)
+  for (const TodPoint& point : curve.points)
     comparison.points.push_back({.set_delta_t_k = point.set_delta_t_k, .margin_percent = 3});
-  const auto outcome =
-      add_paired_ratios(comparison, {*curve, graded, {}}, twin, paired_options(twin, {}, plan.seed, {}));
+  const auto outcome = add_paired_ratios(comparison, {curve, trials, {}}, twin, paired_options(twin, {}, seed, {}));
   EXPECT_TRUE(outcome.notes.empty()) << outcome.notes.front();
   for (const ComparisonPoint& point : comparison.points) {
     if (!point.paired) continue;
@@ -173,6 +161,45 @@ inline std::vector<GradedResult> paired_results_of(const GradedDesign& design, s
                        *point.paired->ci95.high, 100 * point.paired->se_ln_ratio, point.paired->degrees_of_freedom + 1,
                        point.paired->twin_share});
   }
+}
+
+/// The same answers as one bit each and graded, with a Weibull function and with that of the twin; with `pairs` beside
+/// the twin by common phases, too.
+inline std::vector<GradedResult> results_of(DesignParts& parts, std::uint64_t seed, bool pairs = false) {
+  const GradedDesign& design = parts.design();
+  const Plan plan = plan_of(design, seed);
+  const ExperimentInputs camera = inputs_of(plan, design.camera), twin = inputs_of(plan, design.twin);
+  const std::vector<Trial> graded = trials_of(plan, camera, parts), binary = as_binary(graded);
+  std::vector<GradedResult> results;
+  for (const auto& [trials, kind] : {std::pair(&graded, "graded"), std::pair(&binary, "binary")}) {
+    auto curve = tod_curve(*trials, {.with_posterior = false});
+    EXPECT_TRUE(curve) << design.name << " " << seed;
+    if (!curve) continue;
+    add_results(results, design, seed, std::string(kind) + " weibull", *curve);
+    give_functions(*curve, *trials, twin, seed, parts);
+    add_results(results, design, seed, std::string(kind) + " twin-shape", *curve);
+    if (pairs && trials == &graded) add_pairs(results, design, seed, *curve, graded, twin);
+  }
+  return results;
+}
+
+/// What a plan with right and wrong answers and without `estimator` makes of the same run, one frame each, beside what
+/// a Weibull function does.
+inline std::vector<GradedResult> default_results_of(DesignParts& parts, std::uint64_t seed) {
+  const GradedDesign& design = parts.design();
+  Plan plan = plan_of(design, seed);
+  plan.schedule = {};
+  plan.schedule.answers = AnswersChoice::binary;
+  plan.fit = {};
+  const ExperimentInputs camera = inputs_of(plan, design.camera), twin = inputs_of(plan, design.twin);
+  const std::vector<Trial> trials = trials_of(plan, camera, parts);
+  std::vector<GradedResult> results;
+  auto curve = tod_curve(trials, {.with_posterior = false});
+  EXPECT_TRUE(curve) << design.name << " " << seed;
+  if (!curve) return results;
+  add_results(results, design, seed, "default weibull", *curve);
+  give_functions(*curve, trials, twin, seed, parts);
+  add_results(results, design, seed, "default", *curve);
   return results;
 }
 
@@ -198,29 +225,32 @@ inline std::map<double, double> true_s75_mrad(const GradedDesign& design, const 
   return truth;
 }
 
-/// Rows of a study in a file, so that it can be resumed.
+/// Of several processes that make the runs of a study together: this one makes every `step`-th, from `first` on.
+struct StudyShare {
+  std::uint64_t first = 1, step = 1;
+};
+
+/// TODBENCH_STUDY_SHARE, "2/3" for the second of three.
+inline StudyShare study_share() {
+  StudyShare share;
+  const char* text = std::getenv("TODBENCH_STUDY_SHARE");
+  char slash = 0;
+  if (text != nullptr) std::istringstream(text) >> share.first >> slash >> share.step;
+  return share;
+}
+
+/// Rows of a study in a file, so that it can be resumed. A share has a file of its own and knows those of the others.
 class GradedRecord {
  public:
-  explicit GradedRecord(std::string file) : file_(std::move(file)) {
-    std::ifstream in(file_);
-    std::string line;
-    while (std::getline(in, line)) {
-      std::istringstream fields(line);
-      GradedResult row;
-      std::getline(fields, row.design, ',');
-      std::string text;
-      std::getline(fields, text, ',');
-      row.seed = std::stoull(text);
-      std::getline(fields, text, ',');
-      row.delta_t_k = std::stod(text);
-      std::getline(fields, row.estimator, ',');
-      for (double* value :
-           {&row.s75_mrad, &row.low_mrad, &row.high_mrad, &row.se_percent, &row.clusters, &row.slope_fitted}) {
-        std::getline(fields, text, ',');
-        *value = std::stod(text);
-      }
-      rows_.push_back(std::move(row));
+  explicit GradedRecord(const std::filesystem::path& file, const StudyShare& share = {}) : file_(file) {
+    if (share.step > 1) file_.replace_extension("." + std::to_string(share.first) + file.extension().string());
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(file.parent_path())) {
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with(file.stem().string() + ".")) files.push_back(entry.path());
     }
+    std::ranges::sort(files);
+    for (const auto& one : files) read(one);
     for (const GradedResult& row : rows_) done_.insert({row.design, row.seed});
   }
 
@@ -240,7 +270,29 @@ class GradedRecord {
   }
 
  private:
-  std::string file_;
+  void read(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    std::string line;
+    while (std::getline(in, line)) {
+      std::istringstream fields(line);
+      GradedResult row;
+      std::getline(fields, row.design, ',');
+      std::string text;
+      std::getline(fields, text, ',');
+      row.seed = std::stoull(text);
+      std::getline(fields, text, ',');
+      row.delta_t_k = std::stod(text);
+      std::getline(fields, row.estimator, ',');
+      for (double* value :
+           {&row.s75_mrad, &row.low_mrad, &row.high_mrad, &row.se_percent, &row.clusters, &row.slope_fitted}) {
+        std::getline(fields, text, ',');
+        *value = std::stod(text);
+      }
+      rows_.push_back(std::move(row));
+    }
+  }
+
+  std::filesystem::path file_;
   std::vector<GradedResult> rows_;
   std::set<std::pair<std::string, std::uint64_t>> done_;
 };

@@ -11,8 +11,9 @@ const GradedDesign& short_pairs() {
 
 TEST(PairedComparison, IsNarrowerThanTwoThresholdsAndHoldsTheTruth) {
   std::vector<GradedResult> rows;
+  DesignParts parts(short_pairs());
   for (const std::uint64_t seed : {911, 912})
-    for (const GradedResult& row : paired_results_of(short_pairs(), seed)) rows.push_back(row);
+    for (const GradedResult& row : results_of(parts, seed, true)) rows.push_back(row);
 
   const PairedSummary s = paired_summary(rows, "short pairs", 1.93, 1, 3);
 
@@ -43,7 +44,8 @@ TEST(PairedComparison, SharesNoNoiseWithASimulatedCameraOfTheSameSeed) {
   design.delta_t_k = {0.23};
   const Plan plan = plan_of(design, 913);
   const ExperimentInputs inputs = inputs_of(plan, design.camera);
-  const std::vector<Trial> trials = trials_of(plan, inputs);
+  DesignParts parts(design);
+  const std::vector<Trial> trials = trials_of(plan, inputs, parts);
   ASSERT_EQ(trials.size(), 320u);
   TemplateObserver observer(inputs.observer, triangle_alternatives());
   const auto answers_of = [&](std::uint64_t seed, int draws) {

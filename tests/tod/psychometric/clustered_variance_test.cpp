@@ -118,22 +118,57 @@ TEST(ClusteredVariance, OfSetUpsHoldsThatOfTheMeanWhateverTheyHaveInCommon) {
   }
 }
 
+/// Eight set-ups put triangles before the same detectors, whose pattern favours or hinders all that is shown there.
+TEST(ClusteredVariance, OfSetUpsHasWhatTheyShareAtOnePlaceInThePicture) {
+  constexpr int tables = 800, set_ups = 8, presentations = 4, places = 20, n = set_ups * presentations * places;
+  for (const double pattern : {0.0, 0.25}) {
+    double mean_variance = 0, actual = 0, apart = 0;
+    for (int t = 0; t < tables; ++t) {
+      const RandomStream stream(static_cast<std::uint64_t>(t), "detectors");
+      std::vector<AnswerScore> answers;
+      double mean = 0;
+      for (int k = 0; k < n; ++k) {
+        const int set_up = k / (presentations * places), place = k % places;
+        const double value = static_cast<double>(stream.sub(0).normal(static_cast<std::uint64_t>(k))) +
+                             pattern * static_cast<double>(stream.sub(1).normal(static_cast<std::uint64_t>(place)));
+        answers.push_back(
+            {.direction = {1}, .residual = value, .presentation = k / places, .place = place, .set_up = set_up});
+        mean += value / n;
+      }
+      for (AnswerScore& answer : answers) answer.residual -= mean;
+      mean_variance += clustered_variance(answers, 1, 0).variance / tables;
+      actual += squares(mean) / tables;
+      // The same triangles, each before detectors of its own.
+      for (AnswerScore& answer : answers) answer.place += places * answer.set_up;
+      apart += clustered_variance(answers, 1, 0).variance / tables;
+    }
+    // Never shorter: without a pattern by what chance shows of one, a tenth of the variance.
+    EXPECT_GT(mean_variance / actual, 1 - 4 * std::sqrt(2.0 / tables)) << pattern;
+    EXPECT_LT(mean_variance / actual, 1.3) << pattern;
+    if (pattern > 0) {
+      EXPECT_LT(apart, 0.5 * actual) << "detectors of their own hide what set-ups share";
+    }
+  }
+}
+
 TEST(ClusteredVariance, OfRightAndWrongAnswersIsNotBelowThatOfChance) {
-  // Residuals that cancel within each presentation and place: over clusters there is no scatter at all.
+  // Residuals that cancel within each presentation and triangle: over clusters there is no scatter at all.
   std::vector<AnswerScore> answers;
-  for (int i = 0; i < 8; ++i)
-    for (int j = 0; j < 8; ++j)
-      answers.push_back(
-          {.direction = {1}, .residual = (i + j) % 2 == 0 ? 1.0 : -1.0, .presentation = i, .place = j, .set_up = i});
+  for (int i = 0; i < 16; ++i) {
+    for (int j = 0; j < 8; ++j) {
+      const double residual = (i + j) % 2 == 0 ? 1 : -1;
+      answers.push_back({.direction = {1}, .residual = residual, .presentation = i, .place = j, .set_up = i / 2});
+    }
+  }
 
   const ClusteredVariance graded = clustered_variance(answers, 1, 0);
   const ClusteredVariance binary = clustered_variance(answers, 1, 0, AnswerScatter::binomial);
 
   EXPECT_EQ(graded.kind, IntervalKind::set_ups);
-  EXPECT_LT(graded.variance, 0.02 / 64);
+  EXPECT_LT(graded.variance, 0.02 / 128);
   EXPECT_EQ(binary.kind, IntervalKind::two_way);
-  EXPECT_DOUBLE_EQ(binary.variance, 1.0 / 64);
-  EXPECT_DOUBLE_EQ(binary.degrees_of_freedom, 7);
+  EXPECT_DOUBLE_EQ(binary.variance, 1.0 / 128);
+  EXPECT_DOUBLE_EQ(binary.degrees_of_freedom, 15);
 }
 
 TEST(ClusteredVariance, OfOnePresentationIsThatOverPlaces) {
