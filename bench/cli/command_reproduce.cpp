@@ -32,6 +32,8 @@ Json json_of(const Reproduction& r) {
                        {"published_value", json_number(f.published_value)},
                        {"value", json_number(f.value)},
                        {"ci95", json_interval(f.ci95)},
+                       {"graded_value", json_number(f.graded_value)},
+                       {"graded_ci95", json_interval(f.graded_ci95)},
                        {"remark", f.remark}});
   }
   for (const auto& t : r.thresholds) {
@@ -40,7 +42,10 @@ Json json_of(const Reproduction& r) {
                           {"delta_t_k", t.delta_t_k},
                           {"acuity_per_mrad", json_number(t.acuity_per_mrad)},
                           {"acuity_ci95_per_mrad", json_interval(t.ci95)},
-                          {"method", t.method}});
+                          {"method", t.method},
+                          {"graded_acuity_per_mrad", json_number(t.graded_acuity_per_mrad)},
+                          {"graded_acuity_ci95_per_mrad", json_interval(t.graded_ci95)},
+                          {"graded_method", t.graded_method.empty() ? Json() : Json(t.graded_method)}});
   }
   for (const auto& range : r.ranges) {
     ranges.push_back({{"sensor", range.sensor},

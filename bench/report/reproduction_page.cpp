@@ -18,22 +18,28 @@ bool among(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-RichText ours(const ReproducedFigure& figure) {
-  if (!figure.value) return missing("not found");
-  const int decimals = percentage(figure) ? 0 : std::min(1, decimals_for(figure.value, figure.ci95));
-  std::string text = shown(*figure.value, decimals);
-  if (figure.kind == FigureKind::change && *figure.value > 0) text.insert(0, 1, '+');
-  if (figure.ci95.low && figure.ci95.high)
-    text += " [" + shown(*figure.ci95.low, decimals) + ", " + shown(*figure.ci95.high, decimals) + "]";
+RichText in_its_unit(const ReproducedFigure& figure, double value, const Interval& ci95) {
+  const int decimals = percentage(figure) ? 0 : std::min(1, decimals_for(value, ci95));
+  std::string text = shown(value, decimals);
+  if (figure.kind == FigureKind::change && value > 0) text.insert(0, 1, '+');
+  if (ci95.low && ci95.high) text += " [" + shown(*ci95.low, decimals) + ", " + shown(*ci95.high, decimals) + "]";
   return unbroken(text + " " + figure.unit);
+}
+
+RichText ours(const ReproducedFigure& figure) {
+  return figure.value ? in_its_unit(figure, *figure.value, figure.ci95) : missing("not found");
+}
+
+RichText graded(const ReproducedFigure& figure) {
+  return figure.graded_value ? in_its_unit(figure, *figure.graded_value, figure.graded_ci95) : plain("");
 }
 
 Section figures_section(const Reproduction& reproduction) {
   Table rows;
-  rows.header = {"Quantity", "Published", "Here, 95 %", "Difference", "Why"};
+  rows.header = {"Quantity", "Published", "Here, 95 %", "By graded answers, 95 %", "Difference", "Why"};
   for (const auto& figure : reproduction.figures) {
     rows.rows.push_back({plain(figure.quantity), text_or_missing(figure.published, "left open in the paper"),
-                         ours(figure), plain(difference_in_words(figure)), plain(figure.remark)});
+                         ours(figure), graded(figure), plain(difference_in_words(figure)), plain(figure.remark)});
   }
   return {"Published beside ours", {std::move(rows)}};
 }
@@ -119,6 +125,9 @@ Section thresholds_section(const Reproduction& reproduction) {
   for (const auto& t : reproduction.thresholds) {
     rows.rows.push_back({plain(t.sensor), plain(t.observer), plain(stated(t.delta_t_k)),
                          unbroken(with_interval(t.acuity_per_mrad, t.ci95)), plain(t.method)});
+    if (!t.graded_acuity_per_mrad) continue;
+    rows.rows.push_back({plain(t.sensor), plain(t.observer), plain(stated(t.delta_t_k)),
+                         unbroken(with_interval(t.graded_acuity_per_mrad, t.graded_ci95)), plain(t.graded_method)});
   }
   return {"All thresholds", {std::move(rows)}};
 }

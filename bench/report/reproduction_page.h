@@ -18,6 +18,10 @@ struct ReproducedThreshold {
   std::optional<double> acuity_per_mrad;
   Interval ci95;
   std::string method;  ///< how it was found
+  /// Of a camera the same from graded answers; nothing: there are none.
+  std::optional<double> graded_acuity_per_mrad{};
+  Interval graded_ci95{};
+  std::string graded_method{};
 };
 
 /// What a figure is: it decides how differences are said.
@@ -36,6 +40,9 @@ struct ReproducedFigure {
   std::optional<double> value;
   Interval ci95;
   std::string remark;  ///< why it differs, or what it depends on
+  /// The same from the graded answers of a camera; nothing: none of its thresholds has any.
+  std::optional<double> graded_value{};
+  Interval graded_ci95{};
 };
 
 /// One identification curve.

@@ -16,20 +16,40 @@ double graded_freedom(const GradedDesignFigures& design) {
   return std::max(3.0, 0.5 * design.presentations - 1);
 }
 
+/// The part that noise with this share of what decides has in the variance of an answer at the threshold.
+double part_of_answers(double share) {
+  constexpr double p = 0.75, seen = 2.0 / 3;  // p = 1/4 + 3/4 seen
+  const double z = distribution::quantile(distribution::Normal(), seen);
+  const double rho = std::clamp(share, 0.0, 1.0);
+  // Phi2(z, z; rho) = Phi(z) - 2 T(z, sqrt((1 - rho) / (1 + rho))) (Owen 1956).
+  const double both = seen - 2 * boost::math::owens_t(z, std::sqrt((1 - rho) / (1 + rho)));
+  return 0.75 * 0.75 * (both - seen * seen) / (p * (1 - p));
+}
+
+double phases_of(const GradedDesignFigures& design) {
+  return std::max(1.0, static_cast<double>(design.presentations) / design.set_ups);
+}
+
+/// Presentations of a triangle that see the same pattern, and triangles of other set-ups that do: 1 or more.
+double answers_of_a_pattern(const GradedDesignFigures& design) {
+  constexpr double of_other_set_ups = 1.5, moved_pitch = 1.9;
+  const double alike = std::exp(-std::pow(moved_pitch / design.size_pitch, 2));
+  return std::max(1.0, phases_of(design) * of_other_set_ups * alike);
+}
+
 }  // namespace
 
 double graded_variance_ratio(const GradedDesignFigures& design) {
-  constexpr double p = 0.75, seen = 2.0 / 3;  // p = 1/4 + 3/4 seen
-  const double z = distribution::quantile(distribution::Normal(), seen);
-  const double share = std::clamp(design.sensor_share, 0.0, 1.0);
-  // Phi2(z, z; rho) = Phi(z) - 2 T(z, sqrt((1 - rho) / (1 + rho))) (Owen 1956).
-  const double both = seen - 2 * boost::math::owens_t(z, std::sqrt((1 - share) / (1 + share)));
-  const double of_sensor = 0.75 * 0.75 * (both - seen * seen) / (p * (1 - p));
+  const double of_sensor = part_of_answers(design.sensor_share), of_pattern = part_of_answers(design.pattern_share);
   // Evenly spread phases leave a variance that falls with their square, that of answers falls with their number.
-  const double phases = std::max(1.0, static_cast<double>(design.presentations) / design.set_ups);
-  const double left = design.set_ups >= cancelling_set_ups ? std::min(0.15, 0.048 / phases) : 0.15;
+  const double left = design.set_ups >= cancelling_set_ups ? std::min(0.15, 0.048 / phases_of(design)) : 0.15;
   const double frames = design.frames, draws = design.draws;
-  return of_sensor / frames + (1 - of_sensor) / (frames * draws) + left;
+  return (of_sensor - of_pattern) / frames + (1 - of_sensor) / (frames * draws) + left +
+         of_pattern * answers_of_a_pattern(design);
+}
+
+double pattern_inflation(const GradedDesignFigures& design) {
+  return 1 + part_of_answers(design.pattern_share) * (answers_of_a_pattern(design) - 1);
 }
 
 int cheapest_frames(GradedDesignFigures design, double single_s, double frame_s) {

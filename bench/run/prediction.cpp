@@ -40,11 +40,20 @@ std::vector<Level> levels_of(const Plan& plan, const std::vector<TargetPlate>& p
   return levels;
 }
 
-/// Of the noise that decides an answer at a contrast, in variance: what the sensor has and the observer does not make.
-double sensor_share(const TemplateObserverSpec& observer, double q_eff) {
-  const double own = observer.internal_noise * observer.internal_noise;
+/// Of the noise that decides an answer at a contrast, in variance.
+struct NoiseShares {
+  double sensor = 0;   ///< what the sensor has and the observer does not make
+  double pattern = 0;  ///< of it the fixed pattern, which is not in q_eff
+};
+
+NoiseShares noise_shares(const ExperimentInputs& inputs, const ContrastOutlook& outlook) {
+  const TemplateObserverSpec& observer = inputs.observer;
+  const double white = outlook.q_eff * outlook.q_eff, own = observer.internal_noise * observer.internal_noise;
   const double factor = observer.sensor_noise_factor * observer.sensor_noise_factor;
-  return std::max(0.0, q_eff * q_eff - own) / factor / (q_eff * q_eff);
+  const double pattern =
+      std::pow(inputs.sensor.samples_per_pitch() * inputs.sensor.fixed_pattern_k / outlook.delta_t_k, 2);
+  const double all = white + pattern;
+  return {(std::max(0.0, white - own) / factor + pattern) / all, pattern / all};
 }
 
 /// Relative standard error of the threshold of a table of proportions (needed_draws(), twin_shapes.h), for answers
@@ -53,9 +62,13 @@ double se_of_shape(const Accuracy& accuracy, double q_eff, std::optional<double>
   return (0.046 + 0.285 * q_eff) / std::sqrt(draws_of_twin_shape(se_ln_threshold, accuracy));
 }
 
-GradedDesignFigures graded_design(const Plan& plan, const ExperimentInputs& inputs, double q_eff, int frames) {
+GradedDesignFigures graded_design(const Plan& plan, const ExperimentInputs& inputs, const ContrastOutlook& outlook,
+                                  int frames) {
+  const NoiseShares shares = noise_shares(inputs, outlook);
   const auto set_ups = static_cast<int>(inputs.plates.size() * plan.target.mountings.size());
-  return {.sensor_share = sensor_share(inputs.observer, q_eff),
+  return {.sensor_share = shares.sensor,
+          .pattern_share = shares.pattern,
+          .size_pitch = outlook.s75_pitch,
           .frames = frames,
           .draws = MeasurementOptions::graded_draws,
           .set_ups = set_ups,
@@ -67,10 +80,19 @@ double graded_half_width(const Plan& plan, const ExperimentInputs& inputs, const
                          double binary_se) {
   const int frames = chosen_answers(plan, inputs.sensor, outlook.delta_t_k).frames;
   const double q_eff = outlook.q_eff;
-  const GradedDesignFigures design = graded_design(plan, inputs, q_eff, frames);
+  const GradedDesignFigures design = graded_design(plan, inputs, outlook, frames);
   const double se = std::hypot(binary_se * std::sqrt(graded_variance_ratio(design)),
                                se_of_shape(inputs.accuracy, q_eff, std::nullopt));
   return graded_interval_factor(design) * se;
+}
+
+/// The same of right and wrong answers.
+double binary_half_width(const Plan& plan, const ExperimentInputs& inputs, const ContrastOutlook& outlook,
+                         double binary_se) {
+  const bool by_twin = chosen_estimator(plan, inputs.sensor).estimator == FitEstimator::twin_shape;
+  const double of_shape = by_twin ? se_of_shape(inputs.accuracy, outlook.q_eff, binary_se) : 0;
+  const double inflation = pattern_inflation(graded_design(plan, inputs, outlook, 1));
+  return likely_excess * 1.96 * std::hypot(binary_se * std::sqrt(inflation), of_shape);
 }
 
 std::optional<double> uncertainty_percent(const Plan& plan, const ExperimentInputs& inputs,
@@ -80,11 +102,9 @@ std::optional<double> uncertainty_percent(const Plan& plan, const ExperimentInpu
                                 plan.fit.lapse.value_or(0.01));
   const auto fit = expected_fit(design, fit_options(plan));
   if (!fit) return std::nullopt;
-  const bool by_twin = chosen_estimator(plan, inputs.sensor).estimator == FitEstimator::twin_shape;
-  const double of_shape = by_twin ? se_of_shape(inputs.accuracy, outlook.q_eff, fit->se_ln_threshold) : 0;
-  const double half = chosen_answers(plan, inputs.sensor).kind == AnswerKind::graded
-                          ? graded_half_width(plan, inputs, outlook, fit->se_ln_threshold)
-                          : likely_excess * 1.96 * std::hypot(fit->se_ln_threshold, of_shape);
+  const bool graded = chosen_answers(plan, inputs.sensor).kind == AnswerKind::graded;
+  const double half = graded ? graded_half_width(plan, inputs, outlook, fit->se_ln_threshold)
+                             : binary_half_width(plan, inputs, outlook, fit->se_ln_threshold);
   return 100 * std::expm1(half);
 }
 
@@ -149,7 +169,7 @@ Plan with_frames(Plan plan, const ExperimentInputs& inputs) {
     chosen.push_back(chosen_answers(plan, inputs.sensor, delta_t_k).frames);
     const auto outlook = std::ranges::find(inputs.outlooks, delta_t_k, &ContrastOutlook::delta_t_k);
     if (frames_at(plan, delta_t_k) == 0 && single_s > 0 && rate_hz > 0 && outlook != inputs.outlooks.end())
-      chosen.back() = cheapest_frames(graded_design(plan, inputs, outlook->q_eff, 1), single_s, 1 / rate_hz);
+      chosen.back() = cheapest_frames(graded_design(plan, inputs, *outlook, 1), single_s, 1 / rate_hz);
   }
   const bool same = std::ranges::all_of(chosen, [&](int n) { return n == chosen[0]; });
   frames = same && !chosen.empty() ? std::vector<int>{chosen[0]} : chosen;

@@ -16,6 +16,7 @@ namespace {
 std::vector<Trial> in_columns_of(std::vector<Trial> trials, std::string_view header) {
   for (Trial& trial : trials) {
     if (header.find("saturated_pixels") == std::string_view::npos) trial.saturated_pixels = 0;
+    if (header.find("centroid_x_px") == std::string_view::npos) trial.centroid.reset();
     if (header.find("probability_correct") != std::string_view::npos) continue;
     trial.probability_correct.reset();
     trial.frames = 1;
@@ -59,6 +60,17 @@ Json fits_of(TodCurve curve) {
   return curve_record(curve);
 }
 
+/// Whether the intervals of a session were made by the same rule: graded answers whose trials do not say where they were
+/// in the picture have intervals without what set-ups share there.
+Result<bool> comparable_fits(const std::filesystem::path& session, const TodCurve& curve) {
+  const bool of_set_ups = std::ranges::any_of(
+      curve.points, [](const TodPoint& point) { return point.fit.interval == IntervalKind::set_ups; });
+  if (!of_set_ups) return true;
+  const auto trials = read_trials(session / "trials.csv");
+  if (!trials) return tl::unexpected(trials.error());
+  return std::ranges::all_of(*trials, [](const Trial& trial) { return trial.centroid.has_value(); });
+}
+
 }  // namespace
 
 Result<ReplayOutcome> replay_session(const std::filesystem::path& session, const ExperimentOptions& options,
@@ -94,7 +106,10 @@ Result<ReplayOutcome> replay_session(const std::filesystem::path& session, const
   if (!trials) return tl::unexpected(trials.error());
   ReplayOutcome outcome{.run = *std::move(run), .same_trials = *trials, .same_fits = std::nullopt};
   outcome.accepted_changes = recorded->accepted_changes;
-  if (recorded->curve) outcome.same_fits = fits_of(*recorded->curve) == fits_of(outcome.run.curve);
+  if (!recorded->curve) return outcome;
+  const auto comparable = comparable_fits(session, *recorded->curve);
+  if (!comparable) return tl::unexpected(comparable.error());
+  if (*comparable) outcome.same_fits = fits_of(*recorded->curve) == fits_of(outcome.run.curve);
   return outcome;
 }
 

@@ -13,7 +13,8 @@ namespace todbench {
 struct ReplayOutcome {
   ExperimentOutcome run;  ///< its session folder is a new one
   bool same_trials = false;
-  /// Of the measured curve; nothing where the session ended before it was fitted.
+  /// Of the measured curve; nothing where the session ended before it was fitted, or is of a version whose intervals of
+  /// graded answers knew no places in the picture.
   std::optional<bool> same_fits;
   std::vector<std::string> accepted_changes{};  ///< of the session that was replayed
 };

@@ -12,12 +12,6 @@
 namespace todbench {
 namespace {
 
-ProportionTable table_of(const ProportionCurve& curve, double ifov_mrad) {
-  ProportionTable table{{}, curve.proportion_correct, curve.standard_error};
-  for (const double size : curve.sizes_pitch) table.size_mrad.push_back(size * ifov_mrad);
-  return table;
-}
-
 std::optional<double> error_of(const PsychometricFit& fit) {
   if (!fit.se_ln_threshold) return std::nullopt;
   return *fit.se_ln_threshold * std::sqrt(fit.variance_inflation);
@@ -60,6 +54,12 @@ Result<bool> give_function(TodPoint& point, std::span<const Trial> trials, const
 }
 
 }  // namespace
+
+ProportionTable table_of(const ProportionCurve& curve, double ifov_mrad) {
+  ProportionTable table{{}, curve.proportion_correct, curve.standard_error};
+  for (const double size : curve.sizes_pitch) table.size_mrad.push_back(size * ifov_mrad);
+  return table;
+}
 
 DirectEstimateOptions direct_options(const TodCurve& curve, const ExperimentInputs& inputs,
                                      const std::map<double, double>& shown_delta_t_k, std::uint64_t seed,

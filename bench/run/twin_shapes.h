@@ -20,6 +20,9 @@ namespace todbench {
                                                    const std::map<double, double>& shown_delta_t_k, std::uint64_t seed,
                                                    std::stop_token stop);
 
+/// The function of a sensor with this instantaneous field of view as it is fitted with.
+[[nodiscard]] ProportionTable table_of(const ProportionCurve& curve, double ifov_mrad);
+
 /// Draws per size of the functions: the most, or those of the accuracy where they are more, and the least.
 inline constexpr int twin_shape_draws = 4000, least_twin_shape_draws = 1000;
 /// As many as make the error of a function a quarter of that of the answers, `se_ln_threshold`, by which it lengthens

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "bench/plan/descriptions.h"
+#include "bench/run/twin_shapes.h"
 #include "bench/session/json_output.h"
 #include "bench/studies/eo_vista_figures.h"
 #include "bench/text/text.h"
@@ -14,6 +15,7 @@
 #include "sim_devices/prediction/direct_estimate.h"
 #include "tod/plate/test_pattern.h"
 #include "tod/psychometric/acuity.h"
+#include "tod/psychometric/twin_shape.h"
 
 namespace todbench {
 namespace {
@@ -81,6 +83,36 @@ struct CameraPart {
   CameraTrialRecord record;
 };
 
+/// The function with which graded answers are fitted: of the simulated sensor as it is for single pictures, and with
+/// microscan, whose sampling super-resolution comes near to, for the others.
+Result<ProportionTable> function_of(const SensorSpec& sensor, TemplateObserver& observer, double contrast_k,
+                                    const EoVistaOptions& options) {
+  DirectEstimateOptions direct{.samples_per_pitch = sensor.microscan,
+                               .accuracy = options.accuracy,
+                               .seed = options.seed + 200,
+                               .stop = options.stop};
+  direct.accuracy.noise_draws = least_twin_shape_draws;
+  const auto curves = proportion_curves(sensor, full_plan(sensor, {}, {}), observer, {contrast_k}, direct);
+  if (!curves) return tl::unexpected(curves.error());
+  return table_of(curves->front(), sensor.ifov_mrad());
+}
+
+/// Adds the threshold of the same answers, graded. One without a regular fit has none.
+Result<void> add_graded(ReproducedThreshold& threshold, const PictureAnswers& answers, const ProportionTable& function,
+                        const char* of_sensor) {
+  const auto weibull = fit_graded(answers.graded, {.with_posterior = false});
+  if (!weibull) return tl::unexpected(weibull.error());
+  const auto fit = fit_twin_shape(answers.graded, *weibull, function, {});
+  if (!fit) return tl::unexpected(fit.error());
+  if (!fit->twin_shape) return {};
+  threshold.graded_acuity_per_mrad = acuity_per_mrad(*fit);
+  threshold.graded_ci95 = acuity_interval(fit->ci95);
+  threshold.graded_method =
+      fmt::format("{} graded answers, function of {}{}, {}", answers.graded.size(), of_sensor,
+                  fit->twin_shape->slope_fitted ? " with a slope of their own" : "", to_string(fit->verdict));
+  return {};
+}
+
 /// The emulated camera at one contrast: both observers, still and super-resolved; of exact half pitches only the
 /// latter, since its single pictures are the same.
 Result<CameraPart> camera(const SensorSpec& sensor, const std::vector<TemplateObserverSpec>& specs, double contrast_k,
@@ -106,13 +138,19 @@ Result<CameraPart> camera(const SensorSpec& sensor, const std::vector<TemplateOb
     for (const bool resolved : {false, true}) {
       const bool exact = displacements == FrameDisplacements::half_pitches;
       if (exact && !resolved) continue;
-      const auto& levels = resolved ? record->observers[o].super_resolved : record->observers[o].still;
-      const auto fit = fit_psychometric(levels, {.with_posterior = false});
+      const PictureAnswers& answers = resolved ? record->observers[o].super_resolved : record->observers[o].still;
+      const auto fit = fit_psychometric(answers.levels, {.with_posterior = false});
       if (!fit) return tl::unexpected(fit.error());
       part.thresholds.push_back(
           {exact ? dsr2_exact : (resolved ? dsr2 : still), specs[o].name, contrast_k, acuity_per_mrad(*fit),
            acuity_interval(fit->ci95),
            number_text(fit->trials) + " answers, Weibull fit, " + std::string(to_string(fit->verdict))});
+      SensorSpec like = sensor;
+      like.microscan = resolved ? 2 : 1;
+      const auto function = function_of(like, *observers[o], contrast_k, options);
+      if (!function) return tl::unexpected(function.error());
+      if (auto added = add_graded(part.thresholds.back(), answers, *function, resolved ? microscan : normal); !added)
+        return tl::unexpected(added.error());
     }
   }
   part.record = std::move(*record);
@@ -244,7 +282,9 @@ Result<Reproduction> reproduce_eo_vista(const EoVistaOptions& options) {
   auto ranges = ranges_of(reproduction.thresholds);
   if (!ranges) return tl::unexpected(ranges.error());
   reproduction.ranges = std::move(ranges->ranges);
-  reproduction.figures = eo_vista_figures(reproduction.thresholds, reproduction.ranges);
+  const auto graded_ranges = ranges_of(by_graded_answers(reproduction.thresholds));
+  if (!graded_ranges) return tl::unexpected(graded_ranges.error());
+  reproduction.figures = eo_vista_figures(reproduction.thresholds, reproduction.ranges, graded_ranges->ranges);
   reproduction.assumptions = assumptions(options, ranges->size_m);
   reproduction.settings = {
       {"seed", std::to_string(options.seed)},

@@ -189,6 +189,17 @@ void range_figures(const std::vector<ReproducedRange>& ranges, std::vector<Repro
   out.push_back(criterion);
 }
 
+std::vector<ReproducedFigure> all_figures(const std::vector<ReproducedThreshold>& thresholds,
+                                          const std::vector<ReproducedRange>& ranges) {
+  std::vector<ReproducedFigure> figures;
+  microscan_gains(thresholds, figures);
+  super_resolution_gains(thresholds, figures);
+  observers_compared(thresholds, figures);
+  sensors_compared(thresholds, figures);
+  range_figures(ranges, figures);
+  return figures;
+}
+
 }  // namespace
 
 AcuityRatio acuity_ratio(const ReproducedThreshold& a, const ReproducedThreshold& b) {
@@ -205,14 +216,26 @@ AcuityRatio acuity_ratio(const ReproducedThreshold& a, const ReproducedThreshold
   return ratio;
 }
 
+std::vector<ReproducedThreshold> by_graded_answers(std::vector<ReproducedThreshold> thresholds) {
+  for (ReproducedThreshold& t : thresholds) {
+    if (!t.graded_acuity_per_mrad) continue;
+    t.acuity_per_mrad = t.graded_acuity_per_mrad;
+    t.ci95 = t.graded_ci95;
+  }
+  return thresholds;
+}
+
 std::vector<ReproducedFigure> eo_vista_figures(const std::vector<ReproducedThreshold>& thresholds,
-                                               const std::vector<ReproducedRange>& ranges) {
-  std::vector<ReproducedFigure> figures;
-  microscan_gains(thresholds, figures);
-  super_resolution_gains(thresholds, figures);
-  observers_compared(thresholds, figures);
-  sensors_compared(thresholds, figures);
-  range_figures(ranges, figures);
+                                               const std::vector<ReproducedRange>& ranges,
+                                               const std::vector<ReproducedRange>& graded_ranges) {
+  std::vector<ReproducedFigure> figures = all_figures(thresholds, ranges);
+  const std::vector<ReproducedFigure> graded = all_figures(by_graded_answers(thresholds), graded_ranges);
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    // Where no camera is behind a figure there is nothing else to say.
+    if (!graded[i].value || graded[i].value == figures[i].value) continue;
+    figures[i].graded_value = graded[i].value;
+    figures[i].graded_ci95 = graded[i].ci95;
+  }
   return figures;
 }
 

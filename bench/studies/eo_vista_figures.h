@@ -23,9 +23,14 @@ inline constexpr const char* hvs = "hvs-1";
 inline constexpr const char* human = "human-like-1";
 }  // namespace eo_vista
 
-/// Every figure of sections 4.1 and 4.2, from the thresholds of all sensors and observers and the ranges of `hvs`.
+/// Every figure of sections 4.1 and 4.2, from the thresholds of all sensors and observers and the ranges of `hvs`;
+/// `graded_ranges` are those of by_graded_answers().
 [[nodiscard]] std::vector<ReproducedFigure> eo_vista_figures(const std::vector<ReproducedThreshold>& thresholds,
-                                                             const std::vector<ReproducedRange>& ranges);
+                                                             const std::vector<ReproducedRange>& ranges,
+                                                             const std::vector<ReproducedRange>& graded_ranges = {});
+
+/// The same thresholds with graded answers in the place of right and wrong ones where there are any.
+[[nodiscard]] std::vector<ReproducedThreshold> by_graded_answers(std::vector<ReproducedThreshold> thresholds);
 
 /// The ratio a / b of two acuities and its 95 % interval, their errors independent and taken on the logarithmic scale.
 struct AcuityRatio {

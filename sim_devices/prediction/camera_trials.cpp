@@ -90,6 +90,7 @@ class Judge {
  public:
   static Result<Judge> prepare(TemplateObserver& observer, const CameraTrialOptions& options) {
     Judge judge;
+    judge.draws_ = options.graded_draws;
     for (const int samples : {1, factor}) {
       for (const double size : options.sizes_pitch) {
         auto prepared = observer.prepare(size * samples, samples);
@@ -100,9 +101,9 @@ class Judge {
     return judge;
   }
 
-  /// One level per size.
-  [[nodiscard]] std::vector<Level> answers(const Picture& picture, const PlateScene& scene, double ifov_mrad,
-                                           cv::Size sensor, const RandomStream& noise, int cluster) const {
+  /// One level per size, one graded answer per triangle.
+  void add_answers(PictureAnswers& out, const Picture& picture, const PlateScene& scene, double ifov_mrad,
+                   cv::Size sensor, const RandomStream& noise, int presentation) const {
     const auto& sizes = prepared_[picture.samples_per_pitch == 1 ? 0 : 1];
     std::vector<Level> levels(sizes.size());
     for (std::size_t t = 0; t < 4 * sizes.size(); ++t) {  // the marks follow
@@ -115,18 +116,24 @@ class Judge {
       picture.kelvin(window.pixels).convertTo(patch.kelvin, CV_64F);
       patch.phase = window.phase;
       patch.noise_k = picture.noise_k;
-      const Choice choice = observer.choose(patch, scene.delta_t_k, noise.sub(t));
+      const GradedChoice judged = observer.judge(patch, scene.delta_t_k, noise.sub(t), draws_);
+      const auto truth = static_cast<std::size_t>(triangle.apex);
       Level& level = levels[t / 4];
       level.size = triangle.size_mm;
-      level.correct += choice.alternative == static_cast<int>(triangle.apex) ? 1 : 0;
+      level.correct += judged.choice.alternative == static_cast<int>(truth) ? 1 : 0;
       level.total += 1;
-      level.cluster = cluster;
+      level.cluster = presentation;
+      out.graded.push_back({.size = triangle.size_mm,
+                            .probability_correct = std::min(1.0, judged.answers.probability[truth]),
+                            .presentation = presentation,
+                            .place = static_cast<int>(t)});
     }
-    return levels;
+    out.levels.insert(out.levels.end(), levels.begin(), levels.end());
   }
 
  private:
   std::array<std::vector<std::shared_ptr<const PreparedObserver>>, 2> prepared_;
+  int draws_ = 0;
 };
 
 double noise_of(const SensorSpec& sensor, double frames) {
@@ -186,10 +193,8 @@ Result<CameraTrialRecord> camera_trials(const SensorSpec& sensor, const std::vec
     const Picture resolved{fine->picture, fine->first_px, factor, noise_of(camera, averaged)};
     for (std::size_t o = 0; o < judges.size(); ++o) {
       const RandomStream trial = internal.sub(static_cast<std::uint64_t>(p) * 16 + o);
-      const auto add = [&](std::vector<Level>& levels, const Picture& picture, std::uint64_t stream) {
-        const auto more =
-            judges[o].answers(picture, shown.scene, camera.ifov_mrad(), model.size(), trial.sub(stream), p);
-        levels.insert(levels.end(), more.begin(), more.end());
+      const auto add = [&](PictureAnswers& answers, const Picture& picture, std::uint64_t stream) {
+        judges[o].add_answers(answers, picture, shown.scene, camera.ifov_mrad(), model.size(), trial.sub(stream), p);
       };
       add(record.observers[o].still, still, 0);
       add(record.observers[o].super_resolved, resolved, 1);

@@ -23,15 +23,22 @@ struct CameraTrialOptions {
   int presentations = 24;           ///< pictures, each in a sampling phase of its own; at least 2
   int frames = 16;                  ///< per super-resolved picture, displaced against each other by up to half a pitch
   FrameDisplacements displacements = FrameDisplacements::anywhere;
+  int graded_draws = 32;  ///< of the observer's own noise, for the probabilities of one picture
   Accuracy accuracy;
   std::uint64_t seed = 1;
   std::stop_token stop{};
 };
 
-/// Answers of one observer. Sizes in mrad; the cluster of a level is its presentation.
+/// Answers to one kind of pictures. Sizes in mrad.
+struct PictureAnswers {
+  std::vector<Level> levels;         ///< right and wrong; the cluster of a level is its presentation
+  std::vector<GradedAnswer> graded;  ///< the same ones, as probable as the observer finds them; one set-up
+};
+
+/// Answers of one observer.
 struct CameraTrials {
-  std::vector<Level> still;           ///< first frame of each presentation
-  std::vector<Level> super_resolved;  ///< all its frames, registered and averaged on a grid of half the pitch
+  PictureAnswers still;           ///< first frame of each presentation
+  PictureAnswers super_resolved;  ///< all its frames, registered and averaged on a grid of half the pitch
 };
 
 /// What the observers (one entry each) and the registration did.

@@ -83,6 +83,39 @@ void keep_row_together(QTextDocument& document, QTextTable& table) {
   lay_out_from(document, table.firstPosition());
 }
 
+/// Where the text of a row begins and ends, in the height of all pages.
+struct RowExtent {
+  double top = 0, bottom = 0;
+};
+
+RowExtent extent_of(const QTextDocument& document, const QTextTable& table, int row) {
+  const auto place = [&](const QTextBlock& block) { return document.documentLayout()->blockBoundingRect(block); };
+  RowExtent out{.top = place(table.cellAt(row, 0).firstCursorPosition().block()).top(),
+                .bottom = place(lowest_of(document, table, row)).bottom()};
+  for (int column = 1; column < table.columns(); ++column)
+    out.top = std::min(out.top, place(table.cellAt(row, column).firstCursorPosition().block()).top());
+  return out;
+}
+
+/// A row whose lines would lie on two pages begins on the second: the row before it is as much higher, for Qt knows no
+/// break before a row. One that is higher than half a page stays as it is, and so does the first below the header,
+/// which moves with its caption.
+void keep_rows_whole(QTextDocument& document, QTextTable& table) {
+  const double height = document.pageSize().height();
+  for (int row = 2; row < table.rows(); ++row) {
+    const auto [top, bottom] = extent_of(document, table, row);
+    const double page_end = height * std::floor(bottom / height);
+    if (top >= page_end || bottom - top > height / 2) continue;
+    for (int column = 0; column < table.columns(); ++column) {
+      QTextTableCell cell = table.cellAt(row - 1, column);
+      QTextTableCellFormat format = cell.format().toTableCellFormat();
+      format.setBottomPadding(format.bottomPadding() + page_end - top);
+      cell.setFormat(format);
+    }
+    lay_out_from(document, table.firstPosition());
+  }
+}
+
 /// The first of the headings right over a block: what moves to the next page takes them along.
 QTextBlock with_headings(const QTextBlock& block) {
   QTextBlock above = block.previous();
@@ -115,7 +148,9 @@ void move_to_next_page(QTextDocument& document, const QTextBlock& block) {
 void keep_together(QTextDocument& document) {
   for (QTextBlock block = document.begin(); block.isValid(); block = block.next()) {
     if (QTextTable* table = table_at(block); table != nullptr) {
-      if (table->firstCursorPosition().block() == block) keep_row_together(document, *table);
+      if (table->firstCursorPosition().block() != block) continue;
+      keep_row_together(document, *table);
+      keep_rows_whole(document, *table);
       continue;
     }
     if (block.text().trimmed().isEmpty()) continue;

@@ -188,6 +188,10 @@ TEST(PdfDocument, CutsNoCaptionAndRepeatsHeadersWhereverItsPagesBreak) {
       EXPECT_EQ(page.count("HeaderOne"), has_rows ? 1 : 0) << lines << " lines";
     }
     broken_tables += pages_with_rows > 1 ? 1 : 0;
+    for (int row = 10; row < 30; ++row) {
+      const QString number = QString::number(row);
+      EXPECT_EQ(page_of("Begin" + number), page_of("End" + number)) << lines << " lines: row " << row;
+    }
     for (const char* word : {"DrawnLeft", "LeftBegin", "RightCaption"})
       EXPECT_EQ(page_of(word), page_of("LeftEnd")) << lines << " lines: " << word;
     for (const char* word : {"DrawnAlone", "AloneBegin"})

@@ -31,6 +31,25 @@ TEST(GradedPrecision, KeepsMoreOfFewPhases) {
   EXPECT_NEAR(graded_variance_ratio({.frames = 4, .presentations = 8}), of_noise + 0.048, 1e-12);
 }
 
+TEST(GradedPrecision, KeepsAFixedPatternWhateverTheFrames) {
+  // All noise is a fixed pattern: two thirds of an answer, in 12 phases that see the same one, and nothing else.
+  const double alike = 12 * 1.5 * std::exp(-std::pow(1.9 / 4, 2));
+  const GradedDesignFigures pattern{.sensor_share = 1, .pattern_share = 1, .frames = 1};
+  EXPECT_NEAR(graded_variance_ratio(pattern), (1 - 2.0 / 3) / 32 + 0.004 + 2.0 / 3 * alike, 1e-12);
+  EXPECT_NEAR(pattern_inflation(pattern), 1 + 2.0 / 3 * (alike - 1), 1e-12);
+  EXPECT_DOUBLE_EQ(pattern_inflation({.sensor_share = 1}), 1);
+  GradedDesignFigures small = pattern;
+  small.size_pitch = 1;
+  EXPECT_NEAR(pattern_inflation(small), 1, 1e-12) << "a pixel beside it a small triangle sees other detectors";
+  const auto gain = [](GradedDesignFigures design) {
+    const double one = graded_variance_ratio(design);
+    design.frames = 8;
+    return one / graded_variance_ratio(design);
+  };
+  EXPECT_GT(gain({.sensor_share = 1}), 7);
+  EXPECT_LT(gain({.sensor_share = 1, .pattern_share = 0.5}), 1.2);
+}
+
 TEST(GradedPrecision, IsWiderForFewSetUps) {
   // t of seven degrees of freedom, and chi square of seven at 95 %.
   EXPECT_NEAR(graded_interval_factor({.set_ups = 8}), 2.3646 * std::sqrt(14.067 / 7), 1e-3);

@@ -37,6 +37,29 @@ TEST(EoVistaFigures, GainsAreRatiosOfAcuitiesWithJoinedErrors) {
   for (const auto& figure : figures) EXPECT_FALSE(figure.remark.empty()) << figure.quantity;
 }
 
+TEST(EoVistaFigures, GradedAnswersStandBesideRightAndWrongOnesWhereACameraAnswered) {
+  auto all = thresholds(eo_vista::dsr2, 1.4);
+  for (ReproducedThreshold& t : all) {
+    if (t.sensor != eo_vista::dsr2) continue;
+    t.graded_acuity_per_mrad = 0.75;
+    t.graded_ci95 = {0.75 * std::exp(-0.01), 0.75 * std::exp(0.01)};
+  }
+
+  const auto figures = eo_vista_figures(all, {});
+
+  int graded = 0;
+  for (const auto& figure : figures) {
+    const bool of_the_camera = figure.quantity.starts_with("DSR2 gain");
+    EXPECT_EQ(figure.graded_value.has_value(), of_the_camera) << figure.quantity;
+    if (!figure.graded_value) continue;
+    ++graded;
+    EXPECT_NEAR(*figure.value, 40, 1e-9) << figure.quantity;
+    EXPECT_NEAR(*figure.graded_value, 50, 1e-9) << figure.quantity;
+    EXPECT_NEAR(*figure.graded_ci95.high, 100 * (1.5 * std::exp(std::hypot(0.01, 0.03)) - 1), 1e-9);
+  }
+  EXPECT_EQ(graded, 5);
+}
+
 TEST(EoVistaFigures, WhatWasNotFoundIsMissingAndNotMadeUp) {
   const auto figures = eo_vista_figures({}, {});
 

@@ -20,6 +20,7 @@
 #include "bench/run/devices.h"
 #include "bench/run/functions_meanwhile.h"
 #include "bench/run/paired_comparison.h"
+#include "bench/run/prediction.h"
 #include "bench/run/simulated_responses.h"
 #include "bench/run/twin_shapes.h"
 #include "tod/plate/test_pattern.h"
@@ -302,12 +303,27 @@ struct GradedSummary {
   int runs = 0;
   double bias_percent = 0, scatter_percent = 0, stated_percent = 0, half_width_percent = 0, coverage = 0,
          slope_fitted = 0;
+  double nineteen_of_20_percent = 0;  ///< half-width that so many runs stay below
 };
+
+/// Half-widths that `plan` says of a design before it is measured, percent of ln S75 by contrast.
+inline std::map<double, double> predicted_half_widths(const GradedDesign& design) {
+  const Plan plan = plan_of(design, 1);
+  EffectPlanner planner;
+  auto inputs = experiment_inputs(LoadedPlan::load(plan).value(), planner).value();
+  inputs.sensor = inputs_of(plan, design.camera).sensor;
+  std::map<double, double> out;
+  const PlanPrediction prediction = predict_plan(plan, inputs).value();
+  for (const ContrastPrediction& point : prediction.contrasts)
+    out[point.delta_t_k] = 100 * std::log1p(point.uncertainty_percent.value() / 100);
+  return out;
+}
 
 inline GradedSummary summary_of(const std::vector<GradedResult>& rows, const std::string& design, double delta_t_k,
                                 const std::string& estimator, double truth_mrad) {
   GradedSummary out;
   double squares = 0;
+  std::vector<double> half_widths;
   for (const GradedResult& row : rows) {
     if (row.design != design || row.delta_t_k != delta_t_k || row.estimator != estimator) continue;
     const double error = 100 * std::log(row.s75_mrad / truth_mrad);
@@ -315,7 +331,8 @@ inline GradedSummary summary_of(const std::vector<GradedResult>& rows, const std
     out.bias_percent += error;
     squares += error * error;
     out.stated_percent += row.se_percent;
-    out.half_width_percent += 50 * std::log(row.high_mrad / row.low_mrad);
+    half_widths.push_back(50 * std::log(row.high_mrad / row.low_mrad));
+    out.half_width_percent += half_widths.back();
     out.coverage += row.low_mrad <= truth_mrad && truth_mrad <= row.high_mrad ? 1 : 0;
     out.slope_fitted += row.slope_fitted;
   }
@@ -324,6 +341,8 @@ inline GradedSummary summary_of(const std::vector<GradedResult>& rows, const std
   out.bias_percent /= n;
   out.scatter_percent = std::sqrt((squares - n * out.bias_percent * out.bias_percent) / (n - 1));
   for (double* value : {&out.stated_percent, &out.half_width_percent, &out.coverage, &out.slope_fitted}) *value /= n;
+  std::ranges::sort(half_widths);
+  out.nineteen_of_20_percent = half_widths[static_cast<std::size_t>(0.95 * (n - 1))];
   return out;
 }
 

@@ -36,12 +36,32 @@ TEST(CameraTrials, SuperResolutionAveragesNoiseAndResolvesMore) {
   EXPECT_LT(found->registration_rms_px, 0.15);
   EXPECT_LT(found->placement_rms_px, 1 / std::sqrt(48.0) + 0.01);  // shifts anywhere: half a pitch over sqrt(12)
   const auto& trials = found->observers.front();
-  ASSERT_EQ(trials.still.size(), 12u);
-  ASSERT_EQ(trials.super_resolved.size(), 12u);
+  ASSERT_EQ(trials.still.levels.size(), 12u);
+  ASSERT_EQ(trials.super_resolved.levels.size(), 12u);
   const double small = 1.5 * sensor.ifov_mrad(), large = 4.5 * sensor.ifov_mrad();
-  EXPECT_GT(share(trials.super_resolved, small), share(trials.still, small));
-  EXPECT_GT(share(trials.still, large), 0.85);
-  EXPECT_GT(share(trials.super_resolved, large), 0.95);
+  EXPECT_GT(share(trials.super_resolved.levels, small), share(trials.still.levels, small));
+  EXPECT_GT(share(trials.still.levels, large), 0.85);
+  EXPECT_GT(share(trials.super_resolved.levels, large), 0.95);
+}
+
+TEST(CameraTrials, GradedAnswersScatterLessAboutTheSameProportions) {
+  TemplateObserver observer({}, triangle_alternatives());
+  const SensorSpec sensor = test::sc2000();
+  const auto found = camera_trials(
+      sensor, {&observer},
+      {.delta_t_k = 0.23, .sizes_pitch = {2.6}, .presentations = 30, .frames = 4, .accuracy = Accuracy::draft()});
+
+  ASSERT_TRUE(found) << found.error().message;
+  for (const PictureAnswers* answers : {&found->observers[0].still, &found->observers[0].super_resolved}) {
+    ASSERT_EQ(answers->graded.size(), 120u);
+    double graded = 0, squares = 0;
+    for (const GradedAnswer& answer : answers->graded) graded += answer.probability_correct / 120;
+    for (const GradedAnswer& answer : answers->graded)
+      squares += std::pow(answer.probability_correct - graded, 2) / 120;
+    const double right = share(answers->levels, answers->graded[0].size), chance = graded * (1 - graded);
+    EXPECT_LT(squares, 0.8 * chance) << "right and wrong ones scatter by p (1 - p)";
+    EXPECT_NEAR(right, graded, 4 * std::sqrt((chance - squares) / 120)) << "what is left between the two is chance";
+  }
 }
 
 TEST(CameraTrials, ExactHalfPitchesPutEverySampleOnTheFineGridAndResolveMore) {
@@ -59,8 +79,8 @@ TEST(CameraTrials, ExactHalfPitchesPutEverySampleOnTheFineGridAndResolveMore) {
   EXPECT_GT(anywhere->placement_rms_px, 0.08);
   // Thresholds 1.01 and 1.09 pitches with slopes near 5: 0.11 of the answers between them, 48 answers each at 2 sizes.
   double exact_right = 0, anywhere_right = 0;
-  for (const auto& level : exact->observers[0].super_resolved) exact_right += level.correct;
-  for (const auto& level : anywhere->observers[0].super_resolved) anywhere_right += level.correct;
+  for (const auto& level : exact->observers[0].super_resolved.levels) exact_right += level.correct;
+  for (const auto& level : anywhere->observers[0].super_resolved.levels) anywhere_right += level.correct;
   EXPECT_GT(exact_right, anywhere_right);
 }
 

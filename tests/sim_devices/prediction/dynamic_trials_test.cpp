@@ -60,7 +60,7 @@ TEST(DynamicTrials, OfATargetThatRestsAreThoseOfAStillPictureBitForBit) {
                                      .seed = 5});
 
   ASSERT_TRUE(still && found);
-  EXPECT_TRUE(same(of(found->front(), SequenceObserver::single_frame), still->observers.front().still));
+  EXPECT_TRUE(same(of(found->front(), SequenceObserver::single_frame), still->observers.front().still.levels));
 }
 
 TEST(DynamicTrials, OfADetectorWithoutMemoryAreTheSameInASingleFrameAtEverySpeed) {
