@@ -176,17 +176,17 @@ Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& a
   options.drift = {.level_k_per_min = arguments.drift_k_per_min,
                    .pattern_k_per_min = arguments.drift_pattern_k_per_min,
                    .time_constant_s = arguments.drift_time_constant_s};
-  options.black_body.stable_dwell_s = 0.05;
+  options.black_body.stable_dwell_s = 0.01;
   options.stage.server.address = arguments.interface_address;
   options.stage.server.port = arguments.stage_port;
-  options.stage.speed_mm_per_s = 200;
-  options.stage.settle_s = 0.02;
+  options.stage.speed_mm_per_s = 1000;
+  options.stage.settle_s = 0.005;
   options.stage.travel_mm = 50;
   options.stage.run_jitter_mm = arguments.stage_jitter_mm;
   options.stage.has_trigger = arguments.trigger;
   options.stage.seed = arguments.seed;
-  options.stage.plate_change_s = 0.1;
-  options.stage.mounting_change_s = 0.1;
+  options.stage.plate_change_s = 0.05;
+  options.stage.mounting_change_s = 0.05;
   return Laboratory::start(std::move(options));
 }
 
