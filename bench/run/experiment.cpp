@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <future>
+#include <memory>
 
 #include "acquisition/recording/frame_stream.h"
 #include "bench/run/bench_host.h"
@@ -127,41 +127,61 @@ struct TwinRun {
   double wall_s = 0;
 };
 
-/// Fits a curve with the functions of its simulated sensor, where the plan has it so, and says why. `known`: of
-/// fit_twin_shapes().
-void give_shape(TodCurve& curve, MeasurementResult& result, const Plan& plan, const ExperimentInputs& inputs,
-                const std::map<double, double>& shown_delta_t_k, const TodCurve* known, const SessionFrame& frame,
-                std::stop_token stop) {
+/// Whether all trials of a plan were made.
+enum class Trials { all, ended_early };
+
+Trials trials_of(const MeasurementResult& result) {
+  return result.ended_by ? Trials::ended_early : Trials::all;
+}
+
+/// Fits a curve with the functions of its simulated sensor, where the plan has it so. `known`: of fit_twin_shapes().
+TwinShapesOutcome take_shape(TodCurve& curve, std::span<const Trial> trials, Trials made, const Plan& plan,
+                             const ExperimentInputs& inputs, const std::map<double, double>& shown_delta_t_k,
+                             const TodCurve* known, std::stop_token stop) {
   const ChosenEstimator chosen = chosen_estimator(plan, inputs.sensor);
   const bool by_twin = chosen.estimator == FitEstimator::twin_shape;
   for (TodPoint& point : curve.points) {
-    point.estimator_reason = by_twin && result.ended_by ? EstimatorReason::ended_early : chosen.reason;
+    point.estimator_reason = by_twin && made == Trials::ended_early ? EstimatorReason::ended_early : chosen.reason;
     point.answers = chosen_answers(plan, inputs.sensor, point.set_delta_t_k);
   }
-  if (!by_twin || result.ended_by) {
-    fit_right_and_wrong(curve, result.trials, fit_options(plan));
-    return;
+  TwinShapesOutcome outcome;
+  if (by_twin && made == Trials::all) {
+    outcome = fit_twin_shapes(curve, trials, inputs, fit_options(plan),
+                              direct_options(curve, inputs, shown_delta_t_k, plan.seed, std::move(stop)), known);
   }
-  phase(frame.folder, frame.listener, "fitting with the functions of " + inputs.sensor.name);
-  TwinShapesOutcome outcome =
-      fit_twin_shapes(curve, result.trials, inputs, fit_options(plan),
-                      direct_options(curve, inputs, shown_delta_t_k, plan.seed, std::move(stop)), known);
-  fit_right_and_wrong(curve, result.trials, fit_options(plan));
-  result.ended_by = std::move(outcome.ended_by);
-  for (auto& sentence : outcome.notes) {
+  fit_right_and_wrong(curve, trials, fit_options(plan));
+  return outcome;
+}
+
+void say_that_it_is_fitted(const MeasurementResult& result, const Plan& plan, const ExperimentInputs& inputs,
+                           const SessionFrame& frame) {
+  if (!result.ended_by && chosen_estimator(plan, inputs.sensor).estimator == FitEstimator::twin_shape)
+    phase(frame.folder, frame.listener, "fitting with the functions of " + inputs.sensor.name);
+}
+
+/// What became of the fit.
+void keep_shape(MeasurementResult& result, const TwinShapesOutcome& outcome, const SessionFrame& frame) {
+  if (!result.ended_by) result.ended_by = outcome.ended_by;
+  for (const auto& sentence : outcome.notes) {
     note(frame.folder, frame.listener, sentence);
-    result.notes.push_back(std::move(sentence));
+    result.notes.push_back(sentence);
   }
 }
 
-/// `measured`: the curve of the camera whose contrasts are shown; null where there is none.
+/// What a twin has from the camera before it; a simulation alone has nothing.
+struct FromCamera {
+  const TodCurve* curve = nullptr;
+  std::map<double, double> shown_delta_t_k{};  ///< what it saw of each set contrast
+  std::map<std::string, double> responses{};   ///< of simulated_responses(), where they are those of the twin too
+};
+
 Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, SessionFolder& folder,
-                              SessionCurve which, const std::map<double, double>& shown_delta_t_k,
-                              const TodCurve* measured, const ExperimentHost& host, const ExperimentListener& listener,
-                              std::stop_token stop) {
+                              SessionCurve which, const FromCamera& camera, const ExperimentHost& host,
+                              const ExperimentListener& listener, std::stop_token stop) {
   const auto begin = Clock::now();
   const ModuleLine log_line = module_log(folder);
-  auto set_up = simulated_set_up(plan, inputs, shown_delta_t_k, stop, {.on_error_line = log_line});
+  const std::map<double, double>& shown_delta_t_k = camera.shown_delta_t_k;
+  auto set_up = simulated_set_up(plan, inputs, shown_delta_t_k, stop, {.on_error_line = log_line}, camera.responses);
   if (!set_up) return tl::unexpected(set_up.error());
   set_up->bench.host = bench_host({.pause = host.pause});
   const auto modules = picture_modules(plan, inputs.sensor, Side::simulated);
@@ -190,8 +210,11 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
   }
 
   const TodCurve stopped_by = known_functions(set_up->functions, run.curve);
-  give_shape(run.curve, run.result, plan, inputs, shown_delta_t_k, stopped_by.points.empty() ? measured : &stopped_by,
-             {folder, listener}, stop);
+  say_that_it_is_fitted(run.result, plan, inputs, {folder, listener});
+  const TwinShapesOutcome shaped =
+      take_shape(run.curve, run.result.trials, trials_of(run.result), plan, inputs, shown_delta_t_k,
+                 stopped_by.points.empty() ? camera.curve : &stopped_by, stop);
+  keep_shape(run.result, shaped, {folder, listener});
   if (!run.result.ended_by && has_modules(plan, inputs.sensor)) {
     const std::string sentence = "no direct estimate: it would leave out the modules";
     note(folder, listener, sentence);
@@ -229,13 +252,10 @@ struct TwinResults {
 };
 
 /// The simulated twin at the contrasts that the camera saw, and the comparison.
-TwinResults run_twin(const Plan& plan, const ExperimentInputs& inputs, const TodCurve& measured, SessionFolder& folder,
+TwinResults run_twin(const Plan& plan, const ExperimentInputs& inputs, const FromCamera& camera, SessionFolder& folder,
                      const ExperimentHost& host, const ExperimentListener& listener, std::stop_token stop) {
   phase(folder, listener, "simulating its twin " + inputs.sensor.name);
-  std::map<double, double> shown;
-  for (const auto& point : measured.points) shown[point.set_delta_t_k] = point.delta_t_k;
-  auto twin =
-      run_simulated(plan, inputs, folder, SessionCurve::twin, shown, &measured, host, listener, std::move(stop));
+  auto twin = run_simulated(plan, inputs, folder, SessionCurve::twin, camera, host, listener, std::move(stop));
   TwinResults results;
   if (!twin) {
     results.ended_by = with_context("the simulated twin", twin.error());
@@ -246,7 +266,7 @@ TwinResults run_twin(const Plan& plan, const ExperimentInputs& inputs, const Tod
   results.curve = std::move(twin->curve);
   ComparisonOptions options = comparison_options(plan);
   options.b_shown_contrasts_of_a = true;
-  auto comparison = compare(measured, *results.curve, options);
+  auto comparison = compare(*camera.curve, *results.curve, options);
   if (comparison) {
     results.comparison = std::move(*comparison);
   } else if (!results.ended_by) {
@@ -256,11 +276,11 @@ TwinResults run_twin(const Plan& plan, const ExperimentInputs& inputs, const Tod
 }
 
 /// The same by the phases that camera and twin both saw.
-void pair_with_twin(ExperimentOutcome& outcome, std::future<Pairs> made, const ExperimentInputs& inputs,
-                    const SessionFrame& frame) {
+void pair_with_twin(ExperimentOutcome& outcome, Meanwhile<Pairs>& made, const ExperimentInputs& inputs,
+                    const SessionFrame& frame, std::stop_token stop) {
   if (!outcome.comparison || outcome.ended_by) return;
   phase(frame.folder, frame.listener, "showing " + inputs.sensor.name + " what the camera saw");
-  Pairs pairs = made.get();
+  const Pairs& pairs = made.get(std::move(stop));
   Comparison& comparison = *outcome.comparison;
   for (std::size_t i = 0; i < comparison.points.size(); ++i) {
     const auto same = std::ranges::find_if(pairs.ratios.points, [&](const ComparisonPoint& point) {
@@ -269,7 +289,7 @@ void pair_with_twin(ExperimentOutcome& outcome, std::future<Pairs> made, const E
     if (same != pairs.ratios.points.end()) add_paired(comparison, i, *same->paired);
   }
   for (const auto& sentence : pairs.said.notes) note(frame.folder, frame.listener, sentence);
-  outcome.ended_by = std::move(pairs.said.ended_by);
+  outcome.ended_by = pairs.said.ended_by;
 }
 
 /// A tolerance beyond the hard caps is refused before anything is simulated or moved.
@@ -279,26 +299,31 @@ Result<void> check_tolerance(const Plan& plan, const ExperimentInputs& inputs) {
   return {};
 }
 
-/// Trials and physical measures of the camera.
+/// Trials of the camera.
 struct MeasuredRun {
   MeasurementResult result;
-  std::optional<CameraMeasures> measures;
+  MeasurementOptions options;
   std::map<double, ProportionTable> functions{};  ///< that an adaptive schedule stopped by
 };
 
+/// What the contrast estimate of the camera reads of the plates.
+Result<std::map<std::string, double>> responses_of_camera(const Plan& plan, const ExperimentInputs& inputs,
+                                                          std::stop_token stop) {
+  const SensorModel model(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
+  return simulated_responses(model, plan, inputs.plates, camera_options(plan, inputs.plates), std::move(stop));
+}
+
 /// The measurement with the camera of the plan, into the session.
-Result<MeasuredRun> run_measured(const Plan& plan, const ExperimentInputs& inputs, OpenedBench& bench,
-                                 SessionFolder& folder, const ExperimentListener& listener, std::stop_token stop) {
+Result<MeasuredRun> run_measured(const Plan& plan, const ExperimentInputs& inputs,
+                                 std::map<std::string, double> responses, OpenedBench& bench, SessionFolder& folder,
+                                 const ExperimentListener& listener, std::stop_token stop) {
   const auto modules = picture_modules(plan, inputs.sensor, Side::measured);
   const ModuleLine log_line = module_log(folder);
   put_modules_behind(bench, modules, log_line);
   const auto observer = observer_of(plan, inputs, log_line);
   MeasurementOptions options = camera_options(plan, inputs.plates);
   take_answers(options, plan, inputs);
-  const SensorModel model(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
-  auto response = simulated_responses(model, plan, inputs.plates, options, stop);
-  if (!response) return tl::unexpected(response.error());
-  options.contrast_response = std::move(*response);
+  options.contrast_response = std::move(responses);
   const auto air = stated_air(plan, inputs.sensor);
   if (!air) return tl::unexpected(air.error());
   options.air_transmittance = *air;
@@ -310,14 +335,94 @@ Result<MeasuredRun> run_measured(const Plan& plan, const ExperimentInputs& input
                                       RandomStream(plan.seed, "schedule"), *functions);
   auto result = Recorder(folder, listener, stop).run(bench, *observer, *schedule, options, SessionCurve::main);
   if (!result) return tl::unexpected(result.error());
-  MeasuredRun run{*std::move(result), std::nullopt, *std::move(functions)};
-  if (run.result.ended_by) return run;
-  auto measures = physical_measures(plan, options, inputs, bench, {folder, listener}, std::move(stop));
+  return MeasuredRun{*std::move(result), std::move(options), *std::move(functions)};
+}
+
+std::map<double, double> contrasts_seen(const TodCurve& curve) {
+  std::map<double, double> seen;
+  for (const auto& point : curve.points) seen[point.set_delta_t_k] = point.delta_t_k;
+  return seen;
+}
+
+/// The curve of these trials before it has the shape of the twin. Fails where they make none.
+Result<TodCurve> curve_of_camera(MeasurementResult& result, const Plan& plan, const ExperimentInputs& inputs,
+                                 const SourceInfo& info, const SessionFrame& frame) {
+  auto curve = tod_curve(result.trials, fit_options(plan));
+  if (!curve) return tl::unexpected(result.ended_by.value_or(curve.error()));
+  add_contrast_errors(*curve, result.contrasts);
+  curve->sensor = info.model + " " + info.serial;
+  curve->observer = observer_name(plan, inputs);
+  for (auto& point : curve->points) {
+    point.noise_counts = result.temporal_noise_counts;
+    point.lag1_correlation = result.lag1_correlation;
+  }
+  if (auto kept = keep_grey_levels(*curve, result, frame); !kept && !result.ended_by) result.ended_by = kept.error();
+  return curve;
+}
+
+/// A curve with the shape of the twin.
+struct FittedCurve {
+  TodCurve curve;
+  TwinShapesOutcome said;
+};
+
+/// On a thread of its own: a contrast that was seen more than 2 % beside what was set needs a function of its own,
+/// which takes a second. What is lent outlives it. `functions`: null where an adaptive schedule stopped by those of
+/// `measured`.
+std::unique_ptr<Meanwhile<FittedCurve>> fit_meanwhile(TodCurve curve, const MeasuredRun& measured, const Plan& plan,
+                                                      const ExperimentInputs& inputs, FunctionsMeanwhile* functions) {
+  const Trials made = trials_of(measured.result);
+  const std::span<const Trial> trials = measured.result.trials;
+  return std::make_unique<Meanwhile<FittedCurve>>([curve = std::move(curve), made, trials, &measured, &plan, &inputs,
+                                                   functions](std::stop_token stop) {
+    TodCurve known;
+    if (made == Trials::all)
+      known = functions != nullptr ? functions->known_for(curve, stop) : known_functions(measured.functions, curve);
+    FittedCurve fitted{curve, {}};
+    fitted.said = take_shape(fitted.curve, trials, made, plan, inputs, contrasts_seen(curve), &known, std::move(stop));
+    examine(fitted.curve, fit_options(plan));
+    return fitted;
+  });
+}
+
+/// The camera's physical measures; then, whether what was recorded of it all is on the disk.
+std::optional<CameraMeasures> measures_of_camera(MeasuredRun& measured, const Plan& plan,
+                                                 const ExperimentInputs& inputs, OpenedBench& bench,
+                                                 FrameStreamWriter* recording, const SessionFrame& frame,
+                                                 std::stop_token stop) {
+  std::optional<Error>& ended_by = measured.result.ended_by;
+  if (ended_by) return std::nullopt;
+  auto measures = physical_measures(plan, measured.options, inputs, bench, frame, std::move(stop));
+  if (!measures) ended_by = measures.error();
+  if (recording != nullptr && !ended_by) {
+    if (auto kept = recording->verified_frames(); !kept) ended_by = with_context("recording", kept.error());
+  }
+  return measures ? *std::move(measures) : std::nullopt;
+}
+
+/// What was begun beside the camera.
+struct Beside {
+  Meanwhile<Pairs>* pairs;  ///< null: none are made
+  MeasuresMeanwhile& measures;
+};
+
+/// Run, comparison and physical measures of the twin.
+void add_twin(ExperimentOutcome& outcome, Provenance& provenance, const FromCamera& camera, const LoadedPlan& loaded,
+              const Plan& plan, const ExperimentInputs& inputs, const Beside& beside, const ExperimentHost& host,
+              const SessionFrame& frame, const std::stop_token& stop) {
+  TwinResults twin = run_twin(plan, inputs, camera, frame.folder, host, frame.listener, stop);
+  provenance.twin_run = std::move(twin.run);
+  outcome.twin = std::move(twin.curve);
+  outcome.comparison = std::move(twin.comparison);
+  outcome.ended_by = std::move(twin.ended_by);
+  if (beside.pairs != nullptr) pair_with_twin(outcome, *beside.pairs, inputs, frame, stop);
+  if (outcome.ended_by) return;
+  if (outcome.measures) compare_picture(*outcome.measures, loaded, inputs);
+  auto measures = beside.measures.take(frame, stop);
   if (measures)
-    run.measures = *std::move(measures);
+    outcome.twin_measures = *std::move(measures);
   else
-    run.result.ended_by = measures.error();
-  return run;
+    outcome.ended_by = with_context("the simulated twin", measures.error());
 }
 
 }  // namespace
@@ -350,7 +455,7 @@ Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const Experime
 
   for (const auto& warning : inputs->warnings) note(*folder, listener, warning);
   phase(*folder, listener, "simulating " + inputs->sensor.name);
-  auto run = run_simulated(plan, *inputs, *folder, SessionCurve::main, {}, nullptr, options.host, listener, stop);
+  auto run = run_simulated(plan, *inputs, *folder, SessionCurve::main, {}, options.host, listener, stop);
   if (!run) {
     // Below what can be seen, the plate may not be found either: that is the reason, not its symptom.
     if (!inputs->identifiable && run.error().code == ErrorCode::calibration)
@@ -440,65 +545,50 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
 
   const auto begin = Clock::now();
   phase(*folder, listener, "measuring " + info.model + " " + info.serial);
+  auto responses = responses_of_camera(plan, inputs, stop);
+  if (!responses) return abandon(frame, plan, provenance, with_context("measuring", responses.error()));
   std::optional<FunctionsMeanwhile> functions;
   if (plan.schedule.kind == ScheduleKind::constant) functions.emplace(plan, inputs);
-  auto measured = run_measured(plan, inputs, bench, *folder, listener, stop);
+  MeasuresMeanwhile twin_measures(loaded, inputs);
+  auto measured = run_measured(plan, inputs, *std::move(responses), bench, *folder, listener, stop);
   if (!measured) return abandon(frame, plan, provenance, with_context("measuring", measured.error()));
-  MeasurementResult* const result = &measured->result;
-  if (recording && !result->ended_by) {
-    if (auto kept = recording->verified_frames(); !kept) result->ended_by = with_context("recording", kept.error());
-  }
-  result->notes.insert(result->notes.end(), inputs.warnings.begin(), inputs.warnings.end());
-  if (!forecast.empty()) result->notes.push_back(forecast);
-  bench = {};
-
-  auto curve = tod_curve(result->trials, fit_options(plan));
+  MeasurementResult& result = measured->result;
+  result.notes.insert(result.notes.end(), inputs.warnings.begin(), inputs.warnings.end());
+  if (!forecast.empty()) result.notes.push_back(forecast);
+  auto curve = curve_of_camera(result, plan, inputs, info, frame);
   if (!curve) {
-    provenance.run = run_record(*result, seconds_since(begin));
-    return abandon(frame, plan, provenance, result->ended_by.value_or(curve.error()));
+    provenance.run = run_record(result, seconds_since(begin));
+    return abandon(frame, plan, provenance, curve.error());
   }
-  add_contrast_errors(*curve, result->contrasts);
-  std::map<double, double> shown;
-  for (const auto& point : curve->points) shown[point.set_delta_t_k] = point.delta_t_k;
-  TodCurve known;
-  if (!result->ended_by)
-    known = functions ? functions->known_for(*curve, stop) : known_functions(measured->functions, *curve);
-  give_shape(*curve, *result, plan, inputs, shown, &known, frame, stop);
-  curve->sensor = info.model + " " + info.serial;
-  curve->observer = observer_name(plan, inputs);
-  for (auto& point : curve->points) {
-    point.noise_counts = result->temporal_noise_counts;
-    point.lag1_correlation = result->lag1_correlation;
+  const auto fit = fit_meanwhile(*std::move(curve), *measured, plan, inputs, functions ? &*functions : nullptr);
+  std::unique_ptr<Meanwhile<Pairs>> pairs;
+  if (!result.ended_by) {
+    const auto camera_of = [&](std::stop_token halt) {
+      return PairedCamera{fit->get(std::move(halt)).curve, result.trials, result.set_ups};
+    };
+    pairs = pairs_meanwhile(camera_of, plan, inputs);
   }
-  if (auto kept = keep_grey_levels(*curve, *result, frame); !kept && !result->ended_by) result->ended_by = kept.error();
-  provenance.run = run_record(*result, seconds_since(begin));
-  examine(*curve, fit_options(plan));
+  auto measures = measures_of_camera(*measured, plan, inputs, bench, recording.get(), frame, stop);
+  bench = {};
+  say_that_it_is_fitted(result, plan, inputs, frame);
+  const FittedCurve& fitted = fit->get(stop);
+  keep_shape(result, fitted.said, frame);
+  provenance.run = run_record(result, seconds_since(begin));
   ExperimentOutcome outcome{.folder = folder->path(),
-                            .curve = std::move(*curve),
+                            .curve = fitted.curve,
                             .twin = std::nullopt,
                             .comparison = std::nullopt,
                             .verdict = {},
+                            .measures = std::move(measures),
                             .effects = inputs.effects,
                             .figures = figures_of(*provenance.run),
-                            .ended_by = result->ended_by};
-  outcome.measures = std::move(measured->measures);
-  outcome.presentations = std::move(result->presentations);
+                            .ended_by = result.ended_by,
+                            .presentations = std::move(result.presentations)};
   if (!outcome.ended_by) {
-    auto pairs = pairs_meanwhile({outcome.curve, result->trials, result->set_ups}, plan, inputs, stop);
-    TwinResults twin = run_twin(plan, inputs, outcome.curve, *folder, options.host, listener, stop);
-    provenance.twin_run = std::move(twin.run);
-    outcome.twin = std::move(twin.curve);
-    outcome.comparison = std::move(twin.comparison);
-    outcome.ended_by = std::move(twin.ended_by);
-    if (pairs) pair_with_twin(outcome, *std::move(pairs), inputs, frame);
-  }
-  if (!outcome.ended_by) {
-    if (outcome.measures) compare_picture(*outcome.measures, loaded, inputs);
-    auto measures = simulated_measures(loaded, inputs, frame, stop);
-    if (measures)
-      outcome.twin_measures = *std::move(measures);
-    else
-      outcome.ended_by = with_context("the simulated twin", measures.error());
+    FromCamera camera{.curve = &fitted.curve, .shown_delta_t_k = contrasts_seen(fitted.curve)};
+    if (plan.camera.contrast == ContrastUnit::kelvin) camera.responses = measured->options.contrast_response;
+    add_twin(outcome, provenance, camera, loaded, plan, inputs, {pairs.get(), twin_measures}, options.host, frame,
+             stop);
   }
   return concluded(std::move(outcome), plan, frame, provenance);
 }

@@ -1,7 +1,6 @@
 #include "bench/run/functions_meanwhile.h"
 
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <utility>
 
@@ -25,13 +24,12 @@ TodCurve known_functions(const std::map<double, ProportionTable>& tables, const 
 }
 
 FunctionsMeanwhile::FunctionsMeanwhile(const Plan& plan, const ExperimentInputs& inputs)
-    : made_(std::async(std::launch::async, [&plan, &inputs, stop = halt_.get_token()] {
-        return twin_tables(plan, inputs, std::nullopt, stop);
-      })) {}
+    : made_([&plan, &inputs](std::stop_token stop) {
+        return twin_tables(plan, inputs, std::nullopt, std::move(stop));
+      }) {}
 
 TodCurve FunctionsMeanwhile::known_for(const TodCurve& curve, std::stop_token stop) {
-  const std::stop_callback forward(std::move(stop), [this] { halt_.request_stop(); });
-  const auto tables = made_.get();
+  const auto& tables = made_.get(std::move(stop));
   return tables ? known_functions(*tables, curve) : TodCurve{};
 }
 

@@ -1,11 +1,11 @@
 // The functions of the twin, made while the camera measures.
 #pragma once
 
-#include <future>
 #include <map>
 #include <stop_token>
 
 #include "bench/run/experiment_inputs.h"
+#include "bench/run/meanwhile.h"
 #include "tod/psychometric/tod_curve.h"
 
 namespace todbench {
@@ -21,16 +21,12 @@ class FunctionsMeanwhile {
  public:
   /// Begins on a thread of its own; `plan` and `inputs` outlive it.
   FunctionsMeanwhile(const Plan& plan, const ExperimentInputs& inputs);
-  ~FunctionsMeanwhile() { halt_.request_stop(); }
-  FunctionsMeanwhile(const FunctionsMeanwhile&) = delete;
-  FunctionsMeanwhile& operator=(const FunctionsMeanwhile&) = delete;
 
   /// Waits, until stopped. known_functions() of them.
   [[nodiscard]] TodCurve known_for(const TodCurve& curve, std::stop_token stop);
 
  private:
-  std::stop_source halt_;
-  std::future<Result<std::map<double, ProportionTable>>> made_;
+  Meanwhile<Result<std::map<double, ProportionTable>>> made_;
 };
 
 }  // namespace todbench

@@ -84,16 +84,17 @@ PairedOutcome add_paired_ratios(Comparison& comparison, const PairedCamera& came
   return outcome;
 }
 
-std::optional<std::future<Pairs>> pairs_meanwhile(const PairedCamera& camera, const Plan& plan,
-                                                  const ExperimentInputs& inputs, std::stop_token stop) {
-  if (!pairs_asked(plan, inputs.sensor)) return std::nullopt;
-  return std::async(std::launch::async, [camera, &plan, &inputs, stop = std::move(stop)] {
+std::unique_ptr<Meanwhile<Pairs>> pairs_meanwhile(std::function<PairedCamera(std::stop_token)> camera_of,
+                                                  const Plan& plan, const ExperimentInputs& inputs) {
+  if (!pairs_asked(plan, inputs.sensor)) return nullptr;
+  return std::make_unique<Meanwhile<Pairs>>([camera_of = std::move(camera_of), &plan, &inputs](std::stop_token stop) {
+    const PairedCamera camera = camera_of(stop);
     Pairs pairs;
     const double margin = comparison_options(plan).margin_percent;
     for (const TodPoint& point : camera.curve.points)
       pairs.ratios.points.push_back({.set_delta_t_k = point.set_delta_t_k, .margin_percent = margin});
-    pairs.said =
-        add_paired_ratios(pairs.ratios, camera, inputs, paired_options(inputs, camera.set_ups, plan.seed, stop));
+    const PairedTwinOptions options = paired_options(inputs, camera.set_ups, plan.seed, std::move(stop));
+    pairs.said = add_paired_ratios(pairs.ratios, camera, inputs, options);
     return pairs;
   });
 }

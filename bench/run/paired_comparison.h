@@ -1,7 +1,8 @@
 // The comparison of a camera with its twin by the phases that both saw.
 #pragma once
 
-#include <future>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stop_token>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "bench/run/experiment_inputs.h"
+#include "bench/run/meanwhile.h"
 #include "sim_devices/prediction/paired_twin.h"
 #include "tod/comparison/comparison.h"
 #include "tod/measurement/measurement.h"
@@ -47,9 +49,10 @@ struct Pairs {
   Comparison ratios;  ///< of its points only the contrast, the margin and the paired ratio are set
   PairedOutcome said;
 };
-/// In a thread of its own, while the twin makes its own trials; nothing where the plan asks for none. All but `stop` is
-/// lent until it is ready.
-[[nodiscard]] std::optional<std::future<Pairs>> pairs_meanwhile(const PairedCamera& camera, const Plan& plan,
-                                                                const ExperimentInputs& inputs, std::stop_token stop);
+/// In a thread of its own, while the camera's physical measures are taken and the twin makes its own trials; null where
+/// the plan asks for none. `camera_of` is asked there, and may wait for its curve; what it refers to, plan and inputs
+/// outlive it.
+[[nodiscard]] std::unique_ptr<Meanwhile<Pairs>> pairs_meanwhile(std::function<PairedCamera(std::stop_token)> camera_of,
+                                                                const Plan& plan, const ExperimentInputs& inputs);
 
 }  // namespace todbench

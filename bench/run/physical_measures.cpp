@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "bench/run/module_chain.h"
 #include "bench/run/plate_picture.h"
 #include "bench/run/simulated_responses.h"
 #include "sim_devices/sensor/effect_row.h"
@@ -98,11 +99,13 @@ std::optional<double> closed_form_netd_k(const SensorSpec& spec, const SensorPla
 
 }  // namespace
 
-Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan, const MeasurementOptions& options,
-                                                        const ExperimentInputs& inputs, OpenedBench& bench,
-                                                        const SessionFrame& frame, std::stop_token stop) {
-  if (!plan.measures.any()) return std::nullopt;
-  phase(frame.folder, frame.listener, "physical measures");
+namespace {
+
+using MaybeMeasures = Result<std::optional<CameraMeasures>>;
+
+/// physical_measures() without a word. Precondition: some are asked for.
+MaybeMeasures measures_of_bench(const Plan& plan, const MeasurementOptions& options, const ExperimentInputs& inputs,
+                                OpenedBench& bench, std::stop_token stop) {
   auto measures = measure_camera(*bench.camera, *bench.target,
                                  {.noise = plan.measures.noise,
                                   .noise_frames = plan.measures.noise_frames,
@@ -127,8 +130,26 @@ Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan, const 
   if (measures->geometry) {
     if (const double u = relative_u_of_distance(plan); u > 0) measures->geometry->distance_relative_u = u;
   }
-  for (const auto& reason : measures->reasons) note(frame.folder, frame.listener, reason);
   return *std::move(measures);
+}
+
+/// Says what goes on, waits for `make`, and says what could not be measured. Nothing where none is asked for.
+template <typename Make>
+MaybeMeasures with_words(const Plan& plan, const SessionFrame& frame, const Make& make) {
+  if (!plan.measures.any()) return std::nullopt;
+  phase(frame.folder, frame.listener, "physical measures");
+  MaybeMeasures made = make();
+  if (!made || !*made) return made;
+  for (const auto& reason : (*made)->reasons) note(frame.folder, frame.listener, reason);
+  return made;
+}
+
+}  // namespace
+
+Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan, const MeasurementOptions& options,
+                                                        const ExperimentInputs& inputs, OpenedBench& bench,
+                                                        const SessionFrame& frame, std::stop_token stop) {
+  return with_words(plan, frame, [&] { return measures_of_bench(plan, options, inputs, bench, std::move(stop)); });
 }
 
 namespace {
@@ -157,10 +178,11 @@ void compare_picture(CameraMeasures& measures, const LoadedPlan& loaded, const E
   compare_with(measures, *whole_sensor(loaded, inputs), inputs);
 }
 
-Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loaded, const ExperimentInputs& inputs,
-                                                         const SessionFrame& frame, std::stop_token stop) {
+namespace {
+
+/// simulated_measures() without a word. Precondition: some are asked for.
+MaybeMeasures measures_of_sensor(const LoadedPlan& loaded, const ExperimentInputs& inputs, std::stop_token stop) {
   Plan plan = loaded.plan();
-  if (!plan.measures.any()) return std::nullopt;
   const auto model = whole_sensor(loaded, inputs);
   // It does not drift: the default time says so as well as an hour, of a program that makes the pictures the shortest.
   plan.measures.drift_s =
@@ -170,7 +192,7 @@ Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loade
   if (!response) return tl::unexpected(response.error());
   options.contrast_response = *std::move(response);
   OpenedBench bench = simulated_bench(model, loaded.shown_plates(), plan.target.distance_m, {}, inputs.motion);
-  auto measures = physical_measures(plan, options, inputs, bench, frame, std::move(stop));
+  auto measures = measures_of_bench(plan, options, inputs, bench, std::move(stop));
   if (measures && *measures) compare_with(**measures, *model, inputs);
   if (measures && *measures && (*measures)->noise)
     (*measures)->netd_model_k = closed_form_netd_k(model->spec(), model->plan());
@@ -184,6 +206,24 @@ Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loade
   if (measures && *measures && (*measures)->mtf) add_closed_form(*(*measures)->mtf, *model, inputs);
   if (measures && *measures && (*measures)->ctf) add_closed_form(*(*measures)->ctf, *model, inputs);
   return measures;
+}
+
+}  // namespace
+
+Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loaded, const ExperimentInputs& inputs,
+                                                         const SessionFrame& frame, std::stop_token stop) {
+  return with_words(loaded.plan(), frame, [&] { return measures_of_sensor(loaded, inputs, std::move(stop)); });
+}
+
+MeasuresMeanwhile::MeasuresMeanwhile(const LoadedPlan& loaded, const ExperimentInputs& inputs)
+    : loaded_(loaded), inputs_(inputs) {
+  if (!loaded.plan().measures.any() || has_modules(loaded.plan(), inputs.sensor)) return;
+  made_.emplace([this](std::stop_token stop) { return measures_of_sensor(loaded_, inputs_, std::move(stop)); });
+}
+
+Result<std::optional<CameraMeasures>> MeasuresMeanwhile::take(const SessionFrame& frame, std::stop_token stop) {
+  if (!made_) return simulated_measures(loaded_, inputs_, frame, std::move(stop));
+  return with_words(loaded_.plan(), frame, [&] { return made_->get(std::move(stop)); });
 }
 
 }  // namespace todbench

@@ -6,6 +6,7 @@
 
 #include "bench/run/devices.h"
 #include "bench/run/experiment_inputs.h"
+#include "bench/run/meanwhile.h"
 #include "bench/run/session_frame.h"
 #include "tod/camera_measures/camera_measures.h"
 
@@ -24,6 +25,21 @@ namespace todbench {
 [[nodiscard]] Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loaded,
                                                                        const ExperimentInputs& inputs,
                                                                        const SessionFrame& frame, std::stop_token stop);
+
+/// simulated_measures() on a thread of its own: they depend on the plan alone, and a camera that measures leaves
+/// processor time. A program in place of the sensor is left alone until its turn comes.
+class MeasuresMeanwhile {
+ public:
+  /// Begins, unless they have to wait; `loaded` and `inputs` outlive it.
+  MeasuresMeanwhile(const LoadedPlan& loaded, const ExperimentInputs& inputs);
+  /// Waits for them, and says then what there is to say.
+  [[nodiscard]] Result<std::optional<CameraMeasures>> take(const SessionFrame& frame, std::stop_token stop);
+
+ private:
+  const LoadedPlan& loaded_;
+  const ExperimentInputs& inputs_;
+  std::optional<Meanwhile<Result<std::optional<CameraMeasures>>>> made_;
+};
 
 /// Puts the picture of the plan's sensor beside the mean picture of the plate, where there is one; a reason where they
 /// cannot be compared.

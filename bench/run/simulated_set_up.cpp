@@ -10,14 +10,17 @@ namespace todbench {
 
 Result<SimulatedSetUp> simulated_set_up(const Plan& plan, const ExperimentInputs& inputs,
                                         std::map<double, double> shown_delta_t_k, std::stop_token stop,
-                                        const SimulatedSourceOptions& source) {
+                                        const SimulatedSourceOptions& source, std::map<std::string, double> responses) {
   const auto model = std::make_shared<const SensorModel>(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
   MeasurementOptions options = simulated_options(plan, inputs);
-  auto response = simulated_responses(*model, plan, inputs.plates, options, stop);
-  if (!response) return tl::unexpected(response.error());
+  if (responses.empty()) {
+    auto computed = simulated_responses(*model, plan, inputs.plates, options, stop);
+    if (!computed) return tl::unexpected(computed.error());
+    responses = *std::move(computed);
+  }
   auto functions = stopping_tables(plan, inputs, std::move(stop));
   if (!functions) return tl::unexpected(functions.error());
-  options.contrast_response = std::move(*response);
+  options.contrast_response = std::move(responses);
   auto schedule = make_schedule(plan, inputs.plates, inputs.sensor.ifov_mrad(), Side::simulated,
                                 RandomStream(plan.seed, "schedule.simulated"), *functions);
   return SimulatedSetUp{.options = std::move(options),

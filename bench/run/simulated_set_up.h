@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <stop_token>
+#include <string>
 
 #include "bench/run/devices.h"
 #include "bench/run/experiment_inputs.h"
@@ -20,9 +21,11 @@ struct SimulatedSetUp {
   std::map<double, ProportionTable> functions{};  ///< that an adaptive schedule stops by (stopping_tables())
 };
 
-/// `shown_delta_t_k` and `source` as for simulated_bench(). Errors as contrast_response().
+/// `shown_delta_t_k` and `source` as for simulated_bench(). `responses`: of simulated_responses() for the same sensor
+/// and kelvin, where they are known; empty: they are computed, half a second a plate. Errors as contrast_response().
 [[nodiscard]] Result<SimulatedSetUp> simulated_set_up(const Plan& plan, const ExperimentInputs& inputs,
                                                       std::map<double, double> shown_delta_t_k, std::stop_token stop,
-                                                      const SimulatedSourceOptions& source = {});
+                                                      const SimulatedSourceOptions& source = {},
+                                                      std::map<std::string, double> responses = {});
 
 }  // namespace todbench
