@@ -66,7 +66,8 @@ int cheapest_frames(GradedDesignFigures design, double single_s, double frame_s)
 double graded_interval_factor(const GradedDesignFigures& design) {
   const double freedom = graded_freedom(design);
   const double t = distribution::quantile(distribution::StudentsT(freedom), 0.975);
-  return t * std::sqrt(distribution::quantile(distribution::ChiSquared(freedom), 0.95) / freedom);
+  const double of_shared_detectors = design.set_ups >= cancelling_set_ups ? 1.06 : 1;
+  return of_shared_detectors * t * std::sqrt(distribution::quantile(distribution::ChiSquared(freedom), 0.95) / freedom);
 }
 
 }  // namespace todbench

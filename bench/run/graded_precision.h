@@ -44,7 +44,8 @@ inline constexpr std::array frame_choices{1, 2, 4, 8};
 [[nodiscard]] int cheapest_frames(GradedDesignFigures design, double single_s, double frame_s);
 
 /// Half a 95 % interval of ln S75 over the standard error behind it (Student's t), times what 19 of 20 runs stay below:
-/// a variance from so few set-ups scatters as chi square over its degrees of freedom.
+/// a variance from so few set-ups scatters as chi square over its degrees of freedom. From five set-ups on 1.06 of it,
+/// the root of what chance adds for detectors that set-ups share (clustered_variance.h).
 [[nodiscard]] double graded_interval_factor(const GradedDesignFigures& design);
 
 }  // namespace todbench
