@@ -12,11 +12,16 @@ double seconds_between(std::chrono::steady_clock::time_point from, std::chrono::
   return std::max(0.0, std::chrono::duration<double>(to - from).count());
 }
 
+double real_difference_k(const BlackBodyOptions& options, double indicated_k) {
+  return options.real_delta_t_k ? options.real_delta_t_k(indicated_k) : indicated_k;
+}
+
 // Written so that NaN fails.
 bool is_valid(const BlackBodyOptions& o) {
   return o.time_constant_s > 0 && o.stable_window_k > 0 && o.stable_dwell_s >= 0 && o.resolution_k > 0 &&
          o.min_delta_t_k <= 0 && o.max_delta_t_k >= 0 && o.ambient_k > 0 && std::isfinite(o.plate_coupling) &&
-         std::isfinite(o.calibration_gain) && std::isfinite(o.calibration_offset_k) && o.now;
+         std::isfinite(real_difference_k(o, o.min_delta_t_k)) && std::isfinite(real_difference_k(o, o.max_delta_t_k)) &&
+         o.now;
 }
 
 }  // namespace
@@ -54,7 +59,7 @@ BlackBodyState BlackBody::state() const {
   BlackBodyState state;
   state.set_point_k = current.set_point_k;
   state.indicated_delta_t_k = indicated(current, time);
-  state.delta_t_k = options_.calibration_gain * state.indicated_delta_t_k + options_.calibration_offset_k;
+  state.delta_t_k = real_difference_k(options_, state.indicated_delta_t_k);
   state.plate_temperature_k = options_.ambient_k + options_.plate_coupling * state.delta_t_k;
   state.black_body_temperature_k = state.plate_temperature_k + state.delta_t_k;
   // The exponential enters the window at tau ln(gap/window) and never leaves it.

@@ -33,9 +33,9 @@ struct BlackBodyOptions {
   double ambient_k = 295;       ///< of the plate when the difference is zero
   /// The radiator heats the plate before it: plate = ambient + coupling * difference.
   double plate_coupling = 0.02;
-  /// A sensor that is not exact: real difference = gain * sensor + offset. 1 and 0 are a perfectly calibrated
-  /// instrument.
-  double calibration_gain = 1, calibration_offset_k = 0;
+  /// A sensor that is not exact: the real difference where it says `indicated_k`, K. Called from any thread; finite.
+  /// Empty: a perfectly calibrated instrument.
+  std::function<double(double indicated_k)> real_delta_t_k{};
   /// Time base of the settling; called from any thread. Never runs backwards.
   std::function<std::chrono::steady_clock::time_point()> now = [] { return std::chrono::steady_clock::now(); };
 };

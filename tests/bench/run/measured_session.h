@@ -75,7 +75,7 @@ class MeasuredSession : public ::testing::Test {
     BlackBodyOptions black_body;
     black_body.time_constant_s = 1;
     black_body.stable_dwell_s = 0;
-    black_body.calibration_gain = 1.02;
+    black_body.real_delta_t_k = [](double indicated_k) { return 1.02 * indicated_k; };
     black_body.now = clock.now();
     black_body_ = BlackBody::start(black_body).value();
     PlateStageOptions stage;

@@ -133,8 +133,7 @@ TEST(BlackBodyTest, ShowsTheHeatedPlateAndTheErrorOfItsSensor) {
   options.now = clock.now();
   options.ambient_k = 290;
   options.plate_coupling = 0.1;
-  options.calibration_gain = 0.9;
-  options.calibration_offset_k = 0.05;
+  options.real_delta_t_k = [](double indicated_k) { return 0.9 * indicated_k + 0.05; };
   const auto instrument = BlackBody::start(options).value();
   PlainSocket socket(instrument->endpoint());
 
@@ -147,14 +146,36 @@ TEST(BlackBodyTest, ShowsTheHeatedPlateAndTheErrorOfItsSensor) {
   EXPECT_EQ(socket.ask("MEAS:TEMP:BBOD?"), "299.9550");
 }
 
+TEST(BlackBodyTest, ShowsAnotherContrastThanItSaysAndAnotherErrorAtEverySetPoint) {
+  FakeClock clock;
+  BlackBodyOptions options;
+  options.now = clock.now();
+  options.real_delta_t_k = [](double indicated_k) { return indicated_k < 1 ? indicated_k + 0.01 : 0.98 * indicated_k; };
+  const auto instrument = BlackBody::start(options).value();
+  PlainSocket socket(instrument->endpoint());
+
+  socket.ask("SOUR:TEMP:DIFF 0.25;DIFF?");
+  clock.advance(1000);  // exp(-250) of the way is left
+  EXPECT_NEAR(instrument->state().delta_t_k, 0.26, 1e-9);
+  EXPECT_NEAR(instrument->state().indicated_delta_t_k, 0.25, 1e-9);
+  EXPECT_EQ(socket.ask("MEAS:TEMP:DIFF?;:SOUR:TEMP:DIFF?;:STAT:OPER:COND?"), "0.2500;0.2500;0");
+
+  socket.ask("SOUR:TEMP:DIFF 2;DIFF?");
+  clock.advance(1000);
+  EXPECT_NEAR(instrument->state().delta_t_k, 1.96, 1e-9);
+  EXPECT_EQ(socket.ask("MEAS:TEMP:DIFF?;:SOUR:TEMP:DIFF?;:STAT:OPER:COND?"), "2.0000;2.0000;0");
+}
+
 TEST(BlackBodyTest, RefusesImpossibleOptionsAndASecondOneOnItsPort) {
-  BlackBodyOptions bad;
+  BlackBodyOptions bad, nowhere;
   bad.time_constant_s = std::nan("");
+  nowhere.real_delta_t_k = [](double) { return std::nan(""); };
   const auto first = black_body(FakeClock());
   BlackBodyOptions same_port;
   same_port.server.port = static_cast<std::uint16_t>(std::stoi(first->endpoint().substr(10)));
 
   EXPECT_EQ(BlackBody::start(bad).error().code, ErrorCode::invalid_input);
+  EXPECT_EQ(BlackBody::start(nowhere).error().code, ErrorCode::invalid_input);
   EXPECT_EQ(BlackBody::start(same_port).error().code, ErrorCode::not_found);
 }
 
