@@ -118,7 +118,7 @@ EmulationArguments emulation_for(const Plan& plan) {
 }
 
 #ifdef TODBENCH_WITH_ARAVIS
-Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& arguments) {
+Result<LaboratoryOptions> laboratory_options(const EmulationArguments& arguments) {
   LaboratoryOptions options;
   auto sensor = load_sensor(arguments.sensor);
   if (!sensor) return tl::unexpected(sensor.error());
@@ -187,7 +187,13 @@ Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& a
   options.stage.seed = arguments.seed;
   options.stage.plate_change_s = 0.05;
   options.stage.mounting_change_s = 0.05;
-  return Laboratory::start(std::move(options));
+  return options;
+}
+
+Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& arguments) {
+  auto options = laboratory_options(arguments);
+  if (!options) return tl::unexpected(options.error());
+  return Laboratory::start(*std::move(options));
 }
 
 Plan with_laboratory(Plan plan, const Laboratory& laboratory) {

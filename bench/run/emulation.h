@@ -48,6 +48,9 @@ struct EmulationArguments {
 [[nodiscard]] EmulationArguments emulation_for(const Plan& plan);
 
 #ifdef TODBENCH_WITH_ARAVIS
+/// What start_laboratory() starts. Errors: of sensor and plates.
+[[nodiscard]] Result<LaboratoryOptions> laboratory_options(const EmulationArguments& arguments);
+
 /// Starts camera, black body and plate stage. Their settling is that of a bench in fast motion: 4 ms time constant and
 /// stable after 10 ms, 50 ms per plate or mounting, 1 m/s and 5 ms to come to rest, so that a shift of some millimetres
 /// ends within a frame of 20 ms.

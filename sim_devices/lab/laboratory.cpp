@@ -34,6 +34,13 @@ ConnectCamera connect_gige(const EmulatedGigeCameraConfig& config, EmulatedGigeC
   };
 }
 
+/// The sensor as a camera states it whose kelvin are `scale` true ones.
+SensorSpec as_stated(SensorSpec sensor, double scale) {
+  sensor.kelvin_per_count *= scale;
+  sensor.offset_k = scale * sensor.offset_k + (1 - scale) * sensor.scene_temperature_k;
+  return sensor;
+}
+
 }  // namespace
 
 struct Laboratory::State {
@@ -53,14 +60,15 @@ struct Laboratory::State {
   /// Frame k shows what is before the camera at that moment, with the noise of exposure k.
   [[nodiscard]] Result<void> connect_camera() {
     corrected_at = 0;
-    auto connected = options.connect(options.sensor, [this, first = next_exposure.load()](std::uint64_t index) {
+    const LaboratoryExposure expose = [this, first = next_exposure.load()](std::uint64_t index) {
       next_exposure = first + index + 1;
       since_power_up = index + 1;
       if (monitor) return monitor->expose(first + index);
       PlateScene scene = scene_at(frame_time_s(index));
       scene.delta_t_k = taken_in_k(scene.delta_t_k, index);
       return exposed(std::move(scene), first + index, index);
-    });
+    };
+    auto connected = options.connect(as_stated(options.sensor, options.stated_scale), expose);
     if (!connected) return tl::unexpected(connected.error());
     camera = std::move(*connected);
     return {};
@@ -117,6 +125,8 @@ Laboratory::~Laboratory() = default;
 
 Result<std::unique_ptr<Laboratory>> Laboratory::start(LaboratoryOptions options) {
   if (options.plates.empty()) return fail(ErrorCode::invalid_input, "the emulated laboratory needs a plate");
+  // Written so that NaN fails.
+  if (!(options.stated_scale > 0)) return fail(ErrorCode::invalid_input, "the stated scale must be above 0");
   auto state = std::make_unique<State>();
   state->options = std::move(options);
   LaboratoryOptions& o = state->options;

@@ -33,6 +33,9 @@ struct LaboratoryOptions {
   /// Another camera than the GigE Vision one. Its counts must be those of `sensor`.
   ConnectCamera connect;
   EmulatedGigeCameraConfig camera;  ///< geometry, rate and scale are filled in from the sensor
+  /// Kelvin that the camera states over true ones, from `scene_temperature_k` of the sensor on; > 0. Of cameras that
+  /// state what a count is: where the kind of camera fixes it, nothing is stated otherwise.
+  double stated_scale = 1;
   BlackBodyOptions black_body;
   PlateStageOptions stage;  ///< plates are filled in
   /// In place of black body and plate before the camera, upright. The instruments are there and show nothing.
