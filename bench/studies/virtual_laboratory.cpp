@@ -1,5 +1,6 @@
 #include "bench/studies/virtual_laboratory.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -82,7 +83,7 @@ Result<MeasurementResult> measured_on(OpenedBench& bench, const Plan& plan, cons
   MeasurementOptions options = measurement_options(plan, inputs.plates, plan.camera.ifov_mrad);
   // A plan that names neither has right and wrong answers and a Weibull function here.
   if (plan.schedule.answers == AnswersChoice::graded) take_answers(options, plan, inputs);
-  options.free_running = false;
+  options.free_running = !bench.simulated;
   const SensorModel model(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
   auto response = simulated_responses(model, plan, inputs.plates, options, stop);
   if (!response) return tl::unexpected(response.error());
@@ -95,6 +96,13 @@ Result<MeasurementResult> measured_on(OpenedBench& bench, const Plan& plan, cons
   return result;
 }
 
+/// The row of the finite trials, where there is one.
+const AppliedRow* trials_of(const PointUncertainty& budget) {
+  const auto row = std::find_if(budget.rows.begin(), budget.rows.end(),
+                                [](const AppliedRow& one) { return one.row.name == finite_trials_row; });
+  return row != budget.rows.end() ? &*row : nullptr;
+}
+
 /// Of the contrasts that have a threshold with both sides of its interval.
 std::vector<LaboratoryPoint> points_of(std::uint64_t laboratory, const TodCurve& curve,
                                        const CurveUncertainty& uncertainty) {
@@ -103,7 +111,8 @@ std::vector<LaboratoryPoint> points_of(std::uint64_t laboratory, const TodCurve&
     const TodPoint& point = curve.points[i];
     const PointUncertainty& budget = uncertainty.points[i];
     const Interval &statistical = budget.statistical_mrad, &expanded = budget.expanded_mrad;
-    if (!point.fit.threshold || !budget.combined || !expanded.low || !expanded.high) continue;
+    const AppliedRow* trials = trials_of(budget);
+    if (!point.fit.threshold || !budget.combined || !trials || !expanded.low || !expanded.high) continue;
     points.push_back({.laboratory = laboratory,
                       .delta_t_k = point.set_delta_t_k,
                       .seen_delta_t_k = point.delta_t_k,
@@ -114,7 +123,9 @@ std::vector<LaboratoryPoint> points_of(std::uint64_t laboratory, const TodCurve&
                       .high = *expanded.high,
                       .u = budget.combined->u,
                       .degrees_of_freedom = budget.combined->nu_eff,
-                      .contrast_slope = budget.contrast_slope});
+                      .contrast_slope = budget.contrast_slope,
+                      .u_trials = trials->standard_uncertainty,
+                      .trials_freedom = trials->row.degrees_of_freedom});
   }
   return points;
 }
@@ -152,34 +163,42 @@ LaboratoryErrors drawn_errors(const Plan& plan, std::uint64_t seed, std::uint64_
   return errors;
 }
 
-OpenedBench erring_bench(const Plan& plan, const ExperimentInputs& inputs, const LaboratoryErrors& errors,
-                         std::uint64_t seed) {
-  std::vector<TargetPlate> plates = inputs.plates;
-  for (TargetPlate& plate : plates) {
+RealSetUp real_set_up(const Plan& plan, const ExperimentInputs& inputs, const LaboratoryErrors& errors) {
+  RealSetUp real{.plates = inputs.plates,
+                 .distance_m = with_error(plan.target.distance_m, errors.distance_m),
+                 .camera_scale = 1 + errors.camera_scale.relative};
+  for (TargetPlate& plate : real.plates) {
     for (PlateTriangle& triangle : plate.triangles)
       triangle.size_mm = 1e3 * with_error(1e-3 * triangle.size_mm, errors.cut_outs_m);
   }
-  std::map<double, double> shown_k;
   for (std::size_t c = 0; c < plan.target.delta_t_k.size(); ++c) {
     const double told = plan.target.delta_t_k[c];
-    shown_k[told] = with_error(told, errors.contrasts_k[c]);
+    real.shown_k[told] = with_error(told, errors.contrasts_k[c]);
   }
+  return real;
+}
+
+OpenedBench erring_bench(const Plan& plan, const ExperimentInputs& inputs, const LaboratoryErrors& errors,
+                         std::uint64_t seed) {
+  const RealSetUp real = real_set_up(plan, inputs, errors);
   const auto model = std::make_shared<const SensorModel>(inputs.sensor, inputs.effects, inputs.accuracy, seed);
-  OpenedBench bench = simulated_bench(model, plates, with_error(plan.target.distance_m, errors.distance_m), shown_k);
+  OpenedBench bench = simulated_bench(model, real.plates, real.distance_m, real.shown_k);
   bench.target = std::make_unique<UnknowingTarget>(std::move(bench.target));
-  bench.camera = std::make_unique<WronglyScaledSource>(std::move(bench.camera), 1 + errors.camera_scale.relative,
+  bench.camera = std::make_unique<WronglyScaledSource>(std::move(bench.camera), real.camera_scale,
                                                        inputs.sensor.scene_temperature_k);
   return bench;
 }
 
-Result<std::vector<LaboratoryPoint>> measured_by_laboratory(const Plan& of_all, const ExperimentInputs& inputs,
-                                                            std::uint64_t laboratory, std::stop_token stop) {
-  if (!of_all.uncertainty.stated())
+Plan plan_of_laboratory(Plan of_all, std::uint64_t laboratory) {
+  of_all.seed += 2 * laboratory;
+  return of_all;
+}
+
+Result<std::vector<LaboratoryPoint>> measured_on_bench(OpenedBench& bench, const Plan& plan,
+                                                       const ExperimentInputs& inputs, std::uint64_t laboratory,
+                                                       std::stop_token stop) {
+  if (!plan.uncertainty.stated())
     return fail(ErrorCode::invalid_input, "[uncertainty] states no budget by which a laboratory could err");
-  // Even and odd seeds: camera and twin share no noise, nor do two laboratories.
-  Plan plan = of_all;
-  plan.seed += 2 * laboratory;
-  OpenedBench bench = erring_bench(plan, inputs, drawn_errors(plan, of_all.seed, laboratory), plan.seed + 1);
   const auto measured = measured_on(bench, plan, inputs, stop);
   if (!measured) return tl::unexpected(measured.error());
   auto curve = tod_curve(measured->trials, fit_options(plan));
@@ -195,6 +214,13 @@ Result<std::vector<LaboratoryPoint>> measured_by_laboratory(const Plan& of_all, 
   const auto uncertainty = curve_uncertainty(plan, *curve, measured->presentations, std::nullopt);
   if (!uncertainty) return tl::unexpected(uncertainty.error());
   return points_of(laboratory, *curve, **uncertainty);
+}
+
+Result<std::vector<LaboratoryPoint>> measured_by_laboratory(const Plan& of_all, const ExperimentInputs& inputs,
+                                                            std::uint64_t laboratory, std::stop_token stop) {
+  const Plan plan = plan_of_laboratory(of_all, laboratory);
+  OpenedBench bench = erring_bench(plan, inputs, drawn_errors(plan, of_all.seed, laboratory), plan.seed + 1);
+  return measured_on_bench(bench, plan, inputs, laboratory, std::move(stop));
 }
 
 double normalised_error(const LaboratoryPoint& a, const LaboratoryPoint& b) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <stop_token>
 #include <vector>
@@ -30,6 +31,15 @@ struct LaboratoryErrors {
 /// them, nor does the IFOV, for sizes come from the plate. The same laboratory of the same seed errs the same way.
 [[nodiscard]] LaboratoryErrors drawn_errors(const Plan& plan, std::uint64_t seed, std::uint64_t laboratory);
 
+/// What is really there where a laboratory has these errors; the plan says what it believes.
+struct RealSetUp {
+  std::vector<TargetPlate> plates;     ///< by the names that they are believed to have
+  double distance_m = 0;               ///< entrance pupil to plate
+  std::map<double, double> shown_k{};  ///< by the contrast that was told
+  double camera_scale = 1;             ///< kelvin that the camera states over true ones
+};
+[[nodiscard]] RealSetUp real_set_up(const Plan& plan, const ExperimentInputs& inputs, const LaboratoryErrors& errors);
+
 /// The simulated sensor of the inputs as camera before a scene with these errors. The target says what it was told, and
 /// the camera says what its scale says.
 [[nodiscard]] OpenedBench erring_bench(const Plan& plan, const ExperimentInputs& inputs, const LaboratoryErrors& errors,
@@ -46,11 +56,23 @@ struct LaboratoryPoint {
   double u = 0;                                      ///< standard
   std::optional<double> degrees_of_freedom{};        ///< of u; nothing: very many
   double contrast_slope = 0;                         ///< that the budget took
+  double u_trials = 0;                               ///< standard, of the finite trials alone
+  std::optional<double> trials_freedom{};            ///< degrees of freedom of it; nothing: very many
 };
 
-/// The trials of the plan by one laboratory, from frames to the expanded interval; no session is written and no twin is
-/// compared. Camera and schedule have the seed of the plan and the number of the laboratory. Contrasts without a
-/// threshold have no point. Errors of measure(); `invalid_input` where the plan has no budget.
+/// The plan with the seed of one laboratory. They are two apart, and the one between is that of its camera: camera and
+/// twin share no noise, nor do two laboratories.
+[[nodiscard]] Plan plan_of_laboratory(Plan of_all, std::uint64_t laboratory);
+
+/// The trials of plan_of_laboratory() on a bench, from frames to the expanded interval; no session is written and no
+/// twin is compared. Contrasts without a threshold have no point. Errors: of measure() and of the fits; `invalid_input`
+/// where the plan has no budget.
+[[nodiscard]] Result<std::vector<LaboratoryPoint>> measured_on_bench(OpenedBench& bench, const Plan& plan,
+                                                                     const ExperimentInputs& inputs,
+                                                                     std::uint64_t laboratory, std::stop_token stop);
+
+/// One laboratory on simulated frames: erring_bench() with drawn_errors(), measured as measured_on_bench() does. Camera
+/// and schedule have the seed of the plan and the number of the laboratory. Errors: those of measured_on_bench().
 [[nodiscard]] Result<std::vector<LaboratoryPoint>> measured_by_laboratory(const Plan& plan,
                                                                           const ExperimentInputs& inputs,
                                                                           std::uint64_t laboratory,

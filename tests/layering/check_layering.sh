@@ -55,7 +55,7 @@ BEGIN {
   may["bench/reference_set"] = science " acquisition/recording bench/text bench/plan bench/judgement bench/session"
   may["bench/observer_fit"] = science " bench/text bench/plan bench/judgement bench/session bench/report"
   may["bench/run"] = science " " devices " bench/text bench/plan bench/judgement bench/session bench/report"
-  may["bench/studies"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
+  may["bench/studies"] = science " sim_devices/lab bench/text bench/plan bench/judgement bench/session bench/report bench/run"
   may["bench/history"] = core " bench/text bench/plan bench/judgement bench/session"
   may["bench/serve"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
   may["bench/sweep"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"

@@ -5,11 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <limits>
 #include <map>
 #include <set>
 #include <sstream>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -68,6 +72,12 @@ class LaboratoryRecord {
       fields >> point.laboratory;
       for (double* value : numbers(point)) fields >> *value;
       fields >> freedom >> end;
+      if (!end.empty() && end != "end") {  // lines without the uncertainty of the trials are read, too
+        double trials_freedom = 0;
+        point.u_trials = std::strtod(end.c_str(), nullptr);
+        fields >> trials_freedom >> end;
+        if (trials_freedom > 0) point.trials_freedom = trials_freedom;
+      }
       if (end != "end") break;  // a line that was cut off
       if (freedom > 0) point.degrees_of_freedom = freedom;
       points_.push_back(point);
@@ -84,7 +94,8 @@ class LaboratoryRecord {
     for (LaboratoryPoint point : points) {
       out << point.laboratory;
       for (const double* value : numbers(point)) out << " " << *value;
-      out << " " << point.degrees_of_freedom.value_or(0) << " end\n";
+      out << " " << point.degrees_of_freedom.value_or(0) << " " << point.u_trials << " "
+          << point.trials_freedom.value_or(0) << " end\n";
       points_.push_back(point);
       done_.insert(point.laboratory);
     }
@@ -101,14 +112,17 @@ class LaboratoryRecord {
   std::set<std::uint64_t> done_;
 };
 
+/// By which way a laboratory is measured.
+using MeasureLaboratory = std::function<Result<std::vector<LaboratoryPoint>>(
+    const Plan& plan, const ExperimentInputs& inputs, std::uint64_t laboratory, std::stop_token stop)>;
+
 /// Makes the laboratories that the record does not have. Numbers begin with 1.
-inline void run_laboratories(LaboratoryRecord& record, const GradedDesign& design, std::uint64_t seed,
-                             std::uint64_t laboratories) {
-  const Plan plan = plan_of_laboratories(design, seed);
+inline void run_laboratories(LaboratoryRecord& record, const GradedDesign& design, const Plan& plan,
+                             std::uint64_t laboratories, const MeasureLaboratory& measure = measured_by_laboratory) {
   const ExperimentInputs inputs = inputs_of(plan, design.camera);
   for (std::uint64_t laboratory = 1; laboratory <= laboratories; ++laboratory) {
     if (record.has(laboratory)) continue;
-    const auto points = measured_by_laboratory(plan, inputs, laboratory, {});
+    const auto points = measure(plan, inputs, laboratory, {});
     ASSERT_TRUE(points) << points.error().message;
     ASSERT_EQ(points->size(), design.delta_t_k.size());
     record.append(*points);
@@ -179,6 +193,19 @@ inline LaboratorySummary summary_of(const std::vector<LaboratoryPoint>& points, 
   }
   if (out.pairs > 0) out.within_one /= out.pairs;
   return out;
+}
+
+inline void print_heading_of_summaries() {
+  std::printf(
+      "| contrast | laboratories | bias | of it drawn | scatter | u | U | trials alone | coverage | k = 2 | E_n | "
+      "slope |\n");
+}
+
+inline void print(const LaboratorySummary& s, double contrast, double drawn_percent) {
+  std::printf(
+      "| %g K | %d | %+.2f %% | %+.2f %% | %.2f %% | %.2f %% | %.2f %% | %.3f | %.3f | %.3f | %.3f of %d | %.3f |\n",
+      contrast, s.laboratories, s.bias_percent, drawn_percent, s.scatter_percent, s.u_percent, s.half_width_percent,
+      s.statistical_coverage, s.coverage, s.coverage_k2, s.within_one, s.pairs, s.slope);
 }
 
 /// Decisions about units whose true acuity lies `offset` (in ln) above what is demanded, by the rule.

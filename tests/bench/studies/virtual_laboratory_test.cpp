@@ -42,7 +42,7 @@ TEST(VirtualLaboratory, HoldsTheTruthWhereTrialsAloneDoNot) {
   const TemporaryFolder folder;
   LaboratoryRecord record((folder.path() / "points").string());
   constexpr std::uint64_t laboratories = 2;
-  run_laboratories(record, design, 700, laboratories);
+  run_laboratories(record, design, plan_of_laboratories(design, 700), laboratories);
   // As of virtual_laboratory_study: standard error 0.1 %.
   const std::map<double, double> truth{{1.93, 2.1373}, {0.23, 3.4384}};
   for (const double contrast : design.delta_t_k) {
