@@ -60,8 +60,8 @@ Json fits_of(TodCurve curve) {
   return curve_record(curve);
 }
 
-/// Whether the intervals of a session were made by the same rule: graded answers whose trials do not say where they were
-/// in the picture have intervals without what set-ups share there.
+/// Whether the intervals of a session were made by the same rule: graded answers whose trials do not say where they
+/// were in the picture have intervals without what set-ups share there.
 Result<bool> comparable_fits(const std::filesystem::path& session, const TodCurve& curve) {
   const bool of_set_ups = std::ranges::any_of(
       curve.points, [](const TodPoint& point) { return point.fit.interval == IntervalKind::set_ups; });

@@ -49,7 +49,7 @@ TEST(CameraTrials, GradedAnswersScatterLessAboutTheSameProportions) {
   const SensorSpec sensor = test::sc2000();
   const auto found = camera_trials(
       sensor, {&observer},
-      {.delta_t_k = 0.23, .sizes_pitch = {2.6}, .presentations = 30, .frames = 4, .accuracy = Accuracy::draft()});
+      {.delta_t_k = 0.23, .sizes_pitch = {2.6}, .presentations = 30, .frames = 16, .accuracy = Accuracy::draft()});
 
   ASSERT_TRUE(found) << found.error().message;
   for (const PictureAnswers* answers : {&found->observers[0].still, &found->observers[0].super_resolved}) {
