@@ -17,11 +17,10 @@
 #include <vector>
 
 #include "bench/plan/plan_options.h"
-#include "bench/run/devices.h"
 #include "bench/run/functions_meanwhile.h"
 #include "bench/run/paired_comparison.h"
 #include "bench/run/prediction.h"
-#include "bench/run/simulated_responses.h"
+#include "bench/run/simulated_set_up.h"
 #include "bench/run/twin_shapes.h"
 #include "tod/plate/test_pattern.h"
 
@@ -88,11 +87,8 @@ class DesignParts {
 
   [[nodiscard]] const GradedDesign& design() const { return design_; }
 
-  const std::map<std::string, double>& response(const SensorModel& model, const Plan& plan,
-                                                const ExperimentInputs& inputs, const MeasurementOptions& options) {
-    if (response_.empty()) response_ = simulated_responses(model, plan, inputs.plates, options, {}).value();
-    return response_;
-  }
+  /// Of simulated_set_up(); empty before the first run.
+  std::map<std::string, double> responses;
 
   /// Of the twin, where a run saw the contrasts nearly as they were set.
   TodCurve known(const TodCurve& curve, std::uint64_t seed) {
@@ -106,21 +102,20 @@ class DesignParts {
 
  private:
   GradedDesign design_;
-  std::map<std::string, double> response_;
   std::map<std::uint64_t, std::map<double, ProportionTable>> tables_;
 };
 
 /// The trials of a run, `simulate` without its session.
 inline std::vector<Trial> trials_of(const Plan& plan, const ExperimentInputs& inputs, DesignParts& parts) {
-  const auto model = std::make_shared<const SensorModel>(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
-  MeasurementOptions options = simulated_options(plan, inputs);
-  options.contrast_response = parts.response(*model, plan, inputs, options);
-  OpenedBench bench = simulated_bench(model, inputs.plates, plan.target.distance_m, {}, inputs.motion);
-  const auto schedule = make_schedule(plan, inputs.plates, inputs.sensor.ifov_mrad(), Side::simulated,
-                                      RandomStream(plan.seed, "schedule.simulated"), {});
+  auto set_up = simulated_set_up(plan, inputs, {}, {}, {}, parts.responses);
+  if (!set_up) {
+    ADD_FAILURE() << set_up.error().message;
+    return {};
+  }
+  parts.responses = set_up->options.contrast_response;
   TemplateObserver observer(inputs.observer, triangle_alternatives());
-  auto result =
-      measure(*bench.camera, *bench.target, observer, *schedule, options, *bench.host, MeasurementListener{}, {});
+  auto result = measure(*set_up->bench.camera, *set_up->bench.target, observer, *set_up->schedule, set_up->options,
+                        *set_up->bench.host, MeasurementListener{}, {});
   if (!result || result->ended_by) ADD_FAILURE() << (result ? result->ended_by->message : result.error().message);
   return result ? result->trials : std::vector<Trial>{};
 }
