@@ -87,8 +87,11 @@ ChosenEstimator chosen_estimator(const Plan& plan, const SensorSpec& sensor) {
 
 namespace {
 
-/// Of a contrast, those of camera or twin, whichever are fewer.
+/// Of a contrast, those of camera or twin, whichever are fewer; of an adaptive schedule a contrast's share of the most.
 std::size_t presentations_of_contrast(const Plan& plan) {
+  if (plan.schedule.kind == ScheduleKind::adaptive)
+    return static_cast<std::size_t>(plan.schedule.max_presentations) /
+           std::max<std::size_t>(1, plan.target.delta_t_k.size());
   return plan.target.plates.size() * plan.target.mountings.size() *
          static_cast<std::size_t>(std::min(plan.target.phases, plan.simulation.phases));
 }
@@ -116,7 +119,6 @@ AnswersTaken chosen_answers(const Plan& plan, const SensorSpec& sensor, std::opt
   if (chosen_estimator(plan, sensor).estimator == FitEstimator::weibull) return binary(AnswersReason::weibull);
   if (plan.fit.lapse != 0.0) return binary(AnswersReason::lapse);
   if (plan.camera.contrast == ContrastUnit::grey_levels) return binary(AnswersReason::grey_levels);
-  if (plan.schedule.kind == ScheduleKind::adaptive) return binary(AnswersReason::adaptive);
   if (presentations_of_contrast(plan) < least_graded_presentations) return binary(AnswersReason::few_presentations);
   return graded(AnswersReason::twin);
 }

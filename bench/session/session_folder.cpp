@@ -385,6 +385,11 @@ Result<Session> read_session(const std::filesystem::path& folder) {
   session.provenance = *std::move(provenance);
 
   if (const Result<void> read = read_all_trials(folder, session); !read) return tl::unexpected(read.error());
+  // Earlier versions took right and wrong answers where an adaptive schedule left them open.
+  const auto is_graded = [](const Trial& trial) { return trial.probability_correct.has_value(); };
+  if (session.plan.schedule.kind == ScheduleKind::adaptive &&
+      session.plan.schedule.answers == AnswersChoice::automatic && std::ranges::none_of(session.trials, is_graded))
+    session.plan.schedule.answers = AnswersChoice::binary;
   if (const Result<void> read = read_all_targets(folder, session); !read) return tl::unexpected(read.error());
   if (is_there(folder / "fits.json")) {
     if (const Result<void> read = read_curves(folder / "fits.json", session); !read)

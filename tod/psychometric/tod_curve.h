@@ -20,8 +20,8 @@ enum class AnswersReason {
   twin,               ///< graded: the model observer judges, and the function of the twin is fitted
   weibull,            ///< a Weibull function is off by more than the interval of graded answers
   lapse,              ///< the plan has a lapse; graded answers are those of an observer without
-  adaptive,           ///< where an adaptive schedule ends by graded answers their intervals are not proven
-  grey_levels,        ///< nor where contrasts are those of grey levels
+  adaptive,           ///< in sessions of earlier versions: the schedule is adaptive
+  grey_levels,        ///< intervals of graded answers are not proven where contrasts are those of grey levels
   few_presentations,  ///< too few to tell how graded answers scatter
   no_function,        ///< graded ones were taken, and there was no function of the twin to fit them with
   person,             ///< a person answered

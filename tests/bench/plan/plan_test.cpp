@@ -256,7 +256,10 @@ TEST(Plan, WithoutAnswersTakesGradedOnesWhereTheirIntervalsAreProven) {
   EXPECT_EQ(chosen("[fit]\nlapse = \"free\"\n"), binary(AnswersReason::lapse));
   EXPECT_EQ(chosen("[camera]\nid = \"sim:sc2000\"\nifov_mrad = 1\ncontrast = \"grey-levels\"\n"),
             binary(AnswersReason::grey_levels));
-  EXPECT_EQ(chosen(schedule + "kind = \"adaptive\"\n"), binary(AnswersReason::adaptive));
+  EXPECT_EQ(chosen(schedule + "kind = \"adaptive\"\n").kind, AnswerKind::graded);
+  EXPECT_EQ(chosen(schedule + "kind = \"adaptive\"\nmax_presentations = 23\n"),
+            binary(AnswersReason::few_presentations))
+      << "of three contrasts";
   const std::string one_plate = "[target]\ndistance_m = 2\nplates = [\"tcat-a\"]\nmountings = [\"identity\"]\n";
   EXPECT_EQ(chosen(one_plate + "phases = 7\n"), binary(AnswersReason::few_presentations));
   EXPECT_EQ(chosen(one_plate + "phases = 8\n").kind, AnswerKind::graded);

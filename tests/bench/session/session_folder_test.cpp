@@ -76,9 +76,11 @@ Verdict stored_verdict() {
 }
 
 /// Writes a complete session and returns its folder.
-std::filesystem::path write_session(const testing::TemporaryFolder& parent, const std::vector<Trial>& trials) {
+std::filesystem::path write_session(const testing::TemporaryFolder& parent, const std::vector<Trial>& trials,
+                                    ScheduleKind kind = ScheduleKind::constant) {
   Plan plan;
   plan.name = "acceptance";
+  plan.schedule.kind = kind;
   auto folder = SessionFolder::create(parent.path() / "session", ExistingFolder::refuse).value();
   EXPECT_TRUE(folder.write_plan(LoadedPlan::load(plan).value()));
   Provenance provenance = full_provenance(plan);
@@ -126,6 +128,21 @@ TEST(SessionFolder, ComesBackAsTheValuesThatWereWritten) {
   EXPECT_EQ(session->comparison->verdict, ComparisonVerdict::equivalent);
   ASSERT_TRUE(session->verdict);
   EXPECT_EQ(to_line(verdict_json(*session->verdict)), to_line(verdict_json(stored_verdict())));
+}
+
+TEST(SessionFolder, OfAnAdaptiveScheduleWithoutAnswersHadThoseOfItsTrials) {
+  std::vector<Trial> right_and_wrong = testing::random_trials(20);
+  std::vector<Trial> graded = right_and_wrong;
+  for (Trial& trial : right_and_wrong) trial.probability_correct.reset();
+  for (Trial& trial : graded) trial.probability_correct = 0.75;
+  const auto answers_of = [](const std::vector<Trial>& trials, ScheduleKind kind) {
+    const testing::TemporaryFolder parent;
+    return read_session(write_session(parent, trials, kind)).value().plan.schedule.answers;
+  };
+
+  EXPECT_EQ(answers_of(right_and_wrong, ScheduleKind::adaptive), AnswersChoice::binary);
+  EXPECT_EQ(answers_of(graded, ScheduleKind::adaptive), AnswersChoice::automatic);
+  EXPECT_EQ(answers_of(right_and_wrong, ScheduleKind::constant), AnswersChoice::automatic);
 }
 
 TEST(SessionVerdict, IsTheStoredOneWhateverThePlanSays) {
