@@ -19,7 +19,7 @@ namespace {
 
 constexpr double shapes_per_first_draw = 1.5;  // a first picture has two of three of the shapes of all mountings
 /// Sizes of a function from chance to certainty over those near the threshold.
-constexpr double sizes_of_shape = 3;
+constexpr double sizes_of_shape = 4.5;
 constexpr double fit_s = 0.01;  // of one contrast, both intervals
 
 /// Seconds of each kind of work on one plate.
@@ -191,21 +191,25 @@ Result<TimePrediction> predict_time(const Plan& plan, const ExperimentInputs& in
   const bool shaped = chosen_estimator(plan, inputs.sensor).estimator == FitEstimator::twin_shape;
   for (const auto& outlook : inputs.outlooks) {
     const double draws = std::min<double>(needed_draws(inputs.accuracy, outlook.q_eff), Accuracy::max_noise_draws);
-    const auto seconds = measured_direct_seconds(inputs.sensor, inputs.effects, inputs.observer, outlook.delta_t_k,
-                                                 outlook.s75_pitch, draws, inputs.accuracy, inputs.motion);
+    const auto seconds_with = [&](double noise_draws) {
+      return measured_direct_seconds(inputs.sensor, inputs.effects, inputs.observer, outlook.delta_t_k,
+                                     outlook.s75_pitch, noise_draws, inputs.accuracy, inputs.motion);
+    };
+    const auto seconds = seconds_with(draws);
     if (!seconds) return tl::unexpected(seconds.error());
     out.simulation_s += *seconds;
     if (!shaped) continue;
     // Of the curve, and where there is a camera of its own: the same draws whatever tolerance is asked for.
-    const double table_draws = draws_of_twin_shape(expected_error(plan, inputs, simulated), inputs.accuracy);
-    const double table_s = sizes_of_shape * *seconds * table_draws / draws;
-    out.simulation_s += table_s;
-    out.measuring_s += table_s;
+    const auto table_s = seconds_with(draws_of_twin_shape(expected_error(plan, inputs, simulated), inputs.accuracy));
+    if (!table_s) return tl::unexpected(table_s.error());
+    out.simulation_s += sizes_of_shape * *table_s;
+    out.measuring_s += sizes_of_shape * *table_s;
     if (plan.schedule.kind != ScheduleKind::adaptive) continue;
     // Those that the schedule stops by, of camera and twin (stopping_tables()).
-    const double stopping_draws = draws_of_twin_shape(plan.schedule.half_width_percent / 196, inputs.accuracy);
-    out.simulation_s += sizes_of_shape * *seconds * stopping_draws / draws;
-    out.measuring_s += sizes_of_shape * *seconds * stopping_draws / draws;
+    const auto stopping_s = seconds_with(draws_of_twin_shape(plan.schedule.half_width_percent / 196, inputs.accuracy));
+    if (!stopping_s) return tl::unexpected(stopping_s.error());
+    out.simulation_s += sizes_of_shape * *stopping_s;
+    out.measuring_s += sizes_of_shape * *stopping_s;
   }
   return out;
 }
