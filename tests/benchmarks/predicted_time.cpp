@@ -1,6 +1,5 @@
 // Predicted against actual time of several plans: simulated ones, and one measured with a simulated camera. Processor
-// time of this process, so that other programs count as little as they can. Exit code 1 when a ratio is outside 0.8
-// to 1.25.
+// time of this process, so that other programs count as little as they can. Exit code 1 when a ratio is outside 1.35.
 #include <cmath>
 #include <cstdio>
 #include <ctime>
