@@ -18,7 +18,7 @@ namespace todbench {
 namespace {
 
 constexpr double shapes_per_first_draw = 1.5;  // a first picture has two of three of the shapes of all mountings
-/// Sizes of a function from chance to certainty over those near the threshold.
+/// A function from chance to certainty over a direct estimate of as many draws: it has more sizes (predicted_time).
 constexpr double sizes_of_shape = 4.5;
 constexpr double fit_s = 0.01;  // of one contrast, both intervals
 

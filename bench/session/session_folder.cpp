@@ -347,15 +347,19 @@ std::string curve_csv(const TodCurve& main, const std::optional<TodCurve>& twin,
 namespace {
 
 /// What an earlier version did where its plan says nothing, for there was no choice: right and wrong answers, each to
-/// one frame, and a Weibull function.
-Result<void> keep_as_it_was(Plan& plan, const std::filesystem::path& file) {
+/// one frame, and a Weibull function. Of an adaptive schedule that left its answers open they are those of its trials.
+Result<void> keep_as_it_was(Plan& plan, std::span<const Trial> trials, const std::filesystem::path& file) {
   const auto text = read_text_file(file);
   if (!text) return tl::unexpected(text.error());
   auto reader = TomlReader::parse(*text, file.string());
   if (!reader) return tl::unexpected(reader.error());
   if (!reader->section("fit").has("estimator")) plan.fit.estimator = EstimatorChoice::weibull;
   TomlReader schedule = reader->section("schedule");
-  if (!schedule.has("answers")) plan.schedule.answers = AnswersChoice::binary;
+  const auto is_graded = [](const Trial& trial) { return trial.probability_correct.has_value(); };
+  const bool left_open =
+      plan.schedule.kind == ScheduleKind::adaptive && plan.schedule.answers == AnswersChoice::automatic;
+  if (!schedule.has("answers") || (left_open && std::ranges::none_of(trials, is_graded)))
+    plan.schedule.answers = AnswersChoice::binary;
   std::vector<int>& frames = plan.schedule.frames_per_presentation;
   if (!schedule.has("frames_per_presentation"))
     frames = {1};
@@ -374,7 +378,6 @@ Result<Session> read_session(const std::filesystem::path& folder) {
   const Result<LoadedPlan> loaded = read_plan((folder / "session.toml").string());
   if (!loaded) return tl::unexpected(loaded.error());
   session.plan = loaded->plan();
-  if (auto kept = keep_as_it_was(session.plan, folder / "session.toml"); !kept) return tl::unexpected(kept.error());
   session.parts = loaded->parts();
 
   const std::filesystem::path provenance_file = folder / "provenance.json";
@@ -385,11 +388,8 @@ Result<Session> read_session(const std::filesystem::path& folder) {
   session.provenance = *std::move(provenance);
 
   if (const Result<void> read = read_all_trials(folder, session); !read) return tl::unexpected(read.error());
-  // Earlier versions took right and wrong answers where an adaptive schedule left them open.
-  const auto is_graded = [](const Trial& trial) { return trial.probability_correct.has_value(); };
-  if (session.plan.schedule.kind == ScheduleKind::adaptive &&
-      session.plan.schedule.answers == AnswersChoice::automatic && std::ranges::none_of(session.trials, is_graded))
-    session.plan.schedule.answers = AnswersChoice::binary;
+  if (auto kept = keep_as_it_was(session.plan, session.trials, folder / "session.toml"); !kept)
+    return tl::unexpected(kept.error());
   if (const Result<void> read = read_all_targets(folder, session); !read) return tl::unexpected(read.error());
   if (is_there(folder / "fits.json")) {
     if (const Result<void> read = read_curves(folder / "fits.json", session); !read)
